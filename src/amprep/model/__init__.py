@@ -1,0 +1,63 @@
+"""Frozen records that flow between the stages. Millimetres and radians; arrays are read-only."""
+
+from amprep.model.arrays import CONTACT_TOLERANCE
+from amprep.model.build import (
+    TARGETS,
+    Build,
+    BuildSettings,
+    PlacedPart,
+    SupportBody,
+    Target,
+    Unsupported,
+)
+from amprep.model.cells import Beams, CellRequest, Cells, ExtraMesh, Role, Template
+from amprep.model.control import Report, Stop, silent
+from amprep.model.mesh import Mesh
+from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
+from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
+from amprep.model.space import BuildVolume
+from amprep.model.supports import DIRECTIONS, Cube, GridFrame, SupportPlan, SupportProblem, Unconnected
+from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces, Solid
+
+__all__ = [
+    "CONTACT_TOLERANCE",
+    "DIRECTIONS",
+    "TARGETS",
+    "Appearance",
+    "Beams",
+    "BoundingVolume",
+    "Boxes",
+    "Build",
+    "BuildSettings",
+    "BuildVolume",
+    "CellRequest",
+    "Cells",
+    "ConvexPieces",
+    "Cube",
+    "ExtraMesh",
+    "GridFrame",
+    "Item",
+    "Mesh",
+    "Objective",
+    "Orientations",
+    "Overrides",
+    "Packing",
+    "PackingProblem",
+    "Part",
+    "PlacedPart",
+    "Placement",
+    "Region",
+    "Report",
+    "Role",
+    "Solid",
+    "Stop",
+    "SupportBody",
+    "SupportPlan",
+    "SupportProblem",
+    "Target",
+    "Template",
+    "Unconnected",
+    "Unplaced",
+    "Unsupported",
+    "silent",
+]

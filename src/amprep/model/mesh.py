@@ -1,0 +1,50 @@
+"""A triangle mesh: vertices and triangles, nothing else."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from amprep.model.arrays import Floats, Ints, frozen
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles over shared vertices; normals point out of the solid (right-hand rule).
+
+    Attributes
+    ----------
+    vertices
+        ``(n, 3)`` float64, mm.
+    triangles
+        ``(m, 3)`` int32, indices into `vertices`, counter-clockwise seen from outside.
+    """
+
+    vertices: Floats
+    triangles: Ints
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices, np.float64, 3))
+        object.__setattr__(self, "triangles", frozen(self.triangles, np.int32, 3))
+
+    @cached_property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Least and greatest corner, each ``(3,)`` mm."""
+        return self.vertices.min(axis=0), self.vertices.max(axis=0)
+
+    @cached_property
+    def signed_volume(self) -> float:
+        """Volume enclosed, mm3, counting overlaps as often as they occur; negative when inside out."""
+        corners = self.vertices[self.triangles] - self.vertices[:1]
+        return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the geometry as 3MF keeps it: float32 of six decimals, and the triangles."""
+        kept = np.round(self.vertices, 6).astype("<f4") + np.float32(0.0)  # adding zero turns -0 into 0
+        return hashlib.sha256(kept.tobytes() + self.triangles.astype("<i4").tobytes()).hexdigest()
+
+    def moved(self, matrix: Floats) -> "Mesh":
+        """Return the mesh under the ``(4, 4)`` row-major affine `matrix` (column vectors)."""
+        return Mesh(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.triangles)

@@ -1,0 +1,103 @@
+"""The packing problem and its answer."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from amprep.model.arrays import Floats, frozen
+from amprep.model.part import Orientations
+from amprep.model.space import BuildVolume
+from amprep.model.volume import BoundingVolume
+
+Objective = Literal["fill", "builds", "height"]
+Status = Literal["optimal", "feasible", "infeasible"]
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One copy of a part, as the packer sees it.
+
+    Attributes
+    ----------
+    part, copy
+        Index of the part in the job and of its copy, from 0.
+    volume
+        Shared by all copies, in part coordinates.
+    """
+
+    part: int
+    copy: int
+    volume: BoundingVolume
+    value: float
+    orientations: Orientations = field(default_factory=Orientations)
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """A rigid motion of an item into a build: ``x -> rotation @ x + translation``."""
+
+    item: int
+    rotation: Floats
+    translation: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64).reshape(3, 3))
+        object.__setattr__(self, "translation", frozen(self.translation, np.float64))
+
+    @property
+    def matrix(self) -> Floats:
+        """The motion as a ``(4, 4)`` row-major matrix for column vectors."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.rotation, self.translation
+        return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class PackingProblem:
+    """Which items go into which space, under which rules.
+
+    Attributes
+    ----------
+    fixed
+        Placements that stand in the first build already and must stay.
+    clearance
+        Least distance between parts and from parts to walls and lid, mm; volumes are made without it.
+    lift
+        Height of the lowest parts above the plate, mm.
+    stacking
+        Whether parts may lie above one another; off: all stand at `lift`.
+    """
+
+    items: tuple[Item, ...]
+    space: BuildVolume
+    objective: Objective = "builds"
+    fixed: tuple[Placement, ...] = ()
+    clearance: float = 0.0
+    lift: float = 0.0
+    stacking: bool = True
+
+
+@dataclass(frozen=True)
+class Unplaced:
+    """An item that found no place, and why: ``too large``, ``no room left``, ``out of time``."""
+
+    item: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Packing:
+    """Builds of placements; every item is in exactly one build or in `unplaced`.
+
+    Attributes
+    ----------
+    bound
+        What cannot be beaten: fewest builds, greatest value or least height; None when unknown.
+    """
+
+    builds: tuple[tuple[Placement, ...], ...]
+    unplaced: tuple[Unplaced, ...] = ()
+    bound: float | None = None
+    status: Status = "feasible"
+    stop_reason: str = "finished"

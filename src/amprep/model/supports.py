@@ -1,0 +1,137 @@
+"""The support problem on the layered grid (thesis 3.2) and its answer."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Literal
+
+import numpy as np
+
+from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
+
+Status = Literal["optimal", "feasible", "infeasible"]
+
+NO_WHITE_BELOW = "no white cube below"
+ENCLOSED = "enclosed"
+CAPACITY = "capacity"
+CONNECTOR_BLOCKED = "connector blocked"
+
+
+class Cube(IntEnum):
+    """State of a grid cube: white may carry supports."""
+
+    WHITE = 0
+    BLACK = 1
+    CLOSED = 2
+
+
+DIRECTIONS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
+"""``(dy, dx)`` from a square to the one below it: straight, +x, -x, +y, -y."""
+
+
+@dataclass(frozen=True, eq=False)
+class GridFrame:
+    """Where the grid lies. Cube (k, y, x) spans ``origin + (x, y, k) * (pitch, pitch, step)``, one size up.
+
+    Plane p is at height ``origin[2] + p * step``; square (p, y, x) is the bottom of cube (p, y, x).
+
+    Attributes
+    ----------
+    origin
+        ``(3,)`` mm; its z is 0, the plate.
+    shape
+        Numbers of cubes ``(nz, ny, nx)``.
+    """
+
+    origin: Floats
+    pitch: float
+    step: float
+    shape: tuple[int, int, int]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "origin", frozen(self.origin, np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class SupportProblem:
+    """Connect red squares to green ones over white cubes, downwards, at most one square sideways a layer.
+
+    An edge leads from square (p, y, x) to (p - 1, y + dy, x + dx) and exists when the cubes
+    (p - 1, y, x) and (p - 1, y + dy, x + dx) are both white.
+
+    Attributes
+    ----------
+    cubes
+        ``(nz, ny, nx)`` uint8, values of `Cube`.
+    red
+        ``(m, 3)`` int32 plane, y, x, distinct, each with plane >= 1; the cube below is white.
+    red_part, red_region
+        ``(m,)`` int32: which placed part, which of its overhang regions.
+    green
+        ``(ny, nx)`` bool: plate squares under a white cube.
+    edge_capacity, node_capacity
+        Paths that may share an edge, a square; 0 means unbounded. A red square's own supply is 1.
+    costs
+        Integer cost of one unit over a vertical and over an oblique edge.
+    material
+        Material of a vertical and of an oblique edge in the chosen cell, mm3.
+    """
+
+    frame: GridFrame
+    cubes: Bytes
+    red: Ints
+    red_part: Ints
+    red_region: Ints
+    green: Bools
+    edge_capacity: int = 0
+    node_capacity: int = 0
+    costs: tuple[int, int] = (1, 2)
+    material: tuple[float, float] = (1.0, 1.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
+        object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
+        object.__setattr__(self, "red_part", frozen(self.red_part, np.int32))
+        object.__setattr__(self, "red_region", frozen(self.red_region, np.int32))
+        object.__setattr__(self, "green", frozen(self.green, np.bool_))
+
+
+@dataclass(frozen=True)
+class Unconnected:
+    """A red square (index into the problem's `red`) without a way to the plate, and why."""
+
+    red: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class SupportPlan:
+    """Flow on the edges that carry any; edge e leads down from (plane, y, x) in `direction`.
+
+    Attributes
+    ----------
+    plane, y, x
+        ``(n,)`` int32, the upper square.
+    direction
+        ``(n,)`` uint8, index into `DIRECTIONS`.
+    flow, capacity
+        ``(n,)`` int32, paths on the edge and the edge's final capacity (at least the flow).
+    bound
+        What the objective cannot beat, or None.
+    """
+
+    plane: Ints
+    y: Ints
+    x: Ints
+    direction: Bytes
+    flow: Ints
+    capacity: Ints
+    unconnected: tuple[Unconnected, ...] = ()
+    status: Status = "feasible"
+    stop_reason: str = "finished"
+    objective: float | None = None
+    bound: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("plane", "y", "x", "flow", "capacity"):
+            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
+        object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
