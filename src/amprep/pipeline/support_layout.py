@@ -1,0 +1,77 @@
+"""The support layout: what was planned for a whole build, ready to be turned into cells."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from amprep.geometry.overhangs import Overhangs
+from amprep.model.arrays import Bools, Bytes, Ints, frozen
+from amprep.model.supports import GridFrame
+
+
+@dataclass(frozen=True, eq=False)
+class SupportLayout:
+    """Red squares of all parts, the edges that carry their flow, and the support groups these form.
+
+    Attributes
+    ----------
+    cubes
+        ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Cube`.
+    overhangs
+        One per placed part, in the part's own mesh (same indices), measured in build coordinates.
+    red
+        ``(m, 3)`` int32 plane, y, x; sorted. A square appears once per part that needs it. Those on plane 0
+        need no support of their own ("what lies in the layer on the plate"): connected, without edges.
+    red_part, red_region
+        ``(m,)`` int32: placed part; region of its overhangs (the one of least label in the square's column).
+    red_rise
+        ``(m,)`` int32: black cubes from the red square upwards that its connector may pass, the
+        contiguous run of cubes of the column that hold needed geometry of the part.
+    connected
+        ``(m,)`` bool.
+    reasons
+        ``m`` words: why a red square is unconnected, ``""`` when it is connected.
+    plane, y, x, direction, flow, capacity
+        ``(n,)`` the edges as in `amprep.model.supports.SupportPlan`; an edge shared by several parts
+        appears once.
+    edge_part
+        ``(n,)`` int32: the part whose red square the edge was routed for first.
+    red_group, edge_group
+        ``(m,)``, ``(n,)`` int32: support group, -1 for red squares that are not connected; one
+        group per part, merged where parts share squares.
+    group_parts
+        Placed parts each group holds; more than one only where squares are shared.
+    notes
+        Sentences for the user, for instance which parts share supports.
+    """
+
+    frame: GridFrame
+    cubes: Bytes
+    overhangs: tuple[Overhangs, ...]
+    red: Ints
+    red_part: Ints
+    red_region: Ints
+    red_rise: Ints
+    connected: Bools
+    reasons: tuple[str, ...]
+    plane: Ints
+    y: Ints
+    x: Ints
+    direction: Bytes
+    flow: Ints
+    capacity: Ints
+    edge_part: Ints
+    red_group: Ints
+    edge_group: Ints
+    group_parts: tuple[tuple[int, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("plane", "y", "x", "flow", "capacity", "edge_part", "edge_group"):
+            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
+        for name in ("red_part", "red_region", "red_rise", "red_group"):
+            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
+        object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
+        object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
+        object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
+        object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
