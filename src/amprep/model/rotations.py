@@ -1,6 +1,7 @@
 """The words for a part's allowed rotations: none, z90, axis, about-z, free, or a list of matrices."""
 
 import json
+from collections.abc import Callable
 from itertools import permutations, product
 from typing import Any
 
@@ -31,7 +32,7 @@ def parse_rotations(words: str | list[Any]) -> Orientations:
     word = words.strip()
     if word.startswith("["):
         return Orientations("list", _matrices(_json(word)))
-    allowed = {
+    allowed: dict[str, Callable[[], Orientations]] = {
         "none": Orientations,
         "z90": lambda: Orientations("list", quarter_turns()),
         "axis": lambda: Orientations("list", axis_rotations()),
