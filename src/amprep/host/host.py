@@ -1,0 +1,271 @@
+"""The host: a table of offers per kind, the choice by name, the guard around every call."""
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal, overload
+
+from amprep.errors import AmprepError, InputError, PluginError, nearest_hint
+from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
+from amprep.host import typed
+from amprep.host.loading import Source, built_in, given, installed, offers_of, one_line
+from amprep.host.mismatch import fits
+from amprep.host.offers import KINDS, Kind, Listed
+from amprep.model.cells import Cells
+from amprep.model.packing import Packing, PackingProblem
+from amprep.model.part import Part
+from amprep.model.supports import SupportPlan
+from amprep.model.volume import BoundingVolume
+
+
+class Host:
+    """Every offer of every plugin that loaded, and the only way to run one.
+
+    Attributes
+    ----------
+    warnings
+        One line for each plugin that was refused and each clash of names.
+    """
+
+    def __init__(self, listed: Sequence[Listed[Offer]], warnings: Sequence[str] = ()) -> None:
+        self.warnings: list[str] = list(warnings)
+        self._listed: dict[Kind, dict[str, Listed[Offer]]] = {kind: {} for kind in KINDS}
+        self._clashes: dict[tuple[Kind, str], list[Listed[Offer]]] = {}
+        for each in listed:
+            self._enter(each)
+
+    @classmethod
+    def load(
+        cls,
+        *,
+        modules: Sequence[str] = (),
+        plugins_enabled: bool = True,
+        env: Mapping[str, str] = os.environ,
+    ) -> "Host":
+        """Load the built-in plugins, the installed ones, and the modules given.
+
+        Parameters
+        ----------
+        modules
+            Importable names or paths of modules; ``no:NAME`` blocks a plugin by its name or distribution.
+        plugins_enabled
+            False loads the built-in plugins only.
+        env
+            ``AMPREP_LOAD_PLUGINS``, a comma-separated list, limits the installed plugins to those named.
+
+        Raises
+        ------
+        PluginError
+            When one of `modules` cannot be loaded; a broken installed plugin is only a warning.
+        """
+        blocked = [name.removeprefix("no:") for name in modules if name.startswith("no:")]
+        asked = [name for name in modules if not name.startswith("no:")]
+        if asked and not plugins_enabled:
+            raise PluginError(f"'-p {asked[0]}' and '--no-plugins' contradict each other; leave one out")
+        found, warnings = installed(env) if plugins_enabled else ([], [])
+        sources = [*built_in(), *found]
+        warnings += _not_blocked(blocked, sources)
+        kept = [source for source in sources if not any(map(source.answers_to, blocked))]
+        listed, refused = _load_all([*kept, *given(asked)])
+        return cls(listed, [*warnings, *refused])
+
+    def offers(self, kind: Kind) -> Mapping[str, Listed[Offer]]:
+        """Return the offers of a kind by name: the built-in ones first, then by distribution."""
+        return dict(self._listed[kind])
+
+    @overload
+    def choose(self, kind: Literal["reader"], name: str) -> Listed[MeshReader]: ...
+    @overload
+    def choose(self, kind: Literal["volume"], name: str) -> Listed[VolumeMaker]: ...
+    @overload
+    def choose(self, kind: Literal["packer"], name: str) -> Listed[Packer]: ...
+    @overload
+    def choose(self, kind: Literal["router"], name: str) -> Listed[SupportRouter]: ...
+    @overload
+    def choose(self, kind: Literal["cell"], name: str) -> Listed[CellEmitter]: ...
+    @overload
+    def choose(self, kind: Kind, name: str) -> Listed[Any]: ...
+
+    def choose(self, kind: Kind, name: str) -> Listed[Any]:
+        """Return the offer called `name`.
+
+        Raises
+        ------
+        PluginError
+            When there is none (with the nearest name), or several plugins offer it.
+        """
+        table, noun = self._listed[kind], KINDS[kind].noun
+        if (kind, name) in self._clashes:
+            rivals = " and ".join(each.origin for each in self._clashes[kind, name])
+            raise PluginError(f"{noun} {name!r} is offered by {rivals}; block one of them with '-p no:NAME'")
+        if name not in table:
+            raise PluginError(f"no {noun} is called {name!r}{nearest_hint(name, table)}")
+        return table[name]
+
+    def params(self, listed: Listed[Offer], table: Mapping[str, Any]) -> Any:
+        """Return the offer's parameters made from a table of plain values.
+
+        Raises
+        ------
+        JobError
+            For an unknown key (with the nearest known one), a wrong type, or a bound that the offer checks.
+        """
+        return self._guarded(
+            listed,
+            typed.make,
+            listed.offer.params,
+            table,
+            f"parameters of {KINDS[listed.kind].noun} {listed.offer.name!r}",
+        )
+
+    @overload
+    def call(self, listed: Listed[MeshReader], *args: Any, **kwargs: Any) -> list[Part]: ...
+    @overload
+    def call(self, listed: Listed[VolumeMaker], *args: Any, **kwargs: Any) -> BoundingVolume: ...
+    @overload
+    def call(self, listed: Listed[Packer], *args: Any, **kwargs: Any) -> Packing: ...
+    @overload
+    def call(self, listed: Listed[SupportRouter], *args: Any, **kwargs: Any) -> SupportPlan: ...
+    @overload
+    def call(self, listed: Listed[CellEmitter], *args: Any, **kwargs: Any) -> Cells: ...
+
+    def call(self, listed: Listed[Offer], *args: Any, **kwargs: Any) -> Any:
+        """Run an offer and return its result.
+
+        Raises
+        ------
+        PluginError
+            When the plugin raises anything but an `AmprepError`, or returns something else than promised;
+            the plugin's own exception is the cause.
+        """
+        result = self._guarded(listed, listed.offer.run, *args, **kwargs)
+        wanted = KINDS[listed.kind].result
+        if not isinstance(result, wanted):
+            expected = " or ".join(each.__name__ for each in wanted)
+            raise PluginError(f"{listed.title} returned {type(result).__name__}, expected {expected}")
+        if wanted == (list,) and not all(isinstance(each, Part) for each in result):
+            raise PluginError(f"{listed.title} returned a list of other things than parts")
+        return result
+
+    def material(
+        self, listed: Listed[CellEmitter], pitch: float, step: float, params: Any
+    ) -> tuple[float, float]:
+        """Return the mm3 of a vertical and of an oblique edge; one full prism each by default.
+
+        Raises
+        ------
+        PluginError
+            When the cell's own estimate fails or is not two numbers.
+        """
+        if listed.offer.material is None:
+            return pitch * pitch * step, pitch * pitch * step
+        vertical, oblique = self._guarded(listed, _two_floats, listed.offer.material, pitch, step, params)
+        return vertical, oblique
+
+    def refuse_mismatch(self, listed: Listed[Packer], problem: PackingProblem) -> None:
+        """Refuse a packer that cannot handle `problem`, with the names of those that can.
+
+        Raises
+        ------
+        PluginError
+            Naming what does not fit.
+        """
+        lacking = fits(listed.offer.accepts, problem)
+        if not lacking:
+            return
+        packers = [each.offer for each in self._listed["packer"].values() if isinstance(each.offer, Packer)]
+        able = [packer.name for packer in packers if not fits(packer.accepts, problem)]
+        advice = f"choose {' or '.join(able)}" if able else "no installed packer can"
+        raise PluginError(f"{listed.title} does not handle {', '.join(lacking)}; {advice}")
+
+    def reader_for(self, path: Path, chosen: Mapping[str, str] | None = None) -> Listed[MeshReader]:
+        """Return the reader of a file by its suffix: the one `chosen` for it, else the first listed.
+
+        Parameters
+        ----------
+        chosen
+            Suffix to name of the reader, from the job.
+
+        Raises
+        ------
+        InputError
+            When no reader knows the suffix.
+        PluginError
+            When the chosen reader does not exist.
+        """
+        suffix = path.suffix.lower()
+        if chosen and suffix in chosen:
+            return self.choose("reader", chosen[suffix])
+        for each in self._listed["reader"].values():
+            if isinstance(each.offer, MeshReader) and suffix in each.offer.suffixes:
+                return self.choose("reader", each.offer.name)
+        known = ", ".join(self.suffixes)
+        raise InputError(
+            f"{path}: no reader for {suffix or 'files without a suffix'!r}; known suffixes: {known}"
+        )
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """The suffixes that some reader knows, sorted."""
+        readers = [each.offer for each in self._listed["reader"].values()]
+        return tuple(
+            sorted({s for reader in readers if isinstance(reader, MeshReader) for s in reader.suffixes})
+        )
+
+    def _enter(self, listed: Listed[Offer]) -> None:
+        name, table = listed.offer.name, self._listed[listed.kind]
+        first = table.setdefault(name, listed)
+        if first is listed:
+            return
+        both = f"{KINDS[listed.kind].noun} {name!r} is offered by {first.origin} and by {listed.origin}"
+        if first.builtin:
+            self.warnings.append(f"{both}; the built-in one is kept")
+            return
+        self.warnings.append(f"{both}; neither can be chosen until one is blocked with '-p no:NAME'")
+        self._clashes.setdefault((listed.kind, name), [first]).append(listed)
+
+    @staticmethod
+    def _guarded(listed: Listed[Offer], run: Any, *args: Any, **kwargs: Any) -> Any:
+        try:
+            return run(*args, **kwargs)
+        except AmprepError:
+            raise
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"{listed.title} failed: {one_line(error)}") from error
+
+
+def _two_floats(material: Any, pitch: float, step: float, params: Any) -> tuple[float, float]:
+    vertical, oblique = material(pitch, step, params)
+    return float(vertical), float(oblique)
+
+
+def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]]:
+    """Load each source by itself; return the offers and a warning for each that was refused."""
+    listed: list[Listed[Offer]] = []
+    warnings: list[str] = []
+    seen: list[object] = []
+    for source in sources:
+        try:
+            plugin = source.load()
+            offers = [] if any(plugin is each for each in seen) else list(offers_of(plugin))
+        except (Exception, SystemExit) as error:
+            reason = str(error) if isinstance(error, PluginError) else one_line(error)
+            if source.asked_for:
+                raise PluginError(f"{source.title} cannot be loaded: {reason}") from error
+            warnings.append(f"{source.title} was not loaded: {reason}")
+            continue
+        seen.append(plugin)
+        listed += [
+            Listed(kind, offer, source.name, source.distribution, source.version, source.builtin)
+            for kind, offer in offers
+        ]
+    return listed, warnings
+
+
+def _not_blocked(blocked: Sequence[str], sources: Sequence[Source]) -> list[str]:
+    known = [name for source in sources if not source.builtin for name in (source.name, source.distribution)]
+    return [
+        f"'-p no:{name}' blocks nothing: no such plugin is installed{nearest_hint(name, known)}"
+        for name in blocked
+        if not any(source.answers_to(name) for source in sources)
+    ]

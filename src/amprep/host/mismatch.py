@@ -1,0 +1,58 @@
+"""Says what a packing problem asks for that a packer does not handle."""
+
+import numpy as np
+
+from amprep.hookspecs import PackerAccepts
+from amprep.model.packing import PackingProblem
+from amprep.model.part import Orientations
+from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces
+
+
+def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
+    """Return what `problem` asks for beyond `accepts`, in a few words each; empty when nothing."""
+    volumes = {volume_word(item.volume) for item in problem.items} - _volumes_handled(accepts)
+    turns = {orientation_word(item.orientations) for item in problem.items} - _turns_handled(accepts)
+    found = [f"bounding volumes of kind {word!r}" for word in sorted(volumes)]
+    found += [f"orientations of kind {word!r}" for word in sorted(turns)]
+    if problem.objective not in accepts.objectives:
+        found.append(f"the objective {problem.objective!r}")
+    if problem.space.shape == "cylinder" and not accepts.cylinder:
+        found.append("a cylindrical build volume")
+    if len(problem.space.zone_lo) and not accepts.zones:
+        found.append("forbidden zones")
+    if problem.fixed and not accepts.fixed:
+        found.append("fixed placements")
+    if problem.stacking not in accepts.stacking:
+        found.append(f"stacking {'on' if problem.stacking else 'off'}")
+    return found
+
+
+def volume_word(volume: BoundingVolume) -> str:
+    """Return the word of `PackerAccepts.volumes` that a bounding volume needs."""
+    if isinstance(volume, Boxes):
+        return "box" if len(volume.lo) == 1 else "boxes"
+    return "convex" if isinstance(volume, ConvexPieces) else "solid"
+
+
+def orientation_word(orientations: Orientations) -> str:
+    """Return the word of `PackerAccepts.orientations` that a part's freedom needs."""
+    if orientations.freedom != "list":
+        return orientations.freedom
+    matrices = orientations.matrices
+    if len(matrices) == 1:
+        return "fixed"
+    return "axis" if np.allclose(np.abs(matrices), np.round(np.abs(matrices)), atol=1e-9) else "list"
+
+
+def _volumes_handled(accepts: PackerAccepts) -> frozenset[str]:
+    return accepts.volumes | {"box"} if "boxes" in accepts.volumes else accepts.volumes
+
+
+def _turns_handled(accepts: PackerAccepts) -> frozenset[str]:
+    # a list may map axes to axes, and one rotation is a list of one
+    handled = set(accepts.orientations)
+    if "list" in handled:
+        handled.add("axis")
+    if "axis" in handled:
+        handled.add("fixed")
+    return frozenset(handled)

@@ -1,0 +1,144 @@
+"""Turns plain values, as TOML gives them, into typed ones; says what was expected and what came."""
+
+import math
+import types
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from amprep.errors import JobError, nearest_hint
+
+T = TypeVar("T")
+_SCALARS: dict[Any, str] = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
+
+
+def field_types(cls: type) -> dict[str, Any]:
+    """Return the type of each settable field of a dataclass.
+
+    Raises
+    ------
+    TypeError
+        When a field has a type that no plain value turns into.
+    NameError
+        When an annotation names something that does not exist.
+    """
+    hints = get_type_hints(cls)
+    settable = {field.name: hints[field.name] for field in fields(cls) if field.init}
+    for name, wanted in settable.items():
+        expectation(wanted, name)
+    return settable
+
+
+def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
+    """Make the dataclass `cls` from a table of plain values.
+
+    Parameters
+    ----------
+    where
+        Says which table it is, for messages: ``job.toml, [packing]``.
+
+    Raises
+    ------
+    JobError
+        For an unknown key (with the nearest known one), a value of the wrong type, or a broken bound.
+    """
+    wanted = field_types(cls)
+    for key in table:
+        if key not in wanted:
+            raise JobError(f"{where}: unknown key {key!r}{nearest_hint(key, wanted)}")
+    values = {key: convert(value, wanted[key], f"{where}: {key}") for key, value in table.items()}
+    try:
+        return cls(**values)
+    except ValueError as error:
+        raise JobError(f"{where}: {error}") from error
+
+
+def convert(value: Any, wanted: Any, where: str) -> Any:
+    """Return `value` as the type `wanted`, or raise `JobError` saying what was expected and what came."""
+    converted, fits = _attempt(value, wanted)
+    if not fits:
+        raise JobError(f"{where}: expected {expectation(wanted, where)}, got {_shown(value)}")
+    return converted
+
+
+def expectation(wanted: Any, where: str) -> str:
+    """Describe a type for people; raise `TypeError` for one that cannot be set from a plain value."""
+    if wanted in _SCALARS:
+        return _SCALARS[wanted]
+    if wanted is Any or wanted is Path:
+        return "any value" if wanted is Any else "a path"
+    origin, arguments = get_origin(wanted), get_args(wanted)
+    if origin is Literal:
+        return "one of " + ", ".join(repr(choice) for choice in arguments)
+    if origin in (Union, types.UnionType):
+        return " or ".join(expectation(each, where) for each in arguments if each is not type(None))
+    if origin is tuple:
+        return _tuple_expectation(arguments, where)
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return "a table"
+    raise TypeError(
+        f"{where} has type {wanted}; "
+        "use bool, int, float, str, Path, tuple, Literal, Mapping or a union of them"
+    )
+
+
+def _tuple_expectation(arguments: tuple[Any, ...], where: str) -> str:
+    if len(arguments) == 2 and arguments[1] is Ellipsis:
+        return f"a list, each {expectation(arguments[0], where)}"
+    return "a list of " + ", ".join(expectation(each, where) for each in arguments)
+
+
+def _attempt(value: Any, wanted: Any) -> tuple[Any, bool]:
+    """Return the converted value and whether it fits."""
+    if wanted is Any:
+        return value, True
+    if wanted in _SCALARS or wanted is Path:
+        return _scalar(value, wanted)
+    origin, arguments = get_origin(wanted), get_args(wanted)
+    if origin is Literal:
+        return value, any(value == choice and type(value) is type(choice) for choice in arguments)
+    if origin in (Union, types.UnionType):
+        return _first_fitting(value, arguments)
+    if origin is tuple:
+        return _tuple(value, arguments)
+    return value, isinstance(value, Mapping)
+
+
+def _scalar(value: Any, wanted: Any) -> tuple[Any, bool]:
+    if wanted is float:
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        return (
+            (float(value), True)
+            if number and abs(value) <= 1e300 and math.isfinite(value)
+            else (value, False)
+        )
+    if wanted is Path:
+        return (Path(value), True) if isinstance(value, str | Path) else (value, False)
+    return value, type(value) is wanted
+
+
+def _first_fitting(value: Any, choices: tuple[Any, ...]) -> tuple[Any, bool]:
+    for choice in choices:
+        converted, fits = (value, value is None) if choice is type(None) else _attempt(value, choice)
+        if fits:
+            return converted, True
+    return value, False
+
+
+def _tuple(value: Any, arguments: tuple[Any, ...]) -> tuple[Any, bool]:
+    if not isinstance(value, list | tuple):
+        return value, False
+    open_ended = len(arguments) == 2 and arguments[1] is Ellipsis
+    wanted = arguments[:1] * len(value) if open_ended else arguments
+    if len(wanted) != len(value):
+        return value, False
+    pairs = [_attempt(each, kind) for each, kind in zip(value, wanted, strict=True)]
+    return tuple(converted for converted, _ in pairs), all(fits for _, fits in pairs)
+
+
+def _shown(value: Any) -> str:
+    words = {bool: "the truth value", str: "the text", dict: "the table", list: "the list"}
+    text = repr(value) if not isinstance(value, bool) else str(value).lower()
+    short = text if len(text) <= 80 else text[:77] + "..."
+    return f"{words[type(value)]} {short}" if type(value) in words else short
