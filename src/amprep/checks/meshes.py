@@ -1,0 +1,49 @@
+"""The promise of mesh readers: finite, indexed in range, oriented, a solid of the volume stated."""
+
+import numpy as np
+
+from amprep.checks.violation import Violation
+from amprep.geometry.solids import find_defect, settle
+from amprep.model.part import Part
+
+
+def check_part(part: Part) -> list[Violation]:
+    """Check that a part is what its record says.
+
+    The mesh is finite, indexed in range and not empty. If `is_solid`, manifold3d accepts it as it is, no
+    shell is inside out, and `volume_mm3` is the volume where the winding number is positive. Quantity is at
+    least 1; region triangles and triangle colours belong to the mesh.
+    """
+    vertices, triangles = part.mesh.vertices, part.mesh.triangles
+    defect = find_defect(vertices, triangles)
+    if defect:
+        return [Violation("mesh", part.name, f"expected finite triangles; {defect}")]
+    found = _check_records(part)
+    if not part.is_solid:
+        return found
+    settled = settle(vertices, triangles)
+    if settled.problem:
+        return [*found, Violation("solid", part.name, f"expected a solid; {settled.problem}")]
+    if settled.turned.any():
+        found.append(Violation("orientation", part.name, f"expected outward normals; {settled.notes[-1]}"))
+    if not np.isclose(part.volume_mm3, settled.volume, rtol=1e-6):
+        message = f"expected {settled.volume:.6g} mm3, the record says {part.volume_mm3:.6g} mm3"
+        found.append(Violation("volume", part.name, message))
+    return found
+
+
+def _check_records(part: Part) -> list[Violation]:
+    count = len(part.mesh.triangles)
+    found = []
+    if part.quantity < 1:
+        found.append(Violation("quantity", part.name, f"expected at least 1, found {part.quantity}"))
+    for region in part.regions:
+        chosen = region.triangles
+        if chosen is not None and len(chosen) and not 0 <= chosen.min() <= chosen.max() < count:
+            message = f"region {region.name!r}: expected triangles 0 to {count - 1}, found others"
+            found.append(Violation("regions", part.name, message))
+    colours = part.appearance.triangle_colours
+    if colours is not None and np.shape(colours) != (count, 3):
+        message = f"expected three for each of {count} triangles, found shape {np.shape(colours)}"
+        found.append(Violation("colours", part.name, message))
+    return found

@@ -1,0 +1,108 @@
+"""Tidy a triangle mesh without changing its shape: merge equal vertices, drop what encloses nothing."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+def first_of_equal_rows(rows: NDArray[np.generic]) -> Ints:
+    """Return for each row of `rows` ``(n, k)`` the index of the first row equal to it, ``(n,)``."""
+    if len(rows) == 0:
+        return np.empty(0, np.int64)
+    order = np.lexsort(rows.T)  # stable: of equal rows the first comes first
+    ordered = rows[order]
+    starts = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
+    first = np.empty(len(rows), np.int64)
+    first[order] = order[starts][np.cumsum(starts) - 1]
+    return first
+
+
+def merge_equal(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Make vertices at equal places one, and forget those no triangle uses; the order stays.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` finite, and ``(m, 3)`` indices in range.
+
+    Returns
+    -------
+    vertices, triangles
+        The least list of vertices, and as many triangles as before.
+    """
+    return compact(vertices, first_of_equal_rows(vertices)[triangles])
+
+
+def compact(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Forget vertices that no triangle uses; the order stays."""
+    used = np.zeros(len(vertices), np.bool_)
+    used[triangles] = True
+    return vertices[used], (np.cumsum(used) - 1)[triangles]
+
+
+def degenerate(triangles: Ints) -> Bools:
+    """Tell which triangles name a vertex twice, ``(m,)``."""
+    following = np.roll(triangles, -1, axis=1)
+    return np.asarray((triangles == following).any(axis=1))
+
+
+def repeated(triangles: Ints) -> Bools:
+    """Tell which triangles repeat an earlier one, same corners turning the same way, ``(m,)``."""
+    lowest = triangles.argmin(axis=1)[:, None]
+    turned = np.take_along_axis(triangles, (lowest + np.arange(3)) % 3, axis=1)
+    return np.asarray(first_of_equal_rows(turned) != np.arange(len(triangles)))
+
+
+def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
+    """Count the triangles at each edge.
+
+    Returns
+    -------
+    edges
+        ``(e, 2)`` vertex indices, the lower first.
+    uses
+        ``(e,)`` how many triangles have the edge.
+    balance
+        ``(e,)`` how many more run along it from the lower to the higher vertex than back; 0 where they match.
+    """
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    base = int(triangles.max()) + 1
+    keys, which = np.unique(low * base + high, return_inverse=True)
+    balance = np.bincount(which, np.where(start == low, 1.0, -1.0), len(keys))
+    return np.stack(np.divmod(keys, base), axis=1), np.bincount(which), balance.astype(np.int64)
+
+
+def open_vertices(triangles: Ints) -> Ints:
+    """Return the vertices of edges whose triangles do not match, ``(k,)`` ascending."""
+    edges, _, balance = count_edges(triangles)
+    return np.unique(edges[balance != 0])
+
+
+def join_near(vertices: Floats, chosen: Ints, tolerance: float) -> Ints:
+    """Join the `chosen` vertices that lie within `tolerance` mm, chains of them too.
+
+    Returns
+    -------
+    source
+        ``(n,)`` for each vertex the lowest one it is joined to, itself where there is none. Where more than
+        twenty lie that close on average nothing is joined: that is no seam.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    source = np.arange(len(vertices))
+    if len(chosen) == 0:
+        return source
+    tree = cKDTree(vertices[chosen])
+    if tree.count_neighbors(tree, tolerance) > 21 * len(chosen):
+        return source
+    near = tree.query_pairs(tolerance, output_type="ndarray")
+    graph = coo_array((np.ones(len(near), np.int8), (near[:, 0], near[:, 1])), shape=(len(chosen),) * 2)
+    _, label = connected_components(graph, directed=False)
+    source[chosen] = chosen[np.unique(label, return_index=True)[1][label]]
+    return source

@@ -1,0 +1,175 @@
+"""From what the user names to parts: folders and counts expanded, meshes settled, names made unique."""
+
+import re
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from amprep.errors import InputError, MeshError
+from amprep.geometry.solids import Settled, find_defect, settle
+from amprep.model.control import Report, silent
+from amprep.model.mesh import Mesh
+from amprep.model.part import Appearance, Part, Region
+
+MOST_COPIES = 100_000
+
+
+def expand_inputs(paths: Sequence[str], suffixes: Collection[str]) -> list[tuple[Path, int | None]]:
+    """Return the files the user names, with the counts given, in order.
+
+    A folder stands for the files in it (not in folders below) whose suffix is known, by name. ``NAME:4``
+    asks for four of everything in NAME, unless there is a file of that very name.
+
+    Raises
+    ------
+    InputError
+        If something is not there, a folder holds nothing to read, or a count is not 1 to `MOST_COPIES`.
+    """
+    return [file for path in paths for file in _expand(path, suffixes)]
+
+
+def read_all(
+    files: Sequence[tuple[Path, int | None]],
+    read: Callable[[Path], list[Part]],
+    *,
+    allow_surface: bool = False,
+    report: Report = silent,
+) -> list[Part]:
+    """Read and settle the files in order; a count multiplies the quantity of each part of its file.
+
+    Parameters
+    ----------
+    files
+        As `expand_inputs` returns them.
+    read
+        Turns one file into parts, by the reader chosen for its suffix.
+
+    Raises
+    ------
+    InputError, MeshError
+        For the first file or part that cannot be read.
+    """
+    parts: list[Part] = []
+    for done, (path, count) in enumerate(files):
+        report(done / len(files), path.name)
+        for part in read(path):
+            settled = settle_part(part, allow_surface=allow_surface)
+            parts.append(replace(settled, quantity=settled.quantity * (count or 1)))
+    report(1.0, f"{len(parts)} parts")
+    return with_unique_names(parts)
+
+
+def settle_part(part: Part, *, allow_surface: bool) -> Part:
+    """Return the part as manifold3d accepts it, with its volume and notes on what was mended.
+
+    Raises
+    ------
+    MeshError
+        If it is no solid and surfaces are not allowed, or no mesh at all.
+    """
+    defect = find_defect(part.mesh.vertices, part.mesh.triangles)
+    if defect:
+        raise MeshError(f"{_where(part)}: {defect}; export it again from the program it was drawn in")
+    settled = settle(part.mesh.vertices, part.mesh.triangles)
+    if settled.problem and (not allow_surface or len(settled.triangles) == 0):
+        raise MeshError(
+            f"{_where(part)} is not a solid: {settled.problem}; repair it, or use --allow-surface to take it as it is"
+        )
+    return _with_mesh(part, settled)
+
+
+def with_unique_names(parts: Sequence[Part]) -> list[Part]:
+    """Return the parts with names that differ: ``bracket``, ``bracket-2``, ``bracket-3``."""
+    taken = {part.name for part in parts}
+    seen: set[str] = set()
+    unique = []
+    for part in parts:
+        name = part.name
+        if name in seen:
+            number = 2
+            while f"{name}-{number}" in taken:
+                number += 1
+            name = f"{name}-{number}"
+        seen.add(name)
+        taken.add(name)
+        unique.append(part if name == part.name else replace(part, name=name))
+    return unique
+
+
+def _expand(path: str, suffixes: Collection[str]) -> list[tuple[Path, int | None]]:
+    name, count = _split_count(path)
+    if name.is_dir():
+        return [(file, count) for file in _files_in(name, suffixes)]
+    if not name.exists():
+        raise InputError(f"{name}: no such file or folder")
+    if not name.is_file():
+        raise InputError(f"{name}: expected a file or a folder, this is neither")
+    return [(name, count)]
+
+
+def _split_count(path: str) -> tuple[Path, int | None]:
+    """Split ``NAME:4``, unless a file is called that."""
+    match = re.fullmatch(r"(.+):(\d+)", path)
+    if match is None or _exists(path):
+        return Path(path), None
+    if len(match[2]) > 9 or not 1 <= int(match[2]) <= MOST_COPIES:
+        raise InputError(f"{path}: expected a count from 1 to {MOST_COPIES} after the colon")
+    return Path(match[1]), int(match[2])
+
+
+def _exists(path: str) -> bool:
+    try:
+        return Path(path).exists()
+    except (OSError, ValueError) as error:  # too long, or with a null character
+        raise InputError(f"{path[:80]!r} is not a usable file name: {error}") from error
+
+
+def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
+    try:
+        inside = sorted(folder.iterdir())
+    except OSError as error:
+        raise InputError(f"{folder}: cannot list the folder: {error.strerror}") from error
+    files = [file for file in inside if file.suffix.lower() in suffixes and file.is_file()]
+    files = [file for file in files if not file.name.startswith(".")]
+    if not files:
+        raise InputError(f"{folder}: no file to read in this folder (known: {', '.join(sorted(suffixes))})")
+    return files
+
+
+def _where(part: Part) -> str:
+    return f"{part.source}: {part.name}" if part.source else part.name
+
+
+def _with_mesh(part: Part, settled: Settled) -> Part:
+    """Return the part with the settled mesh; what belongs to triangles follows them."""
+    same = np.array_equal(settled.vertices, part.mesh.vertices) and np.array_equal(
+        settled.triangles, part.mesh.triangles
+    )
+    note = (f"not a solid: {settled.problem}; taken as a surface",) if settled.problem else ()
+    return replace(
+        part,
+        mesh=part.mesh if same else Mesh(settled.vertices, settled.triangles),
+        volume_mm3=settled.volume,
+        is_solid=not settled.problem,
+        notes=(*part.notes, *settled.notes, *note),
+        regions=tuple(_follow(region, settled, len(part.mesh.triangles)) for region in part.regions),
+        appearance=_recoloured(part.appearance, settled),
+    )
+
+
+def _follow(region: Region, settled: Settled, triangles_before: int) -> Region:
+    if region.triangles is None:
+        return region
+    chosen = np.zeros(triangles_before, np.bool_)
+    chosen[region.triangles] = True
+    return replace(region, triangles=np.flatnonzero(chosen[settled.kept]).astype(np.int32))
+
+
+def _recoloured(appearance: Appearance, settled: Settled) -> Appearance:
+    if appearance.triangle_colours is None:
+        return appearance
+    colours = np.asarray(appearance.triangle_colours)[settled.kept]
+    colours = np.where(settled.turned[:, None], colours[:, ::-1], colours)
+    return replace(appearance, triangle_colours=colours)
