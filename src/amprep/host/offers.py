@@ -126,9 +126,8 @@ def _particular(offer: Any) -> list[str]:
             *_unknown("orientations", accepts.orientations, ORIENTATION_WORDS),
             *_unknown("stacking", accepts.stacking, frozenset({True, False})),
         ]
-    if isinstance(offer, CellEmitter) and offer.material is not None and not callable(offer.material):
-        return ["material is a function or None"]
-    return []
+    material = offer.material if isinstance(offer, CellEmitter) else None
+    return [] if material is None or callable(material) else ["material is a function or None"]
 
 
 def _suffixes(suffixes: Any) -> list[str]:

@@ -1,0 +1,34 @@
+"""The job: what to print, where, and by which rules; typed and checked once."""
+
+from amprep.job.loading import job_from_inputs, load_job, make_job
+from amprep.job.overrides import apply_sets, override
+from amprep.job.parts import apply_part_settings
+from amprep.job.printers import Printer, find_printer, list_printers
+from amprep.job.settings import (
+    CellSettings,
+    InputSpec,
+    Job,
+    PackingSettings,
+    PartSettings,
+    ReadingSettings,
+    SupportSettings,
+)
+
+__all__ = [
+    "CellSettings",
+    "InputSpec",
+    "Job",
+    "PackingSettings",
+    "PartSettings",
+    "Printer",
+    "ReadingSettings",
+    "SupportSettings",
+    "apply_part_settings",
+    "apply_sets",
+    "find_printer",
+    "job_from_inputs",
+    "list_printers",
+    "load_job",
+    "make_job",
+    "override",
+]

@@ -1,0 +1,183 @@
+"""Makes a job from a job file, or from inputs alone; every key is known, typed and within its bounds."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from amprep.errors import JobError, nearest_hint
+from amprep.host.typed import convert, make
+from amprep.job.printers import DEFAULT_PRINTER, Printer, find_printer, printer_from_table
+from amprep.job.settings import (
+    CellSettings,
+    InputSpec,
+    Job,
+    PackingSettings,
+    PartSettings,
+    ReadingSettings,
+    SupportSettings,
+)
+from amprep.job.tables import read_table
+from amprep.model.build import Target
+
+T = TypeVar("T")
+KEYS = ("printer", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
+
+
+def load_job(path: Path) -> Job:
+    """Return the job of a job file; its relative paths start at the file's folder.
+
+    Raises
+    ------
+    JobError
+        Naming the file and the key: an unknown key, a wrong type, a broken bound, nothing to print.
+    """
+    return make_job(read_table(path, "job"), name=path.stem, folder=path.resolve().parent, source=str(path))
+
+
+def job_from_inputs(inputs: Sequence[str | Path]) -> Job:
+    """Return a job of default settings that prints `inputs`: files and folders, also as ``NAME:quantity``.
+
+    Raises
+    ------
+    JobError
+        When there are no inputs, or a quantity is out of bounds.
+    """
+    table = {"inputs": [str(each) for each in inputs]}
+    first = parse_input(str(inputs[0]), "inputs").path if inputs else Path("job")
+    return make_job(table, name=first.resolve().stem or "job", folder=None, source="command line")
+
+
+def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source: str) -> Job:
+    """Return the job that a table of plain values describes; `source` names it in messages.
+
+    Raises
+    ------
+    JobError
+        Naming `source` and the key that is wrong.
+    """
+    for key in table:
+        if key not in KEYS:
+            raise JobError(f"{source}: unknown key {key!r}{_hint(key)}")
+    printer = _printer(table.get("printer", DEFAULT_PRINTER), folder, source)
+    parts = tuple(
+        make(PartSettings, _is_table(entry, f"{source}: [[part]] {number}"), f"{source}: [[part]] {number}")
+        for number, entry in enumerate(convert(table.get("part", []), tuple[Any, ...], f"{source}: part"), 1)
+    )
+    return Job(
+        name=name,
+        inputs=_inputs(table, parts, folder, source),
+        printer=printer,
+        folder=folder,
+        seed=_seed(table, source),
+        target=convert(table.get("target", "generic"), Target, f"{source}: target"),
+        reading=_section(ReadingSettings, table, "reading", source),
+        packing=_section(PackingSettings, table, "packing", source, stacking=printer.stacks),
+        supports=_section(SupportSettings, table, "supports", source, **_support_defaults(table, printer)),
+        cells=_cells(table, folder, source),
+        parts=parts,
+        source=source,
+        table=table,
+    )
+
+
+def parse_input(text: str, where: str) -> InputSpec:
+    """Read ``path`` or ``path:quantity``; a file whose very name ends in ``:number`` stays a file.
+
+    Raises
+    ------
+    JobError
+        When the quantity is out of bounds.
+    """
+    if not text or "\0" in text:
+        raise JobError(f"{where}: expected the path of a file or folder, got {text!r}")
+    path, colon, count = text.rpartition(":")
+    if not (colon and path and count.isascii() and count.isdecimal()) or Path(text).exists():
+        return InputSpec(Path(text))
+    try:
+        return InputSpec(Path(path), int(count[:20]))
+    except ValueError as error:
+        raise JobError(f"{where}: {text!r}: {error}") from error
+
+
+def _section(cls: type[T], table: Mapping[str, Any], key: str, source: str, **defaults: Any) -> T:
+    where = f"{source}: [{key}]"
+    return make(cls, {**defaults, **_is_table(table.get(key, {}), where)}, where)
+
+
+def _cells(table: Mapping[str, Any], folder: Path | None, source: str) -> CellSettings:
+    """Return the cell settings; the path of a cell's file is made absolute."""
+    settings = _section(CellSettings, table, "cells", source)
+    if settings.file is None:
+        return settings
+    path = (folder or Path()) / settings.file
+    if not path.is_file():
+        raise JobError(f"{source}: [cells]: strategy: no file at {path}")
+    return replace(settings, strategy=str(path.resolve()))
+
+
+def _is_table(value: Any, where: str) -> Mapping[str, Any]:
+    checked: Mapping[str, Any] = convert(value, Mapping[str, Any], where)
+    return checked
+
+
+def _support_defaults(table: Mapping[str, Any], printer: Printer) -> dict[str, Any]:
+    """Return the defaults that depend on other keys: the printer's technology, the overhang angle."""
+    section = table.get("supports", {})
+    angle = section.get("overhang_angle_deg", 45.0) if isinstance(section, Mapping) else 45.0
+    number = float(angle) if isinstance(angle, int | float) else 45.0
+    return {"enabled": printer.needs_supports, "strut_angle_deg": min(max(number, 10.0), 80.0)}
+
+
+def _printer(value: Any, folder: Path | None, source: str) -> Printer:
+    if isinstance(value, Mapping):
+        return printer_from_table(value, f"{source}: [printer]", "own printer")
+    name: str = convert(value, str, f"{source}: printer")
+    try:
+        return find_printer(name, folder)
+    except JobError as error:
+        raise JobError(f"{source}: printer: {error}") from error
+
+
+def _seed(table: Mapping[str, Any], source: str) -> int:
+    seed: int = convert(table.get("seed", 0), int, f"{source}: seed")
+    if not 0 <= seed < 2**63:
+        raise JobError(f"{source}: seed is between 0 and 2**63 - 1, got {seed}")
+    return seed
+
+
+def _inputs(
+    table: Mapping[str, Any], parts: Sequence[PartSettings], folder: Path | None, source: str
+) -> tuple[InputSpec, ...]:
+    """Return the inputs, followed by the files of ``[[part]]`` entries that no input covers."""
+    base = folder or Path()
+    where = f"{source}: inputs"
+    given = [
+        parse_input(text, where) if folder is None else _within(base, parse_input(str(base / text), where))
+        for text in convert(table.get("inputs", []), tuple[str, ...], where)
+    ]
+    for part in parts:
+        path = base / part.file if part.file else None
+        if path is not None and not any(_covers(entry.path, path) for entry in given):
+            given.append(InputSpec(path))
+    if not given:
+        raise JobError(f"{source}: nothing to print; expected inputs = [...] or [[part]] entries with a file")
+    return tuple(given)
+
+
+def _within(base: Path, entry: InputSpec) -> InputSpec:
+    return InputSpec(base / entry.path, entry.quantity)
+
+
+def _covers(entry: Path, path: Path) -> bool:
+    entry, path = entry.resolve(), path.resolve()
+    return entry == path or entry in path.parents
+
+
+def _hint(key: str) -> str:
+    """Return the nearest known key; one of a section is named with its section."""
+    sections = {"packing": PackingSettings, "supports": SupportSettings, "cells": CellSettings}
+    for section, cls in sections.items():
+        if key in {each.name for each in fields(cls)}:
+            return f" (did you mean '{section}.{key}'?)"
+    return nearest_hint(key, KEYS)
