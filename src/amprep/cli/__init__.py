@@ -1,0 +1,49 @@
+"""The command line: parse, print, exit codes; nothing is computed here."""
+
+import signal
+import sys
+from types import FrameType
+from typing import NoReturn
+
+from amprep.errors import AmprepError, Interrupted
+
+DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
+"""Exit codes: done; done with something unplaced, unsupported or failing; wrong input or usage; interrupted."""
+
+
+def _interrupt(signum: int, frame: FrameType | None) -> NoReturn:
+    """Let a termination request end a run as cleanly as Ctrl-C does."""
+    raise KeyboardInterrupt
+
+
+def _say(line: str) -> None:
+    sys.stderr.write(f"amprep: {line}\n")
+
+
+def main() -> NoReturn:
+    """Run the command line; a mistake of the user's becomes one line and exit code 2, never a traceback."""
+    debug = "--debug" in sys.argv
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        from amprep.cli.app import app
+
+        app()
+        sys.exit(DONE)
+    except (KeyboardInterrupt, Interrupted):
+        _say("interrupted; nothing was written")
+        sys.exit(INTERRUPTED)
+    except AmprepError as error:
+        if debug:
+            raise
+        _say(" ".join(str(error).split()))
+        sys.exit(WRONG)
+    except MemoryError:
+        if debug:
+            raise
+        _say("out of memory; use a coarser pitch (--set supports.pitch_mm=2) or fewer parts a run")
+        sys.exit(WRONG)
+    except Exception as error:
+        if debug:
+            raise
+        _say(f"internal error, {type(error).__name__}: {error}; run again with --debug and report it")
+        sys.exit(WRONG)

@@ -1,0 +1,36 @@
+"""The commands, mounted."""
+
+from typing import Annotated
+
+import typer
+
+from amprep import __version__
+from amprep.cli import plugins, printers, run, verify
+
+app = typer.Typer(
+    name="amprep",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Prepare additive-manufacturing builds: pack parts, plan supports that stand on the plate, "
+    "write a 3MF build job per printing run.",
+)
+app.command("run")(run.run)
+app.command("verify")(verify.verify)
+app.add_typer(plugins.app, name="plugins")
+app.add_typer(printers.app, name="printers")
+
+
+def _version(value: bool) -> None:
+    if value:
+        typer.echo(f"amprep {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Hold the options that belong to no command."""

@@ -1,0 +1,70 @@
+"""The output folder: files are made in a hidden folder beside their place and appear together at the end."""
+
+import re
+import shutil
+import tempfile
+from pathlib import Path
+from types import TracebackType
+
+from amprep.errors import InputError
+
+
+def safe_name(text: str) -> str:
+    """Return `text` as a file name that stays in its folder: letters, digits, dot, dash, underscore, space."""
+    kept = re.sub(r"[^\w.\- ]+", "_", text).strip(". ")
+    return kept[:100] or "unnamed"
+
+
+class OutputFolder:
+    """Collects a run's files and publishes them all at once; on any exception nothing appears.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written.
+    """
+
+    def __init__(self, folder: Path, stem: str) -> None:
+        self.folder, self.stem = folder, safe_name(stem)
+        self._names: list[str] = []
+
+    def __enter__(self) -> "OutputFolder":
+        self._made = not self.folder.exists()
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._staging = Path(tempfile.mkdtemp(prefix=".amprep-", dir=self.folder))
+        except OSError as error:
+            raise InputError(f"cannot write to the output folder {self.folder}: {error.strerror}") from error
+        return self
+
+    def path(self, suffix: str) -> Path:
+        """Return where to make the file that will be called ``STEM.suffix``."""
+        path = self.staged(suffix)
+        self._names.append(path.name)
+        return path
+
+    def staged(self, suffix: str) -> Path:
+        """Return where the file made for ``STEM.suffix`` lies until it is published."""
+        return self._staging / f"{self.stem}.{suffix}"
+
+    def name(self, suffix: str) -> str:
+        """Return what ``STEM.suffix`` will be called."""
+        return f"{self.stem}.{suffix}"
+
+    def stale_builds(self, count: int) -> list[str]:
+        """Names of build files of an earlier run with more builds than `count`; they are left alone."""
+        pattern = re.compile(re.escape(self.stem) + r"\.build-(\d+)\.3mf")
+        matches = (pattern.fullmatch(path.name) for path in self.folder.iterdir())
+        return sorted(match[0] for match in matches if match and int(match[1]) > count)
+
+    def publish(self) -> None:
+        """Move every finished file to its place; a single rename each, so none is ever half there."""
+        for name in self._names:
+            (self._staging / name).replace(self.folder / name)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        shutil.rmtree(self._staging, ignore_errors=True)
+        if kind is not None and self._made and not any(self.folder.iterdir()):
+            self.folder.rmdir()

@@ -1,0 +1,133 @@
+"""The main job: read, bound, pack, support, fill with cells, write, verify, report."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from amprep.host import Host, Listed
+from amprep.hookspecs import Packer
+from amprep.job import Job, apply_part_settings
+from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, Stop
+from amprep.pipeline.outputs import OutputFolder
+from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
+from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.pipeline.record import run_record
+from amprep.pipeline.stages import Clock, Watcher
+from amprep.pipeline.supported import support_build
+from amprep.pipeline.writing import finish_build, write_reports
+from amprep.report.record import RunRecord
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What the command line decides and a job file does not.
+
+    Attributes
+    ----------
+    folder
+        Where the outputs go.
+    stl
+        Whether parts and supports are written as STL too, in build coordinates.
+    allow_surface
+        Whether meshes that are no solids are packed and supported as they are.
+    time_limit
+        Seconds after which packing and routing end with their best answer so far.
+    """
+
+    folder: Path
+    dry_run: bool = False
+    stl: bool = False
+    allow_surface: bool = False
+    time_limit: float | None = None
+
+
+def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: Stop) -> RunRecord:
+    """Prepare every build of `job` and return what was done.
+
+    Every stage is timed and shown by `watcher`. All files appear together at the end, so an interrupted run
+    leaves none.
+
+    Raises
+    ------
+    AmprepError
+        For wrong input, an unknown or failing plugin, or when nothing fits the build volume.
+    """
+    clock, limit = Clock(watcher), stop.within(options.time_limit)
+    check_choices(job, host)
+    with clock.stage("read") as report:
+        parts = _read(job, host, options.allow_surface, report)
+    with clock.stage("bound") as report:
+        volumes = make_volumes(parts, lambda part: _volume(job, host, part, limit), report)
+    with clock.stage("pack") as report:
+        problem, packing = _pack(job, host, parts, volumes, limit, report)
+    placed = placed_builds(parts, problem, packing)
+    with OutputFolder(options.folder, job.name) as outputs:
+        supported = [
+            support_build(job, host, build, number, clock, limit) for number, build in enumerate(placed, start=1)
+        ]
+        records = [
+            finish_build(each, number, outputs, options.dry_run, options.stl, clock, stop)
+            for number, each in enumerate(supported, start=1)
+        ]
+        record = run_record(job, host, parts, problem, packing, records, outputs)
+        if options.dry_run:
+            return replace(record, stages=clock.times)
+        record = write_reports(record, outputs, clock)
+        outputs.publish()
+    return record
+
+
+def check_choices(job: Job, host: Host) -> None:
+    """Raise for an unknown strategy or parameter before anything long begins."""
+    chosen = (
+        (host.choose("packer", job.packing.strategy), job.packing.params),
+        (host.choose("router", job.supports.strategy), job.supports.params),
+        (host.choose("cell", job.cells.strategy), job.cells.params),
+        (host.choose("volume", job.packing.volumes), job.packing.volume_params),
+    )
+    for listed, params in chosen:
+        host.params(listed, params)
+
+
+def _read(job: Job, host: Host, allow_surface: bool, report: Report) -> list[Part]:
+    files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
+
+    def read(path: Path) -> list[Part]:
+        listed = host.reader_for(path, job.reading.readers)
+        return host.call(listed, path, params=host.params(listed, job.reading.params.get(listed.offer.name, {})))
+
+    parts = read_all(files, read, allow_surface=allow_surface, report=report)
+    return apply_part_settings(parts, job)
+
+
+def _volume(job: Job, host: Host, part: Part, stop: Stop) -> BoundingVolume:
+    """A part with boxes given by hand is bounded by them, whatever the job's strategy."""
+    listed = host.choose("volume", "boxes" if part.boxes is not None else job.packing.volumes)
+    params = host.params(listed, job.packing.volume_params if part.boxes is None else {})
+    return host.call(listed, part, params=params, rng=np.random.default_rng(job.seed), stop=stop)
+
+
+def _pack(
+    job: Job, host: Host, parts: list[Part], volumes: list[BoundingVolume], stop: Stop, report: Report
+) -> tuple[PackingProblem, Packing]:
+    listed: Listed[Packer] = host.choose("packer", job.packing.strategy)
+    problem = packing_problem(
+        parts,
+        volumes,
+        job.printer.space,
+        objective=job.packing.objective,
+        clearance=job.packing.clearance_mm,
+        lift=job.packing.lift_mm,
+        stacking=job.packing.stacking,
+    )
+    host.refuse_mismatch(listed, problem)
+    packing = host.call(
+        listed,
+        problem,
+        params=host.params(listed, job.packing.params),
+        rng=np.random.default_rng(job.seed),
+        stop=stop.within(job.packing.time_limit_s),
+        report=report,
+    )
+    return problem, packing

@@ -1,0 +1,39 @@
+"""Judges a build against every promise; the same for a run's own output and for a stranger's file."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from amprep.checks.cells import check_bodies
+from amprep.checks.coverage import check_coverage
+from amprep.checks.placed import check_placed
+from amprep.checks.violation import Violation
+from amprep.model import Build, Report, Stop, silent
+
+
+def verify_build(build: Build, *, stop: Stop | None = None, report: Report = silent) -> tuple[Violation, ...]:
+    """Return every broken promise of `build`, parts first, then supports, then what is left unsupported."""
+    stop = stop or Stop()
+    judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
+        ("parts", lambda: check_placed(build.parts, build.settings, stop)),
+        ("supports", lambda: check_bodies(build, stop)),
+        ("coverage", lambda: check_coverage(build)),
+    )
+    violations: list[Violation] = []
+    for index, (name, judge) in enumerate(judges):
+        report(index / len(judges), name)
+        violations += judge()
+    report(1.0, "judged")
+    return tuple(violations)
+
+
+def verify_file(path: Path, *, stop: Stop | None = None, report: Report = silent) -> tuple[Violation, ...]:
+    """Read a written build back and judge it from the file alone.
+
+    Raises
+    ------
+    InputError
+        If the file is not a build that amprep wrote.
+    """
+    from amprep.threemf import read_build
+
+    return verify_build(read_build(path), stop=stop, report=report)

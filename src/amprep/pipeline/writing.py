@@ -1,0 +1,82 @@
+"""Writes a build's files, reads the build job back and judges it, then writes the reports."""
+
+from dataclasses import replace
+
+from amprep.model import Build, Stop
+from amprep.pipeline.outputs import OutputFolder, safe_name
+from amprep.pipeline.record import build_record
+from amprep.pipeline.stages import Clock
+from amprep.pipeline.supported import SupportedBuild
+from amprep.pipeline.verify import verify_build
+from amprep.report.record import BuildRecord, RunRecord
+
+
+def finish_build(
+    supported: SupportedBuild,
+    number: int,
+    outputs: OutputFolder,
+    dry_run: bool,
+    stl: bool,
+    clock: Clock,
+    stop: Stop,
+) -> BuildRecord:
+    """Write build `number` unless this is a dry run, and judge it: as read back from its file, or as planned."""
+    build = supported.build
+    record = build_record(supported)
+    if not dry_run:
+        with clock.stage("write"):
+            record = replace(record, **_write(build, number, outputs, stl))
+    with clock.stage("verify") as report:
+        judged = build if dry_run else _read_back(number, outputs)
+        return replace(record, verification=verify_build(judged, stop=stop, report=report))
+
+
+def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:
+    """Write pictures and the HTML and JSON reports; return the record with its times and file names."""
+    from amprep.report.html import write_html
+    from amprep.report.json_report import write_json
+    from amprep.report.picture import write_picture
+
+    with clock.stage("report") as report:
+        builds = []
+        for number, each in enumerate(record.builds, start=1):
+            report((number - 1) / (len(record.builds) + 1), f"picture {number}")
+            name = f"build-{number}.png"
+            write_picture(each.build, outputs.path(name))
+            builds.append(replace(each, picture=outputs.name(name)))
+        record = replace(record, builds=tuple(builds))
+        write_html(replace(record, stages=clock.times), outputs.path("report.html"))
+    record = replace(record, stages=clock.times)
+    write_json(record, outputs.path("report.json"))
+    return record
+
+
+def _read_back(number: int, outputs: OutputFolder) -> Build:
+    from amprep.threemf import read_build
+
+    return read_build(outputs.staged(f"build-{number}.3mf"))
+
+
+def _write(build: Build, number: int, outputs: OutputFolder, stl: bool) -> dict[str, str | tuple[str, ...]]:
+    from amprep.threemf import write_build
+
+    name = f"build-{number}.3mf"
+    write_build(build, outputs.path(name))
+    return {
+        "file": outputs.name(name),
+        "stl_files": _write_stl(build, number, outputs) if stl else (),
+    }
+
+
+def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, ...]:
+    """Parts and supports in build coordinates, for machine software that reads nothing else."""
+    from amprep.threemf import write_stl
+
+    meshes = [(placed.label, placed.mesh) for placed in build.parts]
+    meshes += [(body.name, body.mesh) for body in build.supports]
+    names = []
+    for index, (label, mesh) in enumerate(meshes, start=1):
+        suffix = f"build-{number}.{index:03d}.{safe_name(label)}.stl"
+        write_stl(mesh, outputs.path(suffix))
+        names.append(outputs.name(suffix))
+    return tuple(names)
