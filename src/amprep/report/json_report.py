@@ -1,0 +1,144 @@
+"""The report for programs: `job.report.json`, described in docs/report.md."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from amprep.model import PlacedPart, SupportBody, Unsupported
+from amprep.report.atomic import replacing
+from amprep.report.measures import part_volume
+from amprep.report.record import BuildRecord, RunRecord, UnconnectedRecord
+
+FORMAT = 1
+"""Version of the layout; grows when a key changes its meaning or goes."""
+
+
+def to_json(record: RunRecord) -> dict[str, Any]:
+    """Return the run as plain values: dicts, lists, strings, finite numbers, booleans and None."""
+    report = {
+        "format": FORMAT,
+        "amprep": record.version,
+        "job": record.job,
+        "printer": record.printer,
+        "target": record.target,
+        "seed": record.seed,
+        "status": record.status,
+        "stop_reason": record.stop_reason,
+        "bound": record.bound,
+        "builds": [_build(entry) for entry in record.builds],
+        "unplaced": [
+            {"name": item.name, "copy": item.copy, "reason": item.reason} for item in record.unplaced
+        ],
+        "stages": [{"name": stage.name, "seconds": round(stage.seconds, 3)} for stage in record.stages],
+        "warnings": list(record.warnings),
+        "notes": list(record.notes),
+        "settings": dict(record.settings),
+    }
+    plain: dict[str, Any] = _plain(report)
+    return plain
+
+
+def json_text(record: RunRecord) -> str:
+    """Return the report as JSON text, matrices and points on one line each."""
+    return json.dumps(to_json(record), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_json(record: RunRecord, path: Path) -> None:
+    """Write the report; the file is whole or not there."""
+    with replacing(path) as temporary:
+        temporary.write_text(json_text(record), encoding="utf-8")
+
+
+def _build(entry: BuildRecord) -> dict[str, Any]:
+    build = entry.build
+    return {
+        "id": build.settings.build_id,
+        "file": entry.file,
+        "picture": entry.picture,
+        "stl": list(entry.stl_files),
+        "space_mm": build.settings.space.size,
+        "space_shape": build.settings.space.shape,
+        "density": entry.density,
+        "height_mm": entry.height_mm,
+        "parts": [_part(placed) for placed in build.parts],
+        "supports": {
+            "volume_mm3": entry.support_volume_mm3,
+            "material": entry.support_material,
+            "red": entry.red,
+            "unconnected": [_unconnected(square) for square in entry.unconnected],
+            "unsupported_mm2": entry.unsupported_mm2,
+            "unsupported": [_unsupported(entry, region) for region in build.unsupported],
+            "bodies": [_body(entry, body) for body in build.supports],
+            "shared": list(entry.shared),
+        },
+        "verified": entry.verification is not None,
+        "violations": [
+            {"promise": found.promise, "subject": found.subject, "message": found.message}
+            for found in entry.verification or ()
+        ],
+    }
+
+
+def _part(placed: PlacedPart) -> dict[str, Any]:
+    low, high = placed.mesh.bounds
+    return {
+        "name": placed.label,
+        "part": placed.part.name,
+        "part_number": placed.part.part_number,
+        "source": placed.part.source,
+        "transform": placed.matrix,
+        "volume_mm3": part_volume(placed),
+        "low_mm": low,
+        "high_mm": high,
+        "triangles": len(placed.part.mesh.triangles),
+        "sha256": placed.recorded_digest,
+    }
+
+
+def _unconnected(square: UnconnectedRecord) -> dict[str, Any]:
+    return {
+        "part": square.part,
+        "region": square.region,
+        "reason": square.reason,
+        "square": list(square.square),
+        "position_mm": list(square.position_mm),
+    }
+
+
+def _unsupported(entry: BuildRecord, region: Unsupported) -> dict[str, Any]:
+    return {
+        "part": entry.build.parts[region.part].label,
+        "region": region.label,
+        "kind": region.kind,
+        "reason": region.reason,
+        "measure": region.measure,
+        "centre_mm": region.points.mean(axis=0) if len(region.points) else None,
+    }
+
+
+def _body(entry: BuildRecord, body: SupportBody) -> dict[str, Any]:
+    return {
+        "name": body.name,
+        "parts": [entry.build.parts[index].label for index in body.parts],
+        "surface": body.surface,
+        "triangles": len(body.mesh.triangles),
+        "volume_mm3": 0.0 if body.surface else abs(body.mesh.signed_volume),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Return numpy values, mappings and tuples as plain ones; a number that is not finite becomes None."""
+    if isinstance(value, dict):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted(map(str, value))
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None
+    return value if value is None or isinstance(value, (bool, int, str)) else str(value)
