@@ -159,7 +159,7 @@ def _unit_normals(surface: _Surface) -> Floats:
     """Return unit normals; zero for triangles without area."""
     cross = _cross_products(surface.points, surface.triangles)
     size = np.linalg.norm(cross, axis=1, keepdims=True)
-    return np.divide(cross, size, out=np.zeros_like(cross), where=size > 0)
+    return cross / np.where(size > 0, size, 1.0)
 
 
 def _needy_faces(surface: _Surface, normals: Floats, angle_deg: float) -> Bools:
@@ -210,7 +210,7 @@ def _solid_above(surface: _Surface, normals: Floats, ray: Floats, tangent: Float
 
 
 def _minimum_plateaus(surface: _Surface) -> Longs:
-    """Number each vertex by its level plateau where that is a local minimum above the plate, else -1."""
+    """Label each vertex by its level plateau where that is a local minimum above the plate, else -1."""
     count = len(surface.points)
     start, end = surface.edges[:, 0], surface.edges[:, 1]
     difference = surface.points[end, 2] - surface.points[start, 2]
@@ -265,7 +265,7 @@ def _components(start: Longs, end: Longs, count: int) -> Longs:
 
 
 def _components_of_faces(surface: _Surface, needy: Bools) -> Longs:
-    """Number the component of every needy face, over shared edges."""
+    """Label the component of every needy face, over shared edges."""
     position = np.cumsum(needy) - 1
     halves = np.flatnonzero(needy[surface.half_face])
     same = surface.half_edge[halves[1:]] == surface.half_edge[halves[:-1]]
@@ -274,7 +274,7 @@ def _components_of_faces(surface: _Surface, needy: Bools) -> Longs:
 
 
 def _components_of_edges(edges: Longs, count: int) -> Longs:
-    """Number the component of every edge, over shared vertices."""
+    """Label the component of every edge, over shared vertices."""
     return _components(edges[:, 0], edges[:, 1], count)[edges[:, 0]]
 
 
@@ -301,7 +301,7 @@ def _labelled(
     edges: tuple[Longs, Longs, Floats],
     tips: tuple[Longs, Longs],
 ) -> Overhangs:
-    """Number the regions 0, 1, ..., faces first, and measure them."""
+    """Label the regions 0, 1, ..., faces first, and measure them."""
     points = surface.points
     groups: list[Ints] = []
     regions: list[OverhangRegion] = []
