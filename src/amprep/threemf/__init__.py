@@ -3,28 +3,36 @@
 from pathlib import Path
 
 from amprep.model.build import Build
+from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 
 
 def read_parts(path: Path) -> list[Part]:
     """Read the parts of a 3MF job; see `amprep.threemf.reading.read_parts`."""
-    from amprep.threemf import reading
+    from amprep.threemf.reading import read_parts as run
 
-    return reading.read_parts(path)
+    return run(path)
 
 
 def write_build(build: Build, path: Path) -> None:
     """Write a build job; see `amprep.threemf.writing.write_build`."""
-    from amprep.threemf import writing
+    from amprep.threemf.writing import write_build as run
 
-    writing.write_build(build, path)
+    run(build, path)
 
 
 def read_build(path: Path) -> Build:
     """Read a build job back from its file alone; see `amprep.threemf.build_reading.read_build`."""
-    from amprep.threemf import build_reading
+    from amprep.threemf.build_reading import read_build as run
 
-    return build_reading.read_build(path)
+    return run(path)
 
 
-__all__ = ["read_build", "read_parts", "write_build"]
+def write_stl(mesh: Mesh, path: Path) -> None:
+    """Write a mesh as binary STL; see `amprep.threemf.stl.write_stl`."""
+    from amprep.threemf.stl import write_stl as run
+
+    run(mesh, path)
+
+
+__all__ = ["read_build", "read_parts", "write_build", "write_stl"]

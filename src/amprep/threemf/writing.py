@@ -1,0 +1,101 @@
+"""Writing a build job: the dialect's document in lib3mf's structure, with exact meshes and placements."""
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from amprep.errors import AmprepError
+from amprep.model.arrays import Floats
+from amprep.model.build import Build
+from amprep.threemf.record import NAMESPACE
+from amprep.threemf.writing_components import CURA_NAMESPACE, components_document
+from amprep.threemf.writing_document import Document
+from amprep.threemf.writing_files import replacing, write_package
+from amprep.threemf.writing_geometry import check_geometry, mesh_text, text_size
+from amprep.threemf.writing_merged import CONFIG_NAME, SLICER_NAMESPACE, merged_document, slicer_config
+from amprep.threemf.writing_skeleton import MODEL_NAME, Skeleton, make_skeleton
+
+PREFIXES = {NAMESPACE: "amprep", CURA_NAMESPACE: "cura", SLICER_NAMESPACE: "slic3rpe"}
+"""Prefixes by the letters of which other programs know a namespace, and our own to be read by people."""
+
+_MESH = re.compile(rb"<mesh>.*?</mesh>", re.DOTALL)
+_METADATA_TEXT = re.compile(rb"(?<=>)[^<]*(?=</metadata>)")
+
+
+def write_build(build: Build, path: Path) -> None:
+    """Write the build as 3MF in the dialect of its target; equal builds give equal bytes.
+
+    Parameters
+    ----------
+    path
+        Appears whole or, after any error or interruption, not at all.
+
+    Raises
+    ------
+    AmprepError
+        If the file cannot be written, a mesh is nothing that 3MF can hold, or the target is a slicer and a
+        support has no thickness: slicers fill or drop what is open.
+    """
+    _refuse_surfaces(build)
+    merged = build.settings.target == "prusaslicer"
+    document = merged_document(build) if merged else components_document(build)
+    for body in document.bodies:
+        check_geometry(body)
+    skeleton = make_skeleton(document, ["config"] if merged else [])
+    entries = [(name, len(data), iter([data])) for name, data in skeleton.others.items()]
+    entries.append((MODEL_NAME, _model_size(document, skeleton), _model_text(document, skeleton)))
+    if merged:
+        config = slicer_config(document.bodies, skeleton.object_ids)
+        entries.append((CONFIG_NAME, len(config), iter([config])))
+    with replacing(path) as temporary:
+        write_package(temporary, entries)
+
+
+def _refuse_surfaces(build: Build) -> None:
+    surfaces = [support.name for support in build.supports if support.surface]
+    if surfaces and build.settings.target != "generic":
+        raise AmprepError(
+            f"cannot write support {surfaces[0]!r} for {build.settings.target}: a slicer needs walls with a "
+            "thickness; give the cells a wall_mm above 0 or write for generic"
+        )
+
+
+def _model_size(document: Document, skeleton: Skeleton) -> int:
+    return 2 * len(skeleton.model) + sum(map(text_size, document.bodies))
+
+
+def _model_text(document: Document, skeleton: Skeleton) -> Iterator[bytes]:
+    """Yield the model with the bodies' own meshes in the place of lib3mf's triangles."""
+    text = _with_placements(_with_prefixes(skeleton.model), skeleton.placements)
+    text = _METADATA_TEXT.sub(lambda found: found.group().replace(b"&quot;", b'"'), text)
+    start = 0
+    places = _MESH.finditer(text)
+    for body, palette, place in zip(document.bodies, skeleton.palettes, places, strict=True):
+        yield text[start : place.start()]
+        yield from mesh_text(body, palette)
+        start = place.end()
+    yield text[start:]
+
+
+def _with_prefixes(text: bytes) -> bytes:
+    """Return the model with the prefixes that lib3mf numbers changed into the known ones."""
+    for namespace, prefix in PREFIXES.items():
+        declared = re.search(rb'xmlns:(\w+)="' + re.escape(namespace.encode()) + rb'"', text)
+        if declared:
+            old, new = declared.group(1), prefix.encode()
+            text = text.replace(b"xmlns:" + old + b"=", b"xmlns:" + new + b"=")
+            text = text.replace(b'<metadata name="' + old + b":", b'<metadata name="' + new + b":")
+    return text
+
+
+def _with_placements(text: bytes, placements: Mapping[str, Floats]) -> bytes:
+    """Return the model with placements of nine digits; lib3mf itself keeps six, 0.5 um at 300 mm."""
+
+    def placed(found: re.Match[bytes]) -> bytes:
+        matrix = placements.get(found.group(1).decode())
+        if matrix is None:
+            return found.group()
+        numbers = " ".join(f"{value:.9g}" for value in (matrix[:3].T + 0.0).ravel().tolist())
+        return f'transform="{numbers}" '.encode() + found.group()
+
+    return re.sub(rb'p:UUID="([^"]*)"', placed, text)

@@ -1,0 +1,44 @@
+"""Files that appear whole or not at all, and zip packages whose bytes depend on their contents alone."""
+
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from amprep.errors import AmprepError
+
+_COMPRESSION = 1
+"""Level 4 makes a mesh 10 % smaller and takes twice as long."""
+
+_UNIX = 3
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a temporary name beside `path` to write to; rename it at the end, or leave nothing behind.
+
+    Raises
+    ------
+    AmprepError
+        If the folder or file cannot be written.
+    """
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        raise AmprepError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_package(path: Path, entries: Iterable[tuple[str, int, Iterable[bytes]]]) -> None:
+    """Write a zip package of entries: name, a size in bytes that it will not exceed, its contents."""
+    with ZipFile(path, "w", ZIP_DEFLATED, compresslevel=_COMPRESSION) as package:
+        for name, at_most, chunks in entries:
+            info = ZipInfo(name)  # dated 1980-01-01, the same in every file
+            info.compress_type, info.create_system, info.file_size = ZIP_DEFLATED, _UNIX, at_most
+            with package.open(info, "w") as entry:
+                for chunk in chunks:
+                    entry.write(chunk)
