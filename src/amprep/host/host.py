@@ -2,13 +2,14 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, overload
 
 from amprep.errors import AmprepError, InputError, PluginError, nearest_hint
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
 from amprep.host import typed
-from amprep.host.loading import Source, built_in, given, installed, offers_of, one_line
+from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
 from amprep.model.cells import Cells
@@ -25,14 +26,18 @@ class Host:
     ----------
     warnings
         One line for each plugin that was refused and each clash of names.
+    clashes
+        Those of the warnings that are clashes of names.
     """
 
     def __init__(self, listed: Sequence[Listed[Offer]], warnings: Sequence[str] = ()) -> None:
         self.warnings: list[str] = list(warnings)
+        self.clashes: list[str] = []
         self._listed: dict[Kind, dict[str, Listed[Offer]]] = {kind: {} for kind in KINDS}
         self._clashes: dict[tuple[Kind, str], list[Listed[Offer]]] = {}
         for each in listed:
             self._enter(each)
+        self.warnings += self.clashes
 
     @classmethod
     def load(
@@ -68,6 +73,22 @@ class Host:
         kept = [source for source in sources if not any(map(source.answers_to, blocked))]
         listed, refused = _load_all([*kept, *given(asked)])
         return cls(listed, [*warnings, *refused])
+
+    @classmethod
+    def load_one(cls, package: str) -> "Host":
+        """Load one plugin beside the built-in ones: the installed one of that name, or else a module.
+
+        Raises
+        ------
+        PluginError
+            When it cannot be loaded, or one of its names is another's.
+        """
+        found, _ = installed({CHOSEN_BY_ENVIRONMENT: package})
+        asked = [replace(source, asked_for=True) for source in found] or given([package])
+        host = cls(*_load_all([*built_in(), *asked]))
+        if host.clashes:
+            raise PluginError("; ".join(host.clashes))
+        return host
 
     def offers(self, kind: Kind) -> Mapping[str, Listed[Offer]]:
         """Return the offers of a kind by name: the built-in ones first, then by distribution."""
@@ -219,9 +240,9 @@ class Host:
             return
         both = f"{KINDS[listed.kind].noun} {name!r} is offered by {first.origin} and by {listed.origin}"
         if first.builtin:
-            self.warnings.append(f"{both}; the built-in one is kept")
+            self.clashes.append(f"{both}; the built-in one is kept")
             return
-        self.warnings.append(f"{both}; neither can be chosen until one is blocked with '-p no:NAME'")
+        self.clashes.append(f"{both}; neither can be chosen until one is blocked with '-p no:NAME'")
         self._clashes.setdefault((listed.kind, name), [first]).append(listed)
 
     @staticmethod

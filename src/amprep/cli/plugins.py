@@ -1,0 +1,165 @@
+"""``amprep plugins``: list what is on offer, judge a plugin, start a new one."""
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from amprep import cli
+
+if TYPE_CHECKING:
+    from amprep.hookspecs import Offer
+    from amprep.host import Host, Listed
+    from amprep.pipeline.trial import Trial
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Modules = Annotated[
+    list[str] | None,
+    typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
+]
+
+app = typer.Typer(
+    no_args_is_help=True, help="Plugins: list what is on offer, check a plugin, start a new one."
+)
+
+
+@app.command("list")
+def list_all(
+    as_json: AsJson = False,
+    modules: Modules = None,
+    no_plugins: Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")] = False,
+) -> None:
+    """List every offer with the plugin it comes from."""
+    from amprep.host import Host
+
+    host = Host.load(modules=modules or [], plugins_enabled=not no_plugins)
+    if as_json:
+        typer.echo(json.dumps(_record(host), indent=2))
+        return
+    for warning in host.warnings:
+        typer.echo(f"amprep: warning: {warning}", err=True)
+    _print_offers(host)
+
+
+@app.command("check")
+def check(
+    package: Annotated[str, typer.Argument(help="Plugin, distribution, module, or path of a module.")],
+    sample: Annotated[
+        list[Path] | None,
+        typer.Option(help="A file for a mesh reader to read, for formats amprep cannot write."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Load a plugin, run each of its offers on tiny problems, and judge the promises.
+
+    Exit code 0: every promise holds; 1: some do not; 2: the plugin cannot be loaded.
+    """
+    from amprep.pipeline.trial import try_plugin
+
+    trials = try_plugin(package, samples=sample or [])
+    if as_json:
+        typer.echo(json.dumps([asdict(trial) for trial in trials], indent=2))
+    else:
+        _print_trials(trials)
+    raise typer.Exit(cli.DONE if all(trial.passed for trial in trials) else cli.INCOMPLETE)
+
+
+@app.command("new")
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the package, e.g. amprep-shelves.")],
+    kind: Annotated[
+        str, typer.Option(help="What it offers: packer, cell, router, volume or reader.")
+    ] = "packer",
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder in which to make it.")] = Path(),
+) -> None:
+    """Start a plugin: a package that works, with tests that pass."""
+    from amprep.host.scaffold import make_plugin
+
+    folder = make_plugin(name, kind, output)
+    typer.echo(f"made {folder}; try it:")
+    typer.echo(f"  python -m pip install -e {folder} && amprep plugins check {name}")
+
+
+def _record(host: "Host") -> dict[str, Any]:
+    from amprep.hookspecs import API_VERSION
+    from amprep.host import KINDS
+
+    offers = [_offer_record(each) for kind in KINDS for each in host.offers(kind).values()]
+    return {"api": API_VERSION, "offers": offers, "warnings": host.warnings}
+
+
+def _offer_record(listed: "Listed[Offer]") -> dict[str, Any]:
+    defaults = listed.offer.params()
+    return {
+        "kind": listed.kind,
+        "name": listed.offer.name,
+        "summary": listed.offer.summary,
+        "plugin": listed.plugin,
+        "distribution": listed.distribution,
+        "version": listed.version,
+        "builtin": listed.builtin,
+        "params": {
+            field.name: _plain(getattr(defaults, field.name)) for field in fields(defaults) if field.init
+        },
+        **_abilities(listed.offer),
+    }
+
+
+def _abilities(offer: "Offer") -> dict[str, Any]:
+    from amprep.hookspecs import MeshReader, Packer, VolumeMaker
+
+    if isinstance(offer, MeshReader):
+        return {"suffixes": list(offer.suffixes)}
+    if isinstance(offer, VolumeMaker):
+        return {"makes": offer.makes}
+    if isinstance(offer, Packer):
+        return {
+            "accepts": {
+                field.name: _plain(getattr(offer.accepts, field.name)) for field in fields(offer.accepts)
+            }
+        }
+    return {}
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that JSON can hold; sets are sorted."""
+    if isinstance(value, frozenset | set):
+        return sorted(value)
+    return value if isinstance(value, bool | int | float | str | list | tuple | dict | None) else str(value)
+
+
+def _print_offers(host: "Host") -> None:
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    from amprep.host import KINDS
+
+    table = Table("kind", "name", "what it does", "from")
+    for kind, description in KINDS.items():
+        for each in host.offers(kind).values():
+            origin = f"[dim]{each.origin}" if each.builtin else escape(each.origin)
+            table.add_row(description.noun, escape(each.offer.name), escape(each.offer.summary), origin)
+        table.add_section()
+    Console().print(table)
+
+
+def _print_trials(trials: "tuple[Trial, ...]") -> None:
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table("offer", "tried on", "", "found")
+    for trial in trials:
+        table.add_row(
+            escape(trial.title),
+            escape(", ".join(trial.problems)),
+            "[green]holds" if trial.passed else "[red]broken",
+        )
+        for violation in trial.violations:
+            table.add_row(
+                "", escape(violation.subject), f"[red]{violation.promise}", escape(violation.message)
+            )
+    Console().print(table)
