@@ -1,0 +1,392 @@
+"""Routing kernels on the implicit layered grid: distance sweeps, walks down them, and augmenting searches.
+
+Strategy: squares are numbered ``plane * stride + y * width + x`` over planes padded by one square sideways,
+so the five ways down from square u lead to ``u - stride + offset[d]``. Nothing is stored per edge but its
+flow. One sweep from the plate up gives every square's distance; a walk goes down it and prices each edge by
+the flow it has at that moment, so that the walks of one batch see each other and do not move as a herd.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
+Shorts = NDArray[np.uint16]
+Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
+
+FAR = np.float32(1e30)
+"""Distance of a square without a way to the plate."""
+
+UNBOUNDED = 65535
+"""Greatest flow an edge or square can record."""
+
+
+class Network(NamedTuple):
+    """Where paths may go.
+
+    Attributes
+    ----------
+    via
+        ``(planes * stride,)`` uint8: 1 where a path may enter the square from above and go on downwards.
+    offset
+        ``(5,)`` int64, of `amprep.model.supports.DIRECTIONS`.
+    box
+        ``(planes, 4)`` int64, least and greatest y, least and greatest x that paths can reach in each plane.
+    """
+
+    via: Bytes
+    offset: Longs
+    box: Longs
+    stride: int
+    width: int
+
+
+class Flows(NamedTuple):
+    """The paths drawn so far, as numbers on edges and squares; all arrays are modified in place.
+
+    Attributes
+    ----------
+    flow
+        ``(squares, 5)`` uint16, paths on each edge downwards.
+    through
+        ``(squares,)`` uint16, paths at each square.
+    special
+        ``(squares,)`` uint8, 1 where an edge's price can differ from that of an unused edge.
+    rows
+        ``(planes * rows,)`` uint8, 1 for rows of squares that have a special one.
+    entry
+        ``(squares,)`` float32, distance to the plate of a path that enters from above, as of the last sweep.
+    dead
+        ``(squares,)`` int32, number of the batch that found no way down from the square.
+    """
+
+    flow: Bytes
+    through: Shorts
+    special: Bytes
+    rows: Bytes
+    entry: Floats
+    dead: Ints
+
+
+class Prices(NamedTuple):
+    """What one more path over an edge costs: ``table[flow]`` times `straight` or `oblique` (thesis 3.4).
+
+    `beside` multiplies the price next to a square in use; the last entry of `table` is never exceeded.
+    """
+
+    table: Floats
+    straight: np.float32
+    oblique: np.float32
+    beside: np.float32
+
+
+class Limits(NamedTuple):
+    """Greatest number of paths at a square, at a square of the plate, and on an edge."""
+
+    square: int
+    ground: int
+    edge: int
+
+
+class Work(NamedTuple):
+    """Work arrays over the two states of each square: search that saw it last, stack, next arcs, seen ones."""
+
+    seen: Ints
+    stack: Ints
+    arcs: Bytes
+    visited: Ints
+
+
+@njit(cache=True)
+def _beside(network: Network, flows: Flows, u: int) -> bool:
+    """Tell whether a square next to `u` is in use."""
+    through, width = flows.through, network.width
+    return through[u - 1] | through[u + 1] | through[u - width] | through[u + width] != 0
+
+
+@njit(cache=True)
+def _exact_entry(network: Network, flows: Flows, prices: Prices, limits: Limits, u: int) -> np.float32:
+    """Return the distance of square `u` over its five edges at their present prices; FAR when it is full.
+
+    A square that is out of use, and all squares next to it too, is special no longer.
+    """
+    beside = _beside(network, flows, u)
+    if flows.through[u] >= limits.square:
+        return FAR
+    if flows.through[u] == 0 and not beside:
+        flows.special[u] = 0
+    best = FAR
+    for d in range(5):
+        flow = flows.flow[u, d]
+        cost = flows.entry[u - network.stride + network.offset[d]]
+        if flow < limits.edge:
+            price = prices.table[min(flow, prices.table.size - 1)]
+            price *= prices.straight if d == 0 else prices.oblique
+            cost += price * prices.beside if beside else price
+            best = cost if cost < best else best
+    return best
+
+
+@njit(cache=True)
+def sweep(network: Network, flows: Flows, prices: Prices, limits: Limits) -> None:
+    """Set `flows.entry` for all squares in reach, plane by plane from the plate up.
+
+    Unused edges cost ``table[0]``; only special squares look at the five prices one by one.
+    """
+    stride, width, box, via = network.stride, network.width, network.box, network.via
+    entry, special = flows.entry, flows.special
+    straight = prices.table[0] * prices.straight
+    oblique = prices.table[0] * prices.oblique
+    height = stride // width
+    for y in range(box[0, 0], box[0, 1] + 1):
+        for u in range(y * width + box[0, 2], y * width + box[0, 3] + 1):
+            entry[u] = np.float32(0.0) if via[u] and flows.through[u] < limits.ground else FAR
+    for p in range(1, box.shape[0]):
+        count = box[p, 3] - box[p, 2] + 1
+        for y in range(box[p, 0], box[p, 1] + 1):
+            u = p * stride + y * width + box[p, 2]
+            v = u - stride
+            here, passable, below = entry[u : u + count], via[u : u + count], entry[v : v + count]
+            west, east = entry[v - 1 : v - 1 + count], entry[v + 1 : v + 1 + count]
+            south, north = entry[v - width : v - width + count], entry[v + width : v + width + count]
+            for i in range(count):
+                a = west[i] if west[i] < east[i] else east[i]
+                b = south[i] if south[i] < north[i] else north[i]
+                sideways = (a if a < b else b) + oblique
+                down = below[i] + straight
+                best = down if down < sideways else sideways
+                here[i] = best if passable[i] != 0 and best < FAR else FAR
+            if flows.rows[p * height + y]:
+                for i in range(count):
+                    if special[u + i] and passable[i]:
+                        here[i] = _exact_entry(network, flows, prices, limits, u + i)
+
+
+@njit(cache=True)
+def _best_way(network: Network, flows: Flows, prices: Prices, limits: Limits, u: int, batch: int) -> int:
+    """Return the cheapest direction down from `u` with room at its end, the first of equals, or -1."""
+    best, way = FAR, -1
+    beside = _beside(network, flows, u)
+    for d in range(5):
+        v = u - network.stride + network.offset[d]
+        flow = flows.flow[u, d]
+        room = limits.ground if v < network.stride else limits.square
+        if flow < limits.edge and flows.through[v] < room and flows.dead[v] != batch:
+            price = prices.table[min(flow, prices.table.size - 1)]
+            price *= prices.straight if d == 0 else prices.oblique
+            cost = flows.entry[v] + (price * prices.beside if beside else price)
+            if cost < best:
+                best, way = cost, d
+    return way
+
+
+@njit(cache=True)
+def _use(network: Network, flows: Flows, u: int) -> None:
+    """Count one more path at square `u` and note whose prices that may change."""
+    flows.through[u] += 1
+    y = u // network.width
+    for v in (u, u - 1, u + 1, u - network.width, u + network.width):
+        flows.special[v] = 1
+    flows.rows[y - 1 : y + 2] = 1
+
+
+@njit(cache=True)
+def draw(
+    network: Network,
+    flows: Flows,
+    prices: Prices,
+    limits: Limits,
+    start: Longs,
+    chosen: Longs,
+    first: Longs,
+    ways: Bytes,
+    drawn: Bytes,
+    batch: int,
+) -> int:
+    """Draw a path to the plate from each red square of `chosen` without one; return how many found none.
+
+    A walk takes the cheapest edge at its present price plus the distance of the last sweep; where everything
+    further down has become full it backs up, and marks the dead end for the rest of the batch (paths are only
+    added in a batch, so it stays dead).
+
+    Parameters
+    ----------
+    first, ways
+        The path of red r has the directions ``ways[first[r] : first[r + 1]]``.
+    drawn
+        Set to 1 for red squares that have a path, 0 otherwise.
+    """
+    trail = np.empty(network.box.shape[0] + 1, np.int64)
+    failed = 0
+    for r in chosen:
+        if drawn[r]:
+            continue
+        trail[0] = start[r]
+        length = 0
+        if flows.through[start[r]] >= limits.square:
+            length = -1
+        while length >= 0 and trail[length] >= network.stride:
+            u = trail[length]
+            d = _best_way(network, flows, prices, limits, u, batch)
+            if d < 0:
+                flows.dead[u] = batch
+                length -= 1
+            else:
+                ways[first[r] + length] = d
+                length += 1
+                trail[length] = u - network.stride + network.offset[d]
+        drawn[r] = length >= 0
+        failed += length < 0
+        for i in range(length + 1):
+            _use(network, flows, trail[i])
+            if i < length:
+                flows.flow[trail[i], ways[first[r] + i]] += 1
+    return failed
+
+
+@njit(cache=True)
+def erase(
+    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
+) -> None:
+    """Take the paths of the chosen red squares back."""
+    for r in chosen:
+        if not drawn[r]:
+            continue
+        u = start[r]
+        for i in range(first[r], first[r + 1]):
+            flows.through[u] -= 1
+            flows.flow[u, ways[i]] -= 1
+            u = u - network.stride + network.offset[ways[i]]
+        flows.through[u] -= 1
+        drawn[r] = 0
+
+
+@njit(cache=True)
+def _next_state(
+    network: Network, flows: Flows, limits: Limits, state: int, arc: int, seen: Ints, search: int
+) -> tuple[int, int]:
+    """Return where the next arc of `state` to an unseen state leads, or -1, and the arc after it."""
+    u = state >> 1
+    top = network.via.size
+    while arc < 6:
+        to = -1
+        if state & 1:  # leaving u: on over its edges, or give the square's unit back
+            if arc < 5:
+                v = u - network.stride + network.offset[arc]
+                if network.via[v] and flows.flow[u, arc] < limits.edge:
+                    to = 2 * v
+            elif flows.through[u] > 0:
+                to = 2 * u
+        elif arc == 0:  # entering u: on when it has room, or push an entering unit back
+            room = limits.ground if u < network.stride else limits.square
+            if flows.through[u] < room:
+                to = 2 * u + 1
+        else:
+            w = u + network.stride - network.offset[arc - 1]
+            if w < top and flows.flow[w, arc - 1] > 0:
+                to = 2 * w + 1
+        arc += 1
+        if to >= 0 and 0 <= seen[to] < search:
+            return to, arc
+    return -1, arc
+
+
+@njit(cache=True)
+def augment(
+    network: Network,
+    flows: Flows,
+    limits: Limits,
+    start: Longs,
+    chosen: Longs,
+    drawn: Bytes,
+    work: Work,
+    effort: int,
+) -> int:
+    """Connect undrawn red squares by augmenting paths, so that the flow is maximal; return the effort left.
+
+    A state is twice the square, plus 1 once the path has been let through it (the two nodes of a square with
+    a capacity). A search that fails has seen only states from which the plate stays out of reach for good:
+    they are marked -1. The paths must be found anew from the flow afterwards (`untangle`).
+
+    Parameters
+    ----------
+    work
+        Modified in place; fresh ones (`seen` all 0) for each call.
+    effort
+        Number of arcs that may be looked at; the search ends when it is used up.
+    """
+    seen, stack, arcs = work.seen, work.stack, work.arcs
+    search = 0
+    for r in chosen:
+        if drawn[r] or effort <= 0:
+            continue
+        search += 1
+        begin = 2 * start[r]
+        if seen[begin] < 0:
+            continue
+        length, visited = 0, 1
+        stack[0], arcs[0] = begin, 0
+        seen[begin], work.visited[0] = search, begin
+        while length >= 0 and effort > 0:
+            state = stack[length]
+            if state & 1 and state >> 1 < network.stride:
+                break
+            to, arc = _next_state(network, flows, limits, state, arcs[length], seen, search)
+            effort -= 1
+            arcs[length] = arc
+            if to < 0:
+                length -= 1
+            else:
+                length += 1
+                stack[length], arcs[length] = to, 0
+                seen[to], work.visited[visited] = search, to
+                visited += 1
+        if length < 0:
+            for i in range(visited):
+                seen[work.visited[i]] = -1
+        elif effort > 0:
+            drawn[r] = 1
+            for i in range(length):
+                _shift(network, flows, stack[i], stack[i + 1])
+    return effort
+
+
+@njit(cache=True)
+def _shift(network: Network, flows: Flows, state: int, to: int) -> None:
+    """Send one unit over a residual arc."""
+    u, v = state >> 1, to >> 1
+    if u == v:
+        if to & 1:
+            _use(network, flows, u)
+        else:
+            flows.through[u] -= 1
+        return
+    upper, lower, change = (u, v, 1) if state & 1 else (v, u, -1)
+    for d in range(5):
+        if upper - network.stride + network.offset[d] == lower:
+            flows.flow[upper, d] = flows.flow[upper, d] + change
+
+
+@njit(cache=True)
+def untangle(network: Network, flows: Flows, start: Longs, first: Longs, ways: Bytes, drawn: Bytes) -> None:
+    """Find one path for each drawn red square in the flow; the flow is the same afterwards."""
+    for r in range(start.size):
+        u = start[r]
+        if drawn[r]:
+            for i in range(first[r], first[r + 1]):
+                d = 0
+                while flows.flow[u, d] == 0:
+                    d += 1
+                flows.flow[u, d] -= 1
+                ways[i] = d
+                u = u - network.stride + network.offset[d]
+    for r in range(start.size):
+        u = start[r]
+        if drawn[r]:
+            for i in range(first[r], first[r + 1]):
+                flows.flow[u, ways[i]] += 1
+                u = u - network.stride + network.offset[ways[i]]

@@ -1,0 +1,150 @@
+"""The router `shortest-paths`: iterated shortest paths that gather into trunks (thesis 3.4)."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from amprep.kernels.routing import (
+    FAR,
+    UNBOUNDED,
+    Limits,
+    Longs,
+    Prices,
+    Work,
+    augment,
+    draw,
+    erase,
+    sweep,
+    untangle,
+)
+from amprep.model.control import Report, Stop
+from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem
+from amprep.plugins.supports.network import hard_limits, network_of, no_flows, plan_of
+from amprep.plugins.supports.params import ShortestPathsParams
+
+_EFFORT = 20_000_000
+"""Arcs that augmenting searches may look at in one go; a fraction of a second."""
+
+
+def route_shortest_paths(
+    problem: SupportProblem,
+    *,
+    params: ShortestPathsParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    """Draw a path from every red square, then redraw a random share of them round by round (thesis 3.4).
+
+    First every path is shortest by the costs of `problem` alone. In each round the chosen paths are taken
+    back, one sweep finds all distances under ``g(flow) * cost``, and the chosen paths are drawn again one
+    after the other, each pricing its edges by the flow of that moment. Every red square is chosen equally
+    often: the rounds go through random orders of all of them.
+
+    Capacities are never exceeded: full edges and squares are closed to further paths, and red squares that
+    find no way are connected by augmenting paths, so that the flow is maximal. Without capacities in the
+    problem, `paths_per_square` acts as one that grows until every red square with a way is connected.
+
+    Every red square is drawn in ``O(squares)`` a round. Deterministic for one state of `rng`, unless a time
+    limit ends it.
+    """
+    stop = stop.within(params.seconds)
+    drawing = _Drawing(problem, params)
+    drawing.connect_all()
+    stop_reason = "finished"
+    for done, chosen in enumerate(drawing.choices(rng)):
+        if stop():
+            stop_reason = stop.reason
+            break
+        drawing.redraw(chosen)
+        report((done + 1) / params.rounds, "redrawing paths")
+    return drawing.plan(stop_reason)
+
+
+class _Drawing:
+    """The moving state: paths, their flows, and the limits in force."""
+
+    def __init__(self, problem: SupportProblem, params: ShortestPathsParams) -> None:
+        self.problem, self.params = problem, params
+        self.network, self.start = network_of(problem)
+        self.flows = no_flows(self.network)
+        self.first = np.concatenate([[0], np.cumsum(problem.red[:, 0], dtype=np.int64)])
+        self.ways = np.zeros(int(self.first[-1]), np.uint8)
+        self.drawn = np.zeros(len(self.start), np.uint8)
+        self.batch = 0
+        capacities = problem.node_capacity or problem.edge_capacity or not params.paths_per_square
+        self.soft = not capacities
+        soft = Limits(params.paths_per_square, params.paths_per_square, UNBOUNDED)
+        self.limits = soft if self.soft else hard_limits(problem)
+        self.plain = self._prices((1.0,), 0.0)
+        self.shared = self._prices(params.g, params.neighbour_discount)
+        sweep(self.network, self.flows, self.plain, Limits(UNBOUNDED, UNBOUNDED, UNBOUNDED))
+        np.logical_and(self.network.via, self.flows.entry < FAR, out=self.network.via.view(np.bool_))
+        ends = self.start[:, None] - self.network.stride + self.network.offset
+        self.open = np.flatnonzero((self.flows.entry[ends] < FAR).any(axis=1))
+
+    def _prices(self, g: tuple[float, ...], discount: float) -> Prices:
+        """Continue the last slope of `g` for as many paths as there can be."""
+        count = min(len(self.start), UNBOUNDED) + 2
+        slope = g[-1] - g[-2] if len(g) > 1 else 0.0
+        beyond = g[-1] + slope * np.arange(1, max(count - len(g), 0) + 1)
+        table = np.maximum(np.concatenate([g, beyond]), 0.0).astype(np.float32)
+        straight, oblique = self.problem.costs
+        return Prices(table, np.float32(straight), np.float32(oblique), np.float32(1.0 - discount))
+
+    def connect_all(self) -> None:
+        """Draw the first paths, by the plain costs; raise soft limits until every open red square has one."""
+        self._draw(self.open, self.plain)
+        while self._lost().size and self.soft:
+            grown = self.limits.square + max(1, self.limits.square // 4)
+            self.limits = Limits(grown, grown, UNBOUNDED)
+            self._draw(self._lost(), self.plain)
+
+    def choices(self, rng: np.random.Generator) -> Iterator[Longs]:
+        """Yield the red squares of each round: slices of random orders of all that are open."""
+        size = max(1, round(len(self.open) * self.params.redraw_ratio))
+        order = np.empty(0, np.int64)
+        for _ in range(self.params.rounds if len(self.open) else 0):
+            while len(order) < size:
+                order = np.concatenate([order, rng.permutation(self.open)])
+            yield order[:size]
+            order = order[size:]
+
+    def redraw(self, chosen: Longs) -> None:
+        """Take the chosen paths back and draw them anew at the present prices."""
+        lost = self._lost()
+        erase(self.network, self.flows, self.start, chosen, self.first, self.ways, self.drawn)
+        self._draw(np.concatenate([lost, chosen]), self.shared)
+
+    def _draw(self, chosen: Longs, prices: Prices) -> None:
+        self.batch += 1
+        sweep(self.network, self.flows, prices, self.limits)
+        failed = draw(
+            self.network, self.flows, prices, self.limits, self.start, chosen, self.first, self.ways, self.drawn,
+            self.batch,
+        )  # fmt: skip
+        if failed:
+            self._augment()
+
+    def _lost(self) -> Longs:
+        lost: Longs = self.open[self.drawn[self.open] == 0]
+        return lost
+
+    def _augment(self) -> None:
+        states = 2 * self.network.via.size
+        work = Work(
+            np.zeros(states, np.int32),
+            np.empty(states, np.int32),
+            np.empty(states, np.uint8),
+            np.empty(states, np.int32),
+        )
+        augment(self.network, self.flows, self.limits, self.start, self._lost(), self.drawn, work, _EFFORT)
+        untangle(self.network, self.flows, self.start, self.first, self.ways, self.drawn)
+
+    def plan(self, stop_reason: str) -> SupportPlan:
+        """Return the plan as drawn so far."""
+        way = np.zeros(len(self.start), np.bool_)
+        way[self.open] = True
+        left = np.flatnonzero(self.drawn == 0)
+        reasons = [(int(red), CAPACITY if way[red] else ENCLOSED) for red in left]
+        return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
