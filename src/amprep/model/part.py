@@ -63,7 +63,7 @@ class Appearance:
     material
         Name of the base material, or None.
     triangle_colours
-        ``(m, 3)`` uint32, 0xRRGGBBAA of each triangle's corners, or None.
+        ``(m, 3)`` int64, 0xRRGGBBAA of each triangle's corners, -1 where there is none; or None.
     """
 
     colour: str | None = None

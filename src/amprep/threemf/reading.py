@@ -1,0 +1,171 @@
+"""Read the parts of a 3MF job: what each build item shows, in millimetres, with all that is said of it."""
+
+from collections.abc import Iterator
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from amprep.errors import InputError
+from amprep.model.arrays import Floats
+from amprep.model.mesh import Mesh
+from amprep.model.part import Appearance, Part, Region
+from amprep.threemf.package import Package, open_package
+from amprep.threemf.reading_arrays import Model3MF, load_model
+from amprep.threemf.reading_colours import appearance_of
+from amprep.threemf.reading_job import foreign, wishes_of
+from amprep.threemf.reading_objects import Gatherer, Shape, row_matrix
+from amprep.threemf.reading_slicer import parse_slicer_config
+
+if TYPE_CHECKING:
+    from lib3mf import Lib3MF
+
+_UNITS = (
+    ("micrometres", 0.001),
+    ("millimetres", 1.0),
+    ("centimetres", 10.0),
+    ("inches", 25.4),
+    ("feet", 304.8),
+    ("metres", 1000.0),
+)
+"""In the order of lib3mf's `ModelUnit`: name, and mm of one."""
+
+
+class _Item(NamedTuple):
+    """Build items that ask for the same: an object under a linear map, and what is said of it."""
+
+    thing: "Lib3MF.Object"
+    linear: Floats
+    part_number: str
+    metadata: dict[tuple[str, str], str]
+
+
+def read_parts(path: Path) -> list[Part]:
+    """Return the parts a 3MF file's build asks for, not yet settled.
+
+    An item's translation is dropped, its linear map applied to the mesh; items of one object under the same
+    map are one part. Components become one mesh. A file that lib3mf refuses is read by trimesh.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is hostile, or its build asks for nothing that can be printed.
+    """
+    from lib3mf import Lib3MF
+
+    package = open_package(path)
+    loaded = _load(package.data)
+    if isinstance(loaded, str):
+        from amprep.threemf.reading_fallback import read_by_trimesh
+
+        return read_by_trimesh(package, path, refusal=loaded)
+    try:
+        return _parts(loaded, package, path)
+    except (Lib3MF.ELib3MFException, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: lib3mf cannot tell what is in this file ({error})") from error
+
+
+def _load(data: bytes) -> Model3MF | str:
+    """Return the model, or the reason why lib3mf refuses it."""
+    from lib3mf import Lib3MF
+
+    try:
+        return load_model(data)
+    except Lib3MF.ELib3MFException as error:
+        return str(error).partition(": ")[2] or str(error)
+
+
+def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
+    """Turn items into parts; notes on the file as a whole go to the first part."""
+    unit, scale = _UNITS[int(loaded.model.GetUnit())]
+    notes = [*package.notes, *_meant(loaded.warnings)]
+    if scale != 1.0:
+        notes.append(f"scaled from {unit} to millimetres")
+    if package.unprintable:
+        notes.append(f"left out {len(package.unprintable)} items that the file marks as not to be printed")
+    gatherer = Gatherer(loaded.model, parse_slicer_config(package.config, str(path)), str(path))
+    parts: list[Part] = []
+    for item, count in _items(loaded.model, package.unprintable):
+        shape = gatherer.shape_of(item.thing, item.linear)
+        if shape.vertices:
+            notes = [*notes, *shape.notes]
+            parts.append(_part(item, count, shape, scale, tuple(dict.fromkeys(notes)), path))
+            notes = []
+        else:
+            notes += shape.notes
+    if not parts:
+        raise InputError(f"{path}: the build asks for nothing that can be printed{_because(notes)}")
+    return parts
+
+
+def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_Item, int]]:
+    """Yield the different build items, and how often each comes, in the order of their first."""
+    found: dict[object, list[_Item]] = {}
+    items = model.GetBuildItems()
+    index = 0
+    while items.MoveNext():
+        if index not in unprintable:
+            item = _item(items.GetCurrent())
+            key = (item.thing.GetUniqueResourceID(), (item.linear + 0.0).tobytes(), item.part_number)
+            found.setdefault((key, tuple(sorted(item.metadata.items()))), []).append(item)
+        index += 1
+    yield from ((same[0], len(same)) for same in found.values())
+
+
+def _item(item: "Lib3MF.BuildItem") -> _Item:
+    thing = item.GetObjectResource()
+    linear = row_matrix(item.GetObjectTransform())[:3, :3] if item.HasObjectTransform() else np.eye(3)
+    metadata = _metadata(thing.GetMetaDataGroup()) | _metadata(item.GetMetaDataGroup())
+    return _Item(thing, linear, item.GetPartNumber() or thing.GetPartNumber(), metadata)
+
+
+def _metadata(group: "Lib3MF.MetaDataGroup") -> dict[tuple[str, str], str]:
+    entries = [group.GetMetaData(index) for index in range(group.GetMetaDataCount())]
+    return {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
+
+
+def _part(item: _Item, count: int, shape: Shape, scale: float, notes: tuple[str, ...], path: Path) -> Part:
+    name = part_name([item.thing.GetName(), *shape.names], path)
+    wishes = wishes_of(item.metadata, f"{path}: {name}")
+    vertices, triangles = shape.joined()
+    return Part(
+        name=name,
+        mesh=Mesh(vertices * scale, triangles.astype(np.int32)),
+        volume_mm3=0.0,
+        quantity=wishes.quantity * count,
+        value=wishes.value,
+        orientations=wishes.orientations,
+        regions=tuple(_scaled(region, scale) for region in shape.regions),
+        appearance=appearance_of(shape.paints) if len(triangles) else Appearance(),
+        part_number=item.part_number,
+        source=str(path),
+        notes=notes,
+        metadata=foreign(item.metadata),
+    )
+
+
+def part_name(candidates: list[str], path: Path) -> str:
+    """Return the first name given, as one printable line and without a mesh file's suffix, or the file's."""
+    for candidate in candidates:
+        name = "".join(char if char.isprintable() else " " for char in candidate).strip()[:200]
+        if name:
+            suffix = PurePath(name).suffix.lower()
+            return (
+                name[: -len(suffix)] if suffix in (".stl", ".obj", ".3mf", ".amf", ".step", ".stp") else name
+            )
+    return path.stem
+
+
+def _scaled(region: Region, scale: float) -> Region:
+    if region.mesh is None or scale == 1.0:
+        return region
+    return Region(region.kind, region.name, mesh=Mesh(region.mesh.vertices * scale, region.mesh.triangles))
+
+
+def _meant(warnings: tuple[str, ...]) -> list[str]:
+    """Return the warnings worth telling: not those of attributes that other programs add."""
+    return [f"lib3mf warns: {words}" for words in warnings if "namespace" not in words.lower()][:10]
+
+
+def _because(notes: list[str]) -> str:
+    return f" ({'; '.join(dict.fromkeys(notes))})" if notes else ""

@@ -1,0 +1,170 @@
+"""Flatten what a build item shows: components of components, mirrored and sheared, into one mesh."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.errors import InputError
+from amprep.model.arrays import Floats
+from amprep.model.mesh import Mesh
+from amprep.model.part import Region, RegionKind
+from amprep.threemf.reading_arrays import fetch_mesh
+from amprep.threemf.reading_colours import Paint, paint_of
+from amprep.threemf.reading_slicer import (
+    BLOCKER,
+    ENFORCER,
+    NEGATIVE,
+    SOLID,
+    SlicerObject,
+    Volume,
+)
+
+if TYPE_CHECKING:
+    from lib3mf import Lib3MF
+
+MOST_TRIANGLES = 50_000_000
+
+_REGIONS: dict[str, RegionKind] = {BLOCKER: "blocker", ENFORCER: "enforcer"}
+
+
+@dataclass
+class Shape:
+    """What has been gathered of a build item so far, in its own coordinates and the file's unit.
+
+    Attributes
+    ----------
+    vertices, triangles
+        Of each mesh, its triangles counted from its own first vertex.
+    """
+
+    vertices: list[Floats] = field(default_factory=list)
+    triangles: list[NDArray[np.int64]] = field(default_factory=list)
+    paints: list[Paint] = field(default_factory=list)
+    regions: list[Region] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def joined(self) -> tuple[Floats, NDArray[np.int64]]:
+        """Return the meshes as one."""
+        first = np.cumsum([0, *(len(vertices) for vertices in self.vertices)])
+        return np.concatenate(self.vertices), np.concatenate(
+            [triangles + start for triangles, start in zip(self.triangles, first, strict=False)]
+        )
+
+
+class Gatherer:
+    """Gathers the shapes of a model's objects; `where` names the file."""
+
+    def __init__(self, model: "Lib3MF.Model", slicer: Mapping[int, SlicerObject], where: str) -> None:
+        self.model = model
+        self.slicer = slicer
+        self.where = where
+        self._triangles = 0
+
+    def shape_of(self, thing: "Lib3MF.Object", linear: Floats) -> Shape:
+        """Return what an object shows under the ``(3, 3)`` map `linear` (row vectors)."""
+        shape = Shape()
+        frame = np.eye(4)
+        frame[:3, :3] = linear
+        self._gather(thing, frame, shape)
+        return shape
+
+    def _gather(self, thing: "Lib3MF.Object", frame: Floats, shape: Shape) -> None:
+        skipped = _why_skipped(thing)
+        if skipped:
+            shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: {skipped}")
+        elif thing.IsMeshObject():
+            self._gather_mesh(thing, frame, shape)
+        elif thing.IsComponentsObject():
+            for index in range(thing.GetComponentCount()):
+                component = thing.GetComponent(index)
+                placed = row_matrix(component.GetTransform()) @ frame
+                self._gather(component.GetObjectResource(), placed, shape)
+        else:
+            shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: it is no mesh")
+
+    def _gather_mesh(self, thing: "Lib3MF.MeshObject", frame: Floats, shape: Shape) -> None:
+        self._triangles += thing.GetTriangleCount()
+        if self._triangles > MOST_TRIANGLES:
+            raise InputError(
+                f"{self.where}: more than {MOST_TRIANGLES} triangles in the build; split the job"
+            )
+        raw = fetch_mesh(thing)
+        turns = np.linalg.det(frame[:3, :3])
+        if turns == 0.0:
+            raise InputError(f"{self.where}: {thing.GetName()!r} is squashed flat by its transform")
+        paint = paint_of(self.model, thing, raw)
+        vertices, triangles = raw.vertices @ frame[:3, :3] + frame[3, :3], raw.triangles
+        if turns < 0.0:
+            triangles, paint = triangles[:, ::-1], paint._replace(colours=paint.colours[:, ::-1])
+        if thing.BeamLattice().GetBeamCount():
+            shape.notes.append(f"left out the beam lattice of {thing.GetName()!r}: beams are not read yet")
+        if paint.lost:
+            shape.notes.append("textures and mixed materials are not kept")
+        self._add(thing, vertices, triangles, paint, shape)
+
+    def _add(
+        self,
+        thing: "Lib3MF.MeshObject",
+        vertices: Floats,
+        triangles: NDArray[np.int64],
+        paint: Paint,
+        shape: Shape,
+    ) -> None:
+        """Add a mesh, its blockers and enforcers apart from what is printed."""
+        known = self.slicer.get(thing.GetModelResourceID(), SlicerObject("", ()))
+        printed = np.ones(len(triangles), np.bool_)
+        for volume in known.volumes:
+            if volume.kind != SOLID:
+                self._set_apart(volume, vertices, triangles, printed, shape)
+        if not printed.all():
+            triangles, paint = triangles[printed], paint._replace(colours=paint.colours[printed])
+        shape.vertices.append(vertices)
+        shape.triangles.append(triangles)
+        shape.paints.append(paint)
+        shape.names.append(thing.GetName() or known.name)
+
+    def _set_apart(
+        self,
+        volume: Volume,
+        vertices: Floats,
+        triangles: NDArray[np.int64],
+        printed: NDArray[np.bool_],
+        shape: Shape,
+    ) -> None:
+        """Take a volume's triangles out of what is printed, and keep it as a region if it is one."""
+        if not 0 <= volume.first <= volume.last < len(triangles):
+            raise InputError(f"{self.where}: PrusaSlicer's volume {volume.name!r} names triangles not there")
+        if volume.kind == NEGATIVE:
+            raise InputError(
+                f"{self.where}: {volume.name!r} is a negative volume, which amprep cannot subtract; do so before"
+            )
+        own = triangles[volume.first : volume.last + 1]
+        printed[volume.first : volume.last + 1] = False
+        if volume.kind in _REGIONS:
+            used, corners = np.unique(own, return_inverse=True)
+            mesh = Mesh(vertices[used], corners.reshape(-1, 3).astype(np.int32))
+            shape.regions.append(Region(_REGIONS[volume.kind], volume.name, mesh=mesh))
+        else:
+            shape.notes.append(f"left out the modifier {volume.name!r}: amprep knows no such settings")
+
+
+def row_matrix(transform: "Lib3MF.Transform") -> Floats:
+    """Return a 3MF transform as a ``(4, 4)`` matrix for row vectors."""
+    matrix = np.eye(4)
+    matrix[:, :3] = np.array([list(row) for row in transform.Fields], np.float64)
+    return matrix
+
+
+def _why_skipped(thing: "Lib3MF.Object") -> str:
+    from lib3mf import Lib3MF
+
+    kind = thing.GetType()
+    if kind in (Lib3MF.ObjectType.Support, Lib3MF.ObjectType.SolidSupport):
+        return "it is a support, and amprep plans its own"
+    if kind in (Lib3MF.ObjectType.Surface, Lib3MF.ObjectType.Other):
+        return "its type says that it is not to be printed"
+    return ""
