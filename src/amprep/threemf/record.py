@@ -20,6 +20,7 @@ from amprep.threemf.record_values import (
     table,
     text,
     whole,
+    wholes,
     word,
 )
 
@@ -109,7 +110,6 @@ def part_record(part: Part) -> Record:
         "overrides": _overrides_record(part.overrides),
         "colour": part.appearance.colour,
         "material": part.appearance.material,
-        "triangle_colours": part.appearance.triangle_colours is not None,
         "boxes": None if part.boxes is None else plain(part.boxes),
         "part_number": part.part_number,
         "source": PurePath(part.source).name,
@@ -192,7 +192,9 @@ def _region_record(region: Region) -> Record:
 def _region_of(record: Any) -> Region:
     values = mapping(record, "region")
     kind = cast("RegionKind", word(values, "kind", get_args(RegionKind)))
-    triangles = table(values, "triangles", 1).reshape(-1).astype(np.int32) if "triangles" in values else None
+    triangles = (
+        np.array(wholes(values, "triangles", below=2**31), np.int32) if "triangles" in values else None
+    )
     mesh = None
     if "mesh" in values:
         vertices, corners = listing(values["mesh"], "mesh")

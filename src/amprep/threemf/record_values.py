@@ -80,6 +80,12 @@ def whole(record: Record, name: str, below: int = 2**31) -> int:
     return value
 
 
+def wholes(record: Record, name: str, below: int) -> tuple[int, ...]:
+    """Return the list of whole numbers called `name`, each from 0 to below the limit."""
+    values = listing(_entry(record, name), name)
+    return tuple(whole({name: value}, name, below) for value in values)
+
+
 def text(record: Record, name: str) -> str:
     """Return the text called `name`."""
     value = _entry(record, name)

@@ -45,6 +45,11 @@ def moved_exactly(vertices: Floats, matrix: Floats) -> Floats:
     return np.stack(rows, axis=1)
 
 
+def inverse(matrix: Floats) -> Floats:
+    """Return the inverse of a ``(4, 4)`` matrix; raises ValueError (LinAlgError) if it has none."""
+    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+
+
 def rounded_as_kept(vertices: Floats) -> Floats:
     """Return the vertices as they come back from a file: float32 of six decimals."""
     return np.round(vertices, 6).astype(np.float32).astype(np.float64)
@@ -73,7 +78,7 @@ def _merged(build: Build, parts: Sequence[Part], group: Group, index: int) -> tu
     """Return the object of a group, body `index` of the file, and the item that places it."""
     first = build.parts[group.parts[0]]
     frame = first.matrix.astype(np.float32).astype(np.float64)  # what readers of the file work with
-    to_frame = _inverse(frame)
+    to_frame = inverse(frame)
     meshes, pieces = [first.part.mesh], [part_piece(build, group.parts[0], parts, first.part.mesh.digest)]
     for place in group.parts[1:]:
         mesh, piece = _further_part(build, parts, place, to_frame)
@@ -106,15 +111,11 @@ def _further_part(build: Build, parts: Sequence[Part], place: int, to_frame: Flo
     """
     placed = build.parts[place]
     into = to_frame @ placed.matrix
-    back = _inverse(into)
+    back = inverse(into)
     mesh = Mesh(moved_exactly(placed.part.mesh.vertices, into), placed.part.mesh.triangles)
     restored = Mesh(moved_exactly(rounded_as_kept(mesh.vertices), back), mesh.triangles)
     piece = part_piece(build, place, parts, restored.digest)
     return mesh, {**piece, "to_part": plain(back.reshape(-1))}
-
-
-def _inverse(matrix: Floats) -> Floats:
-    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def _joined(meshes: Sequence[Mesh]) -> Mesh:

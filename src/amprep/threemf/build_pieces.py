@@ -1,0 +1,173 @@
+"""The parts and supports in the objects of a build job, whether components or sections of a merged mesh."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.model.arrays import Floats
+from amprep.model.mesh import Mesh
+from amprep.threemf import record
+from amprep.threemf.reading_arrays import fetch_mesh
+from amprep.threemf.record_values import Record, from_json, listing, mapping, table, whole, word
+from amprep.threemf.writing_merged import inverse, moved_exactly
+
+if TYPE_CHECKING:
+    from lib3mf import Lib3MF
+
+NO_COLOUR = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A part or support as the file holds it.
+
+    Attributes
+    ----------
+    record
+        What amprep recorded about it.
+    mesh
+        In coordinates of its own, of which `matrix`, ``(4, 4)``, leads to build coordinates.
+    colours
+        ``(m, 3)`` int64, 0xRRGGBBAA at each corner or -1; None if no triangle has any.
+    surface
+        Whether the object's type says that it must not be filled.
+    """
+
+    record: Record
+    mesh: Mesh
+    colours: NDArray[np.int64] | None
+    matrix: Floats
+    surface: bool
+
+    @property
+    def role(self) -> str:
+        """``part`` or ``support``."""
+        return word(self.record, "role", ("part", "support"))
+
+
+class PieceReader:
+    """Reads the pieces of a model; objects that several items share are fetched once."""
+
+    def __init__(self, model: "Lib3MF.Model") -> None:
+        self._model = model
+        self._shapes: dict[int, _Shape] = {}
+
+    def pieces(self) -> list[Piece]:
+        """Return every part and support of every item.
+
+        Raises
+        ------
+        ValueError
+            If an item holds anything that is not recorded, or the other way round.
+        """
+        found: list[Piece] = []
+        items = self._model.GetBuildItems()
+        while items.MoveNext():
+            found += self._item(items.GetCurrent())
+        return found
+
+    def _item(self, item: "Lib3MF.BuildItem") -> Iterator[Piece]:
+        entries = entries_of(item.GetMetaDataGroup())
+        if record.PIECES not in entries:
+            raise ValueError("an item has no record of its pieces")
+        recorded = listing(from_json(entries[record.PIECES]), record.PIECES)
+        records = [mapping(each, "a piece") for each in recorded]
+        target, matrix = item.GetObjectResource(), _matrix(item.GetObjectTransform())
+        if target.IsComponentsObject():
+            return self._components(target, matrix, records)
+        return _sections(self._shape(target), matrix, records)
+
+    def _components(self, group: Any, matrix: Floats, records: Sequence[Record]) -> Iterator[Piece]:
+        """Yield a piece for each component, in their order."""
+        if group.GetComponentCount() != len(records):
+            raise ValueError(f"{len(records)} pieces are recorded for {group.GetComponentCount()} components")
+        for index, entry in enumerate(records):
+            component = group.GetComponent(index)
+            shape = self._shape(component.GetObjectResource())
+            place = matrix @ _matrix(component.GetTransform())
+            yield Piece(entry, shape.mesh, shape.colours, place, shape.surface)
+
+    def _shape(self, target: Any) -> "_Shape":
+        from lib3mf import Lib3MF
+
+        if not target.IsMeshObject():
+            raise ValueError("an item holds something else than meshes")
+        number = target.GetUniqueResourceID()
+        if number not in self._shapes:
+            raw = fetch_mesh(target)
+            colours = self._colours(raw.properties, look=target.GetObjectLevelProperty()[0])
+            surface = target.GetType() == Lib3MF.ObjectType.Support
+            self._shapes[number] = _Shape(
+                Mesh(raw.vertices, raw.triangles.astype(np.int32)), colours, surface
+            )
+        return self._shapes[number]
+
+    def _colours(self, properties: NDArray[np.int64], look: int) -> NDArray[np.int64] | None:
+        """Return the colours that triangles have of their own, not from resource `look` of the object."""
+        groups = np.where(properties[:, 0] == look, 0, properties[:, 0])
+        if not groups.any():
+            return None
+        colours = np.full((len(properties), 3), NO_COLOUR, dtype=np.int64)
+        for group in np.unique(groups[groups > 0]).tolist():
+            palette = self._model.GetColorGroupByID(group)
+            rows = groups == group
+            used, places = np.unique(properties[rows, 1:], return_inverse=True)
+            known = np.array([_packed(palette.GetColor(each)) for each in used.tolist()])
+            colours[rows] = known[places.reshape(-1, 3)]
+        return colours
+
+
+@dataclass(frozen=True, eq=False)
+class _Shape:
+    mesh: Mesh
+    colours: NDArray[np.int64] | None
+    surface: bool
+
+
+def _sections(shape: _Shape, matrix: Floats, records: Sequence[Record]) -> Iterator[Piece]:
+    """Yield the pieces of a merged mesh, which the record counts off one after the other."""
+    vertex = triangle = 0
+    for entry in records:
+        to_vertex, to_triangle = vertex + whole(entry, "vertices"), triangle + whole(entry, "triangles")
+        corners = shape.mesh.triangles[triangle:to_triangle]
+        if len(corners) and not vertex <= corners.min() <= corners.max() < to_vertex:
+            raise ValueError("a recorded piece has triangles outside its vertices")
+        mesh = Mesh(shape.mesh.vertices[vertex:to_vertex], corners - vertex)
+        colours = None if shape.colours is None else shape.colours[triangle:to_triangle]
+        if colours is not None and (colours == NO_COLOUR).all():
+            colours = None
+        yield _in_own_coordinates(Piece(entry, mesh, colours, matrix, surface=False))
+        vertex, triangle = to_vertex, to_triangle
+    if (vertex, triangle) != (len(shape.mesh.vertices), len(shape.mesh.triangles)):
+        raise ValueError("the recorded pieces are not the whole mesh")
+
+
+def _in_own_coordinates(piece: Piece) -> Piece:
+    """Return a piece that was written in the coordinates of another part in its own again."""
+    if "to_part" not in piece.record:
+        return piece
+    to_part = table(piece.record, "to_part", 16).reshape(4, 4)
+    mesh = Mesh(moved_exactly(piece.mesh.vertices, to_part), piece.mesh.triangles)
+    return replace(piece, mesh=mesh, matrix=piece.matrix @ inverse(to_part))
+
+
+def entries_of(group: "Lib3MF.MetaDataGroup") -> dict[str, str]:
+    """Return amprep's own metadata of a group, by name."""
+    entries = (group.GetMetaData(index) for index in range(group.GetMetaDataCount()))
+    return {each.GetName(): each.GetValue() for each in entries if each.GetNameSpace() == record.NAMESPACE}
+
+
+def _matrix(transform: "Lib3MF.Transform") -> Floats:
+    """Return a placement as a ``(4, 4)`` matrix for column vectors."""
+    matrix = np.eye(4)
+    matrix[:3] = np.array(transform.Fields, dtype=np.float64).T
+    if not np.isfinite(matrix).all():
+        raise ValueError("an item stands at no finite place")
+    return matrix
+
+
+def _packed(colour: "Lib3MF.Color") -> int:
+    return int(colour.Red) << 24 | int(colour.Green) << 16 | int(colour.Blue) << 8 | int(colour.Alpha)

@@ -1,0 +1,120 @@
+"""Reading a build job back: geometry and placements from its objects, the rules from amprep's record."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from amprep.errors import InputError
+from amprep.model.build import Build, PlacedPart, SupportBody
+from amprep.model.part import Part
+from amprep.threemf import record
+from amprep.threemf.build_pieces import Piece, PieceReader, entries_of
+from amprep.threemf.package import open_package
+from amprep.threemf.reading_arrays import load_model
+from amprep.threemf.record_values import from_json, listing, text, whole, wholes
+
+
+def read_build(path: Path) -> Build:
+    """Read a build that amprep wrote, in any dialect, from the file alone.
+
+    Only what cannot be seen in the file's objects is taken from the record. `PlacedPart.recorded_digest` is
+    what the record states; whether it is that of the geometry is for `amprep.checks` to judge.
+
+    Raises
+    ------
+    InputError
+        If the file is hostile or broken, was not written by amprep or in another format version, or if its
+        record is damaged or does not fit its objects.
+    """
+    package = open_package(path)
+    import lib3mf
+
+    try:
+        model = load_model(package.data).model
+        entries = entries_of(model.GetMetaDataGroup())
+        _check_version(entries.get(record.FORMAT), path)
+        return _build(model, entries)
+    except lib3mf.ELib3MFException as error:
+        raise InputError(f"{path}: lib3mf refuses the file ({error}); write the build again") from error
+    except (ValueError, TypeError, OverflowError) as error:
+        raise InputError(
+            f"{path}: what amprep recorded in the file is damaged ({error}); write the build again"
+        ) from error
+
+
+def _check_version(version: str | None, path: Path) -> None:
+    if version is None:
+        raise InputError(
+            f"{path}: expected a build that amprep wrote, found a 3MF without its record; "
+            "give a file that amprep run made"
+        )
+    if version != record.FORMAT_VERSION:
+        raise InputError(
+            f"{path}: expected a build in format version {record.FORMAT_VERSION}, found {version[:20]!r}; "
+            "use the amprep that wrote it"
+        )
+
+
+def _build(model: Any, entries: dict[str, str]) -> Build:
+    space = record.volume_of(_recorded(entries, record.VOLUME))
+    settings = record.settings_of(_recorded(entries, record.SETTINGS), space)
+    known = listing(_recorded(entries, record.PARTS), record.PARTS)
+    pieces = PieceReader(model).pieces()
+    parts = _placed_parts([piece for piece in pieces if piece.role == "part"], known)
+    supports = _supports([piece for piece in pieces if piece.role == "support"], len(parts))
+    regions = listing(_recorded(entries, record.UNSUPPORTED), record.UNSUPPORTED)
+    return Build(
+        settings, parts, supports, tuple(record.unsupported_of(each, len(parts)) for each in regions)
+    )
+
+
+def _recorded(entries: dict[str, str], name: str) -> Any:
+    if name not in entries:
+        raise ValueError(f"{name} is missing")
+    return from_json(entries[name])
+
+
+def _placed_parts(pieces: Sequence[Piece], known: Sequence[Any]) -> tuple[PlacedPart, ...]:
+    """Return the parts in their order in the build; copies with the same geometry share one `Part`."""
+    shared: dict[tuple[int, str], Part] = {}
+    placed = []
+    for piece in _in_order(pieces):
+        number = whole(piece.record, "part", below=len(known))
+        key = (number, piece.mesh.digest)
+        if key not in shared:
+            shared[key] = record.part_of(known[number], piece.mesh, piece.colours)
+        placed.append(_placed_part(piece, shared[key]))
+    if len({each.label for each in placed}) < len(placed):
+        raise ValueError("two parts have the same label")
+    return tuple(placed)
+
+
+def _placed_part(piece: Piece, part: Part) -> PlacedPart:
+    own = piece.record.get("orientations")
+    return PlacedPart(
+        text(piece.record, "label"),
+        part,
+        piece.matrix,
+        part.orientations if own is None else record.orientations_of(own),
+        text(piece.record, "sha256"),
+    )
+
+
+def _supports(pieces: Sequence[Piece], parts: int) -> tuple[SupportBody, ...]:
+    return tuple(
+        SupportBody(
+            text(piece.record, "name"),
+            piece.mesh.moved(piece.matrix),
+            wholes(piece.record, "holds", below=parts),
+            piece.surface,
+        )
+        for piece in _in_order(pieces)
+    )
+
+
+def _in_order(pieces: Sequence[Piece]) -> list[Piece]:
+    """Return the pieces by their recorded index; every index must be there once."""
+    ordered = sorted(pieces, key=lambda piece: whole(piece.record, "index"))
+    if [piece.record["index"] for piece in ordered] != list(range(len(ordered))):
+        raise ValueError("the recorded pieces are not numbered one after the other")
+    return ordered
