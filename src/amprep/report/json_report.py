@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from amprep.report.record import BuildRecord, RunRecord, UnconnectedRecord
 
 FORMAT = 1
 """Version of the layout; grows when a key changes its meaning or goes."""
+NUMBERS = re.compile(r"\[\n[-+.\deE,\s]+\n\s*\]")
+"""A list of numbers over several lines; strings hold no raw line ends, so none is ever inside one."""
 
 
 def to_json(record: RunRecord) -> dict[str, Any]:
@@ -37,13 +40,14 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "notes": list(record.notes),
         "settings": dict(record.settings),
     }
-    plain: dict[str, Any] = _plain(report)
-    return plain
+    result: dict[str, Any] = plain(report)
+    return result
 
 
 def json_text(record: RunRecord) -> str:
     """Return the report as JSON text, matrices and points on one line each."""
-    return json.dumps(to_json(record), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(to_json(record), indent=2, ensure_ascii=False, allow_nan=False)
+    return NUMBERS.sub(lambda found: " ".join(found[0].split()), text) + "\n"
 
 
 def write_json(record: RunRecord, path: Path) -> None:
@@ -129,16 +133,16 @@ def _body(entry: BuildRecord, body: SupportBody) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return numpy values, mappings and tuples as plain ones; a number that is not finite becomes None."""
     if isinstance(value, dict):
-        return {str(key): _plain(inner) for key, inner in value.items()}
+        return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(inner) for inner in value]
+        return [plain(inner) for inner in value]
     if isinstance(value, (set, frozenset)):
         return sorted(map(str, value))
     if isinstance(value, (np.ndarray, np.generic)):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, float):
         return value + 0.0 if math.isfinite(value) else None
     return value if value is None or isinstance(value, (bool, int, str)) else str(value)

@@ -1,0 +1,106 @@
+// One build as three.js objects: parts, supports, marks over what is unsupported.
+import * as THREE from "three";
+import { decodeMesh } from "./decode.js";
+
+const CREASE_DEG = 28;
+const MARK = 0xe5202b;
+
+export class Geometries {
+  constructor(bytes, meshes) {
+    this.bytes = bytes;
+    this.meshes = meshes;
+    this.made = new Map();
+  }
+
+  get(index) {
+    if (!this.made.has(index)) {
+      const { positions, indices } = decodeMesh(this.bytes, this.meshes[index]);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+      if (indices.length) geometry.setIndex(new THREE.BufferAttribute(indices, 1));
+      geometry.computeBoundingBox();
+      geometry.computeBoundingSphere();
+      this.made.set(index, geometry);
+    }
+    return this.made.get(index);
+  }
+}
+
+// Faces are flat shaded; the inside, seen through a section, is darker so that a cut reads as a cut.
+function material(colour, extra = {}) {
+  const made = new THREE.MeshStandardMaterial({
+    color: colour, flatShading: true, roughness: 0.62, metalness: 0.08, side: THREE.DoubleSide,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+  });
+  if (!extra.surface) {
+    made.onBeforeCompile = (shader) => {
+      shader.fragmentShader = shader.fragmentShader.replace(
+        "#include <color_fragment>",
+        "#include <color_fragment>\nif (!gl_FrontFacing) diffuseColor.rgb *= 0.42;",
+      );
+    };
+  }
+  return made;
+}
+
+export function showBuild(build, geometries) {
+  const shown = { parts: [], supports: [], marks: [], edges: [], group: new THREE.Group() };
+  build.parts.forEach((part, index) => {
+    const mesh = new THREE.Mesh(geometries.get(part.mesh), material(part.colour));
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.set(...part.matrix);
+    mesh.userData = { kind: "part", index };
+    shown.parts.push(mesh);
+  });
+  build.supports.forEach((body, index) => {
+    const mesh = new THREE.Mesh(geometries.get(body.mesh), material(build.supportColour, body));
+    mesh.userData = { kind: "support", index };
+    shown.supports.push(mesh);
+  });
+  build.unsupported.forEach((region, index) => shown.marks.push(marks(region, index, geometries)));
+  shown.group.add(...shown.parts, ...shown.supports, ...shown.marks.filter(Boolean));
+  shown.group.updateMatrixWorld(true);
+  return shown;
+}
+
+// Balls over the points of an unsupported region; they shine through parts, faintly.
+function marks(region, index, geometries) {
+  if (region.points < 0) return null;
+  const positions = geometries.get(region.points).getAttribute("position");
+  const group = new THREE.Group();
+  const ball = new THREE.IcosahedronGeometry(1, 1);
+  const pose = new THREE.Matrix4();
+  for (const [through, opacity] of [[true, 0.35], [false, 1]]) {
+    const look = new THREE.MeshBasicMaterial({ color: MARK, transparent: through, opacity, depthTest: !through });
+    const mesh = new THREE.InstancedMesh(ball, look, positions.count);
+    for (let i = 0; i < positions.count; i++) {
+      pose.makeScale(region.radius, region.radius, region.radius);
+      pose.setPosition(positions.getX(i), positions.getY(i), positions.getZ(i));
+      mesh.setMatrixAt(i, pose);
+    }
+    mesh.renderOrder = through ? 2 : 3;
+    mesh.userData = { kind: "unsupported", index };
+    group.add(mesh);
+  }
+  return group;
+}
+
+// Outlines are made one mesh at a time between frames: the view is usable before they are there.
+export function addEdges(shown, colour, done) {
+  const made = new Map();
+  const look = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.45 });
+  const queue = [...shown.parts];
+  const next = () => {
+    const mesh = queue.shift();
+    if (!mesh || shown.gone) return;
+    if (!made.has(mesh.geometry)) made.set(mesh.geometry, new THREE.EdgesGeometry(mesh.geometry, CREASE_DEG));
+    const edges = new THREE.LineSegments(made.get(mesh.geometry), look);
+    edges.raycast = () => {};
+    mesh.add(edges);
+    edges.updateMatrixWorld(true);
+    shown.edges.push(edges);
+    done(edges);
+    setTimeout(next);
+  };
+  setTimeout(next);
+}

@@ -1,0 +1,242 @@
+// Starts the 3D view of a report: reads the page's data blocks, shows a build, connects the controls.
+import * as THREE from "three";
+import { inflate } from "./decode.js";
+import { addEdges, Geometries, showBuild } from "./build.js";
+import { Stage, surroundings } from "./stage.js";
+
+const VIEWS = {
+  oblique: new THREE.Vector3(0.52, -0.95, 0.72),
+  top: new THREE.Vector3(0, -0.0001, 1),
+  front: new THREE.Vector3(0, -1, 0.0001),
+  right: new THREE.Vector3(1, 0, 0.0001),
+  below: new THREE.Vector3(0.4, -0.7, -0.62),
+};
+const dark = window.matchMedia("(prefers-color-scheme: dark)");
+const element = (id) => document.getElementById(id);
+
+function make(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value !== false) made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+function swatch(colour) {
+  const space = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(space, "svg");
+  svg.setAttribute("class", "swatch");
+  svg.setAttribute("viewBox", "0 0 10 10");
+  const dot = document.createElementNS(space, "circle");
+  for (const [name, value] of Object.entries({ cx: 5, cy: 5, r: 5, fill: colour })) dot.setAttribute(name, value);
+  svg.append(dot);
+  return svg;
+}
+
+function themeColours() {
+  const style = getComputedStyle(document.documentElement);
+  const names = { fine: "--grid", coarse: "--grid-strong", frame: "--frame", plate: "--plate", zone: "--bad" };
+  return Object.fromEntries(Object.entries(names).map(([key, name]) => [key, style.getPropertyValue(name).trim()]));
+}
+
+class Viewer {
+  constructor(model, bytes) {
+    this.model = model;
+    this.geometries = new Geometries(bytes, model.meshes);
+    this.stage = new Stage(element("canvas"));
+    this.layers = { parts: true, supports: true, marks: true, edges: true, frame: true, glass: false };
+    this.hidden = new Set();
+    this.#tabs();
+    this.#toolbar();
+    this.#picking();
+    dark.addEventListener("change", () => this.#surround());
+    this.stage.resize();
+    this.open(0);
+  }
+
+  open(number) {
+    this.build = this.model.builds[number];
+    this.hidden.clear();
+    if (this.shown) {
+      this.shown.gone = true;
+      this.stage.scene.remove(this.shown.group);
+    }
+    this.shown = showBuild(this.build, this.geometries);
+    this.stage.scene.add(this.shown.group);
+    this.#surround();
+    this.#lists();
+    this.select(null);
+    const slider = element("section");
+    slider.max = slider.value = Math.ceil(10 * this.build.height) / 10 || 1;
+    this.#cut();
+    element("tabs").querySelectorAll("button").forEach((tab, index) => {
+      tab.setAttribute("aria-selected", String(index === number));
+    });
+    this.#apply();
+    this.view("oblique");
+    addEdges(this.shown, 0x10151c, (edges) => {
+      edges.visible = this.layers.edges;
+      this.stage.draw();
+    });
+  }
+
+  view(name) {
+    const [x, y] = this.build.space.size;
+    const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, 10)));
+    const ball = box.getBoundingSphere(new THREE.Sphere());
+    this.stage.look(ball.center, 0.94 * ball.radius, VIEWS[name].clone());
+  }
+
+  select(found) {
+    for (const mesh of [...this.shown.parts, ...this.shown.supports]) mesh.material.emissive.setHex(0);
+    document.querySelectorAll("#lists [aria-current]").forEach((row) => row.removeAttribute("aria-current"));
+    const card = element("card");
+    card.replaceChildren();
+    card.hidden = !found;
+    if (found) this.#describe(found, card);
+    this.stage.draw();
+  }
+
+  #describe({ kind, index }, card) {
+    const row = document.querySelector(`#lists [data-key="${kind}-${index}"]`);
+    if (row) {
+      row.setAttribute("aria-current", "true");
+      row.scrollIntoView({ block: "nearest" });
+    }
+    if (kind !== "unsupported") this.shown[kind === "part" ? "parts" : "supports"][index].material.emissive.setHex(0x2c3a52);
+    const entry = { part: this.build.parts, support: this.build.supports, unsupported: this.build.unsupported }[kind][index];
+    card.append(make("strong", {}, entry.name), ...entry.facts.map((line) => make("span", {}, line)));
+  }
+
+  focus(object) {
+    const box = new THREE.Box3().setFromObject(object);
+    const ball = box.getBoundingSphere(new THREE.Sphere());
+    this.stage.look(ball.center, Math.max(1.5 * ball.radius, 6));
+  }
+
+  #surround() {
+    if (this.around) this.stage.scene.remove(this.around);
+    this.around = surroundings(this.build.space, themeColours());
+    this.stage.scene.add(this.around);
+    this.#apply();
+  }
+
+  #apply() {
+    const { shown, layers } = this;
+    shown.parts.forEach((mesh, index) => {
+      mesh.visible = layers.parts && !this.hidden.has(index);
+      mesh.material.transparent = layers.glass;
+      mesh.material.opacity = layers.glass ? 0.28 : 1;
+      mesh.material.depthWrite = !layers.glass;
+      mesh.material.needsUpdate = true;
+    });
+    for (const mesh of shown.supports) mesh.visible = layers.supports;
+    for (const mesh of shown.marks) if (mesh) mesh.visible = layers.marks;
+    for (const edges of shown.edges) edges.visible = layers.edges;
+    this.around.getObjectByName("frame").visible = layers.frame;
+    this.stage.draw();
+  }
+
+  #tabs() {
+    const builds = this.model.builds;
+    const tabs = builds.map((build, number) => make(
+      "button", { type: "button", role: "tab", title: build.id, onclick: () => this.open(number) }, `Build ${number + 1}`,
+    ));
+    element("tabs").replaceChildren(...tabs);
+    element("tabs").hidden = builds.length < 2;
+  }
+
+  #toolbar() {
+    const names = { parts: "Parts", supports: "Supports", marks: "Unsupported", edges: "Outlines", frame: "Build volume", glass: "See-through" };
+    const boxes = Object.entries(names).map(([key, words]) => {
+      const box = make("input", { type: "checkbox", id: `layer-${key}` });
+      box.checked = this.layers[key];
+      box.addEventListener("change", () => {
+        this.layers[key] = box.checked;
+        this.#apply();
+      });
+      return make("label", {}, box, words);
+    });
+    element("layers").replaceChildren(...boxes);
+    const views = Object.keys(VIEWS).map((name) => make("button", { type: "button", onclick: () => this.view(name) }, name));
+    element("views").replaceChildren(...views);
+    element("section").addEventListener("input", () => this.#cut());
+  }
+
+  #cut() {
+    const slider = element("section");
+    const whole = Number(slider.value) >= Number(slider.max);
+    element("section-value").textContent = whole ? "off" : `z ≤ ${Number(slider.value).toFixed(1)} mm`;
+    this.stage.setClip(whole ? Infinity : Number(slider.value));
+  }
+
+  #lists() {
+    const rows = this.build.parts.map((part, index) => {
+      const box = make("input", { type: "checkbox", "aria-label": `show ${part.name}` });
+      box.checked = true;
+      box.addEventListener("change", () => {
+        this.hidden[box.checked ? "delete" : "add"](index);
+        this.#apply();
+      });
+      return make("li", { "data-key": `part-${index}` }, box, this.#rowButton("part", index, part.name, swatch(part.colour)));
+    });
+    const missing = this.build.unsupported.map((region, index) => make(
+      "li", { "data-key": `unsupported-${index}` },
+      this.#rowButton("unsupported", index, region.name, swatch("#e5202b"), make("small", {}, region.reason)),
+    ));
+    const heads = [make("h3", {}, `Parts (${rows.length})`), make("ul", {}, ...rows)];
+    if (missing.length) heads.unshift(make("h3", {}, `Unsupported (${missing.length})`), make("ul", {}, ...missing));
+    element("lists").replaceChildren(...heads);
+  }
+
+  #rowButton(kind, index, words, mark, ...more) {
+    const go = () => {
+      const object = kind === "part" ? this.shown.parts[index] : this.shown.marks[index];
+      this.select({ kind, index });
+      if (object) this.focus(object);
+    };
+    return make("button", { type: "button", onclick: go }, mark, make("span", {}, words), ...more);
+  }
+
+  #picking() {
+    const canvas = this.stage.canvas;
+    const caster = new THREE.Raycaster();
+    let down = null;
+    canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+      const frame = canvas.getBoundingClientRect();
+      const x = (2 * (event.clientX - frame.left)) / frame.width - 1;
+      const y = 1 - (2 * (event.clientY - frame.top)) / frame.height;
+      caster.setFromCamera(new THREE.Vector2(x, y), this.stage.camera);
+      this.select(this.#hit(caster));
+    });
+  }
+
+  #hit(caster) {
+    const visible = [...this.shown.marks.filter(Boolean).flatMap((group) => (group.visible ? group.children : [])),
+      ...this.shown.parts, ...this.shown.supports].filter((mesh) => mesh.visible);
+    const cut = this.stage.renderer.clippingPlanes;
+    const hits = caster.intersectObjects(visible, false)
+      .filter(({ point }) => cut.every((plane) => plane.distanceToPoint(point) >= 0));
+    return hits.length ? hits[0].object.userData : null;
+  }
+}
+
+async function start() {
+  const model = JSON.parse(element("model").textContent);
+  if (!model.builds.length) {
+    element("viewer").hidden = true;
+    return;
+  }
+  if (typeof DecompressionStream === "undefined") throw new Error("this browser cannot inflate the geometry; use a newer one");
+  const bytes = await inflate(element("geometry").textContent);
+  window.amprepViewer = new Viewer(model, bytes);
+  element("wait").hidden = true;
+}
+
+start().catch((error) => {
+  element("wait").textContent = `The 3D view did not start: ${error.message}. The tables below are complete.`;
+});
