@@ -140,7 +140,7 @@ class Gatherer:
             raise InputError(f"{self.where}: PrusaSlicer's volume {volume.name!r} names triangles not there")
         if volume.kind == NEGATIVE:
             raise InputError(
-                f"{self.where}: {volume.name!r} is a negative volume, which amprep cannot subtract; do so before"
+                f"{self.where}: {volume.name!r} is a negative volume, which amprep cannot subtract"
             )
         own = triangles[volume.first : volume.last + 1]
         printed[volume.first : volume.last + 1] = False

@@ -1,0 +1,39 @@
+"""STEP, read by cascadio (OpenCASCADE), if it is installed."""
+
+import math
+from pathlib import Path
+
+from amprep.errors import InputError
+from amprep.model.part import Part
+from amprep.plugins.meshes.files import read_gltf
+from amprep.plugins.meshes.limits import read_bounded
+from amprep.plugins.meshes.params import StepParams
+
+
+def read_step_file(path: Path, params: StepParams) -> list[Part]:
+    """Return a part for each solid of a STEP file, triangulated.
+
+    Raises
+    ------
+    InputError
+        If cascadio is not installed, or OpenCASCADE cannot read the file.
+    """
+    try:
+        import cascadio
+    except ImportError as error:
+        raise InputError(f'{path}: reading STEP needs an extra; run: pip install "amprep[step]"') from error
+    content = read_bounded(path)
+    if b"ISO-10303-21" not in content[:1024]:
+        raise InputError(f"{path}: not a STEP file: expected it to begin with 'ISO-10303-21'")
+    if b"END-ISO-10303-21" not in content[-1024:]:
+        raise InputError(f"{path}: the file has no end ('END-ISO-10303-21'); it was cut off")
+    glb = cascadio.load(
+        content,
+        tol_linear=params.deviation_mm,
+        tol_angular=math.radians(params.angle_deg),
+        use_parallel=False,  # the same file gives the same triangles
+    )
+    if not glb:
+        raise InputError(f"{path}: OpenCASCADE finds no shape in this STEP file")
+    note = f"triangulated by OpenCASCADE to {params.deviation_mm:g} mm and {params.angle_deg:g} degrees"
+    return read_gltf(glb, ".glb", path, (note,))
