@@ -119,11 +119,11 @@ def outline(ids, depth, row, column, slope_x, slope_y, owner, normals, jump):
 
 @njit(cache=True)
 def plate_tone(x, y, size_x, size_y, is_round, pixel):
-    """Return the tone of the plate at x, y in mm: its edge, lines each 10 and 50 mm; negative outside the plate."""
+    """Return the tone of the plate at x, y mm: edge, lines each 10 and 50 mm; negative outside."""
     if is_round:
         off = size_x / 2 - np.sqrt((x - size_x / 2) ** 2 + (y - size_y / 2) ** 2)
     else:
-        off = min(min(x, size_x - x), min(y, size_y - y))
+        off = min(x, size_x - x, y, size_y - y)
     if off < 0.0:
         return -1.0
     if off < 3.0 * pixel:
@@ -156,7 +156,7 @@ def shade(
         ``(m, 4)`` float32 per triangle: share of direct light, share of ambient light, and how the depth
         grows in mm for a pixel to the right and down.
     normals, kinds, owner, colours
-        Per triangle: ``(m, 3)`` float32 unit normal, uint8 kind, int32 body, ``(m, 3)`` float32 linear colour.
+        Per triangle: ``(m, 3)`` float32 unit normal, uint8 kind, int32 body, ``(m, 3)`` float32 linear.
     mark_colours
         ``(k, 3)`` float32 linear colour per triangle of the marks, shaded already.
     offsets

@@ -16,12 +16,14 @@ from amprep.report.view_model import view_model
 VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">
 <div id="stage">
-<canvas id="canvas" tabindex="0" aria-label="Drag to turn, scroll to zoom, right drag to move, click to name"></canvas>
+<canvas id="canvas" tabindex="0" title="Drag turns, scroll zooms, right drag moves, click names"></canvas>
 <div id="wait">Unpacking the geometry ...</div>
-<div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div><div class="group" id="layers"></div></div>
+<div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
+<div class="group" id="layers"></div></div>
 <div id="card" hidden></div>
 <div class="bar" id="bottom"><div class="group" id="views"></div>
-<div class="group"><label>Section <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
+<div class="group">
+<label>Section <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
 <span id="section-value">off</span></div></div>
 </div>
 <div id="lists"></div>
@@ -36,7 +38,7 @@ def write_html(record: RunRecord, path: Path) -> None:
     bundled one and no network at all.
     """
     with replacing(path) as temporary:
-        temporary.write_text(html_text(record), encoding="utf-8")
+        temporary.write_bytes(html_text(record).encode("utf-8", "replace"))
 
 
 def html_text(record: RunRecord) -> str:
@@ -51,7 +53,8 @@ def html_text(record: RunRecord) -> str:
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(record.job)} - amprep report</title>\n<style>{style}</style>\n</head>\n<body>\n<main>\n"
+        f"<title>{escape(record.job)} - amprep report</title>\n<style>{style}</style>\n"
+        "</head>\n<body>\n<main>\n"
         f"{header(record)}{VIEWER}{body_sections(record)}</main>\n"
         f'<script type="application/json" id="model">{_json(model)}</script>\n'
         f'<script type="text/plain" id="geometry">{geometry}</script>\n'

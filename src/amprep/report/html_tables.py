@@ -4,6 +4,7 @@ import json
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
+from textwrap import dedent
 
 from amprep.model import PlacedPart
 from amprep.report.colours import part_colours
@@ -34,7 +35,8 @@ def header(record: RunRecord) -> str:
         f"<div{' class=bad' if bad else ''}><dt>{name}</dt><dd>{value}</dd></div>"
         for name, value, bad in _figures(record)
     )
-    return f'<header><h1>{escape(record.job)}{chip}</h1>\n<p class="lead">{words}</p></header>\n<dl class="figures">{figures}</dl>\n'
+    title = f'<header><h1>{escape(record.job)}{chip}</h1>\n<p class="lead">{words}</p></header>\n'
+    return f'{title}<dl class="figures">{figures}</dl>\n'
 
 
 def body_sections(record: RunRecord) -> str:
@@ -58,7 +60,7 @@ def body_sections(record: RunRecord) -> str:
 def table(headings: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     """Return a table; headings that end with ``|`` stand over numbers."""
     head = "".join(
-        f'<th scope="col"{" class=number" if heading.endswith("|") else ""}>{escape(heading.rstrip("|"))}</th>'
+        f"<th{' class=number' if heading.endswith('|') else ''}>{escape(heading.rstrip('|'))}</th>"
         for heading in headings
     )
     body = "".join("<tr>" + "".join(map(_cell, row)) + "</tr>\n" for row in rows)
@@ -128,12 +130,12 @@ def _parts(number: int, entry: BuildRecord) -> str:
     rows = (_part_row(placed, colour) for placed, colour in zip(entry.build.parts, colours, strict=True))
     headings = ("Part", "Number", "Size mm", "Volume cm³|", "Least corner mm", "Transform (row-major, mm)")
     name = f"Build {number}: {len(entry.build.parts)} parts"
-    return f"<details{' open' if number == 1 else ''}><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
 
 
 def _part_row(placed: PlacedPart, colour: str) -> tuple[Cell, ...]:
     low, high = placed.mesh.bounds
-    matrix = "\n".join(" ".join(f"{value:10.4f}" for value in row) for row in placed.matrix.tolist())
+    matrix = dedent("\n".join(" ".join(f"{value:9.4f}" for value in row) for row in placed.matrix.tolist()))
     dot = f'<svg class="swatch" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5" fill="{colour}"/></svg>'
     return (
         ("name", dot + escape(placed.label)),
@@ -204,15 +206,13 @@ def _stages(record: RunRecord) -> str:
 
 def _share(seconds: float, total: float) -> tuple[str, str]:
     width = 100 * seconds / total if total > 0 else 0.0
-    return (
-        "bar-cell",
-        '<svg class="share" viewBox="0 0 100 6" preserveAspectRatio="none"><rect width="100" height="6"/>'
-        f'<rect width="{width:.2f}" height="6"/></svg>',
-    )
+    bars = f'<rect width="100" height="6"/><rect width="{width:.2f}" height="6"/>'
+    return "bar", f'<svg class="share" viewBox="0 0 100 6" preserveAspectRatio="none">{bars}</svg>'
 
 
 def _settings(record: RunRecord) -> str:
     if not record.settings:
         return ""
     text = json.dumps(plain(dict(record.settings)), indent=2, ensure_ascii=False)
-    return f'<details><summary>As the run used them</summary><div class="scroll"><pre>{escape(text)}</pre></div></details>'
+    inner = f'<div class="scroll"><pre>{escape(text)}</pre></div>'
+    return f"<details><summary>As the run used them</summary>{inner}</details>"

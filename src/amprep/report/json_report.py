@@ -53,7 +53,7 @@ def json_text(record: RunRecord) -> str:
 def write_json(record: RunRecord, path: Path) -> None:
     """Write the report; the file is whole or not there."""
     with replacing(path) as temporary:
-        temporary.write_text(json_text(record), encoding="utf-8")
+        temporary.write_bytes(json_text(record).encode("utf-8", "backslashreplace"))
 
 
 def _build(entry: BuildRecord) -> dict[str, Any]:

@@ -38,7 +38,7 @@ def _subtitle(build: Build) -> str:
 
 
 def _ruler(draw: "ImageDraw", plate: Floats, camera: Camera, unit: float) -> None:
-    """Draw ticks each 10 mm and numbers each 50 mm outside the two edges of the plate nearest to the viewer."""
+    """Draw ticks each 10 mm and numbers each 50 mm along the two edges nearest to the viewer."""
     from PIL import ImageFont
 
     font = ImageFont.load_default(17 * unit)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.model import Mesh
-from amprep.model.arrays import Floats
+from amprep.model.arrays import Floats, Ints
 
 
 def balls(centres: Floats, radii: Floats) -> Mesh:
@@ -14,7 +14,7 @@ def balls(centres: Floats, radii: Floats) -> Mesh:
     return Mesh(spread.reshape(-1, 3), (triangles[None] + shifts[:, None, None]).reshape(-1, 3))
 
 
-def _octahedron_twice() -> tuple[Floats, np.ndarray]:
+def _octahedron_twice() -> tuple[Floats, Ints]:
     """Return vertices and triangles of an octahedron with each face split in four, on the unit sphere."""
     corners = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float64)
     faces = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (1, 0, 5), (2, 1, 5), (3, 2, 5), (0, 3, 5)]
@@ -22,5 +22,5 @@ def _octahedron_twice() -> tuple[Floats, np.ndarray]:
     for a, b, c in faces:
         middles = [corners[a] + corners[b], corners[b] + corners[c], corners[c] + corners[a]]
         points += [corners[a], corners[b], corners[c], *(middle / np.sqrt(2.0) for middle in middles)]
-    split = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+    split = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]], np.int32)
     return np.array(points), np.concatenate([split + 6 * k for k in range(len(faces))])

@@ -11,7 +11,7 @@ def part_volume(placed: PlacedPart) -> float:
 
 
 def build_height(build: Build) -> float:
-    """Return the height of the highest point of parts and supports above the plate, mm; 0 for an empty build."""
+    """Return the height of the highest point of parts and supports, mm; 0 for an empty build."""
     meshes = [placed.mesh for placed in build.parts] + [body.mesh for body in build.supports]
     return max((float(mesh.bounds[1][2]) for mesh in meshes if len(mesh.vertices)), default=0.0)
 

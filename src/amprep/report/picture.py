@@ -21,7 +21,7 @@ VIEW = view_axes(-62.0, 34.0)
 
 
 def write_picture(build: Build, path: Path, *, size: tuple[int, int] = (1600, 1200)) -> None:
-    """Write the build as a PNG: plate with a grid in mm, parts by colour, supports, unsupported regions in red.
+    """Write the build as a PNG: plate with a grid in mm, parts by colour, supports, the unsupported in red.
 
     Parameters
     ----------

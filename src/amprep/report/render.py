@@ -89,8 +89,9 @@ def _shadow(scene: Scene) -> tuple[Camera, NDArray[np.float32]]:
 
 def _chained(sun: Camera, camera: Camera) -> Floats:
     """Return the ``(3, 4)`` map from the camera's column, row, depth to the sun's."""
-    back = np.vstack([camera.inverse, [0.0, 0.0, 0.0, 1.0]])
-    return sun.matrix @ back
+    back: Floats = np.vstack([camera.inverse, [0.0, 0.0, 0.0, 1.0]])
+    chained: Floats = sun.matrix @ back
+    return chained
 
 
 def _facets(normals: Floats, camera: Camera) -> NDArray[np.float32]:
@@ -118,7 +119,8 @@ def _plate(space: BuildVolume | None, camera: Camera, reach: float, bias: float)
 
 def _background(height: int) -> NDArray[np.float32]:
     share = np.linspace(0.0, 1.0, height)[:, None]
-    return ((1 - share) * np.array(linear(SKY)) + share * np.array(linear(FLOOR))).astype(np.float32)
+    rows: Floats = (1 - share) * np.array(linear(SKY)) + share * np.array(linear(FLOOR))
+    return rows.astype(np.float32)
 
 
 def _encoded(image: NDArray[np.float32]) -> NDArray[np.uint8]:

@@ -16,7 +16,7 @@ PLATE_COLOUR = "#ccd2da"
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Triangles ``(m, 3)`` over vertices ``(n, 3)`` mm, and per triangle: kind, body, linear colour ``(m, 3)``."""
+    """Triangles ``(m, 3)`` over vertices ``(n, 3)`` mm; kind, body and linear colour ``(m, 3)`` of each."""
 
     vertices: Floats
     triangles: Ints
@@ -94,4 +94,5 @@ def unit_normals(vertices: Floats, triangles: Ints) -> Floats:
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    unit: Floats = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    return unit

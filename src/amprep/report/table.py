@@ -18,28 +18,31 @@ def summary(record: RunRecord) -> "RenderableType":
     from rich.text import Text
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
-    blocks += [Text(f"! {line}", style="yellow") for line in _listed(_attention(record))]
+    blocks += [Text(f"! {_shown(line)}", style="yellow") for line in _listed(_attention(record))]
     blocks += [Text(_stages(record.stages), style="dim")]
-    blocks += [Text(f"wrote {name}", style="dim") for name in _listed(_files(record))]
+    blocks += [Text(f"wrote {_shown(name)}", style="dim") for name in _listed(_files(record))]
     return Group(*blocks)
 
 
 def _builds(record: RunRecord) -> "Table":
     from rich import box
     from rich.table import Table
+    from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, title=f"{record.job} on {record.printer}", title_justify="left")
+    table = Table(
+        box=box.SIMPLE_HEAD, title=Text(_shown(f"{record.job} on {record.printer}")), title_justify="left"
+    )
     table.add_column("build")
-    for heading in ("parts", "density", "height mm", "supports cm³", "unsupported mm²", "verified"):
-        table.add_column(heading, justify="right")
+    for heading in ("parts", "density", "height", "supports", "unsupported", "verified"):
+        table.add_column(heading, justify="right", no_wrap=True)
     for number, entry in enumerate(record.builds, start=1):
         table.add_row(
             str(number),
             str(len(entry.build.parts)),
             f"{100 * entry.density:.1f} %",
-            f"{entry.height_mm:.1f}",
-            f"{entry.support_volume_mm3 / 1000:.2f}",
-            f"{entry.unsupported_mm2:.1f}",
+            f"{entry.height_mm:.1f} mm",
+            f"{entry.support_volume_mm3 / 1000:.2f} cm³",
+            f"{entry.unsupported_mm2:.1f} mm²",
             _verified(entry),
         )
     return table
@@ -48,16 +51,16 @@ def _builds(record: RunRecord) -> "Table":
 def _verified(entry: BuildRecord) -> str:
     if entry.verification is None:
         return "-"
-    return f"{len(entry.verification)} violations" if entry.verification else "yes"
+    return f"no ({len(entry.verification)})" if entry.verification else "yes"
 
 
 def _totals(record: RunRecord) -> str:
     placed = sum(len(entry.build.parts) for entry in record.builds)
     bound = "" if record.bound is None else f", bound {record.bound:g}"
-    return (
-        f"{_count(placed, 'part')} in {_count(len(record.builds), 'build')}, {len(record.unplaced)} unplaced; "
-        f"{record.status}, {record.stop_reason}{bound}; seed {record.seed}"
+    counts = (
+        f"{_count(placed, 'part')} in {_count(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
     )
+    return f"{counts}; {record.status}, {record.stop_reason}{bound}; seed {record.seed}"
 
 
 def _attention(record: RunRecord) -> list[str]:
@@ -89,6 +92,13 @@ def _listed(lines: list[str]) -> list[str]:
     if len(lines) <= LISTED:
         return lines
     return [*lines[: LISTED - 1], f"... and {len(lines) - LISTED + 1} more, see the report"]
+
+
+def _shown(text: str) -> str:
+    """Return the text without characters that would steer the terminal; names come from files."""
+    return "".join(
+        character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text
+    )
 
 
 def _count(number: int, word: str) -> str:

@@ -69,7 +69,8 @@ class Viewer {
     this.#lists();
     this.select(null);
     const slider = element("section");
-    slider.max = slider.value = Math.ceil(10 * this.build.height) / 10 || 1;
+    slider.max = Math.ceil(10 * this.build.height) / 10 || 1;
+    slider.value = slider.max;
     this.#cut();
     element("tabs").querySelectorAll("button").forEach((tab, index) => {
       tab.setAttribute("aria-selected", String(index === number));
@@ -86,7 +87,7 @@ class Viewer {
     const [x, y] = this.build.space.size;
     const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, 10)));
     const ball = box.getBoundingSphere(new THREE.Sphere());
-    this.stage.look(ball.center, 0.94 * ball.radius, VIEWS[name].clone());
+    this.stage.look(ball.center, 0.82 * ball.radius, VIEWS[name].clone());
   }
 
   select(found) {
@@ -105,7 +106,7 @@ class Viewer {
       row.setAttribute("aria-current", "true");
       row.scrollIntoView({ block: "nearest" });
     }
-    if (kind !== "unsupported") this.shown[kind === "part" ? "parts" : "supports"][index].material.emissive.setHex(0x2c3a52);
+    if (kind !== "unsupported") this.shown[kind === "part" ? "parts" : "supports"][index].material.emissive.setHex(0x3a4c6c);
     const entry = { part: this.build.parts, support: this.build.supports, unsupported: this.build.unsupported }[kind][index];
     card.append(make("strong", {}, entry.name), ...entry.facts.map((line) => make("span", {}, line)));
   }

@@ -21,12 +21,13 @@ export class Stage {
   }
 
   #light() {
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a90a0, 1.7));
-    this.sun = new THREE.DirectionalLight(0xffffff, 2.0);
+    const sky = new THREE.HemisphereLight(0xffffff, 0x8a90a0, 1.9);
+    sky.position.set(0, 0, 1);
+    this.sun = new THREE.DirectionalLight(0xffffff, 1.5);
     this.sun.position.set(-0.5, -1, 1.6);
-    this.lamp = new THREE.DirectionalLight(0xffffff, 0.6);
+    this.lamp = new THREE.DirectionalLight(0xffffff, 0.8);
     this.camera.add(this.lamp);
-    this.scene.add(this.sun, this.camera);
+    this.scene.add(sky, this.sun, this.camera);
   }
 
   resize() {
