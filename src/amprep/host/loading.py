@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import pluggy
@@ -151,7 +151,9 @@ def _require_known_hooks(plugin: object, manager: pluggy.PluginManager) -> None:
 def _is_hook(plugin: object, name: str, manager: pluggy.PluginManager) -> bool:
     if manager.parse_hookimpl_opts(plugin, name) is not None:
         return True
-    return name.startswith("amprep_") and isinstance(getattr(plugin, name), type(_is_hook))
+    value = getattr(plugin, name)
+    imported = value is getattr(hookspecs, name, None)  # by "from amprep.hookspecs import *"
+    return name.startswith("amprep_") and isinstance(value, FunctionType) and not imported
 
 
 def _from_entry_point(entry_point: EntryPoint) -> Source:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from amprep.checks.violation import Violation
 from amprep.errors import AmprepError
 from amprep.hookspecs import Offer
 from amprep.host import KINDS, Host, Kind, Listed
-from amprep.model import Stop, silent
+from amprep.model import Stop
 
 SEED = 20
 
@@ -50,11 +51,14 @@ class Case:
         Calls the offer, given when to stop, and returns its answer.
     judge
         Returns the promises that the answer breaks.
+    timed
+        Whether it is also run with no time left, which must not break a promise either.
     """
 
     problem: str
     run: Callable[[Stop], Any]
     judge: Callable[[Any], Sequence[Violation]]
+    timed: bool = True
 
 
 def try_plugin(package: str, *, samples: Sequence[Path] = ()) -> tuple[Trial, ...]:
@@ -81,34 +85,32 @@ def try_offer(host: Host, listed: Listed[Offer], *, samples: Sequence[Path] = ()
     """Try one offer on every problem that it accepts; nothing it does raises."""
     from amprep.pipeline.trial_cases import cases_for
 
-    cases = cases_for(host, listed, samples)
-    violations = [violation for case in cases for violation in _judged(case)]
+    with TemporaryDirectory() as folder:
+        cases = cases_for(host, listed, samples, Path(folder))
+        violations = [violation for case in cases for violation in _judged(case)]
     problems = tuple(case.problem for case in cases)
     return Trial(listed.kind, listed.offer.name, listed.title, problems, tuple(violations))
 
 
 def _judged(case: Case) -> list[Violation]:
-    """Run a case three times: as it is, again (the answers must agree), and with no time left."""
+    """Run a case as it is, again (the answers must agree), and with no time left."""
     try:
         first = case.run(Stop())
-        found = [_about(case, violation) for violation in case.judge(first)]
+        found = [_about(case.problem, violation) for violation in case.judge(first)]
         if fingerprint(first) != fingerprint(case.run(Stop())):
-            found.append(
-                Violation("reproducible", case.problem, "the same problem and seed gave two answers")
-            )
-        hurried = case.run(Stop.after(0.0))
+            found.append(Violation("reproducible", case.problem, "one problem and seed gave two answers"))
+        late = case.judge(case.run(Stop.after(0.0))) if case.timed else ()
     except AmprepError as error:
         return [Violation("runs", case.problem, str(error))]
-    late = [_about(case, violation) for violation in case.judge(hurried)]
-    return [*found, *(Violation(each.promise, f"{each.subject}, out of time", each.message) for each in late)]
+    return [*found, *(_about(f"{case.problem}, out of time", violation) for violation in late)]
 
 
-def _about(case: Case, violation: Violation) -> Violation:
-    return Violation(violation.promise, f"{case.problem}: {violation.subject}", violation.message)
+def _about(problem: str, violation: Violation) -> Violation:
+    return Violation(violation.promise, f"{problem}: {violation.subject}", violation.message)
 
 
 def fingerprint(value: Any) -> Any:
-    """Return nested tuples that are equal when two answers are: arrays by their bytes, records by their fields."""
+    """Return nested tuples that are equal exactly when two answers are."""
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if is_dataclass(value):
@@ -116,16 +118,3 @@ def fingerprint(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return tuple(map(fingerprint, value))
     return repr(value)
-
-
-def runner(
-    host: Host, listed: Listed[Any], *arguments: Any, keywords: Sequence[str]
-) -> Callable[[Stop], Any]:
-    """Return a function that calls an offer with its default parameters and the keywords of its hook."""
-    params = host.params(listed, {})
-
-    def run(stop: Stop) -> Any:
-        given = {"params": params, "rng": np.random.default_rng(SEED), "stop": stop, "report": silent}
-        return host.call(listed, *arguments, **{name: given[name] for name in keywords})
-
-    return run
