@@ -103,15 +103,11 @@ def find_printer(name: str, folder: Path | None = None, env: Mapping[str, str] =
     if name.lower().endswith(".toml"):
         return read_printer((folder or Path()) / name, "job")
     for path, origin in _profile_files(folder, env):
-        if plain(path.stem) == plain(name):
+        if plain(path.stem) == plain(name) or _states_name(path, origin, name):
             return read_printer(path, origin)
     printers, warnings = list_printers(folder, env)
-    for printer in printers:
-        if plain(printer.name) == plain(name):
-            return printer
-    close = get_close_matches(
-        plain(name), known := {plain(printer.name): printer.name for printer in printers}, 1
-    )
+    known = {plain(printer.name): printer.name for printer in printers}
+    close = get_close_matches(plain(name), known, n=1)
     hint = f" (did you mean {known[close[0]]!r}?)" if close else "; 'amprep printers' lists them"
     raise JobError("; ".join([f"no printer is called {name!r}{hint}", *warnings]))
 
@@ -181,6 +177,14 @@ def _profile_files(folder: Path | None, env: Mapping[str, str]) -> list[tuple[Pa
         (SHIPPED, "built-in"),
     ]
     return [(path, origin) for place, origin in places for path in sorted(place.glob("*.toml"))]
+
+
+def _states_name(path: Path, origin: Origin, name: str) -> bool:
+    """Whether the profile is one, and says that this is its name."""
+    try:
+        return plain(read_printer(path, origin).name) == plain(name)
+    except JobError:
+        return False
 
 
 def _read(path: Path, origin: Origin) -> Printer:

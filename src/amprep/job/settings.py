@@ -113,14 +113,10 @@ class SupportSettings:
             require(value is None or value > 0, f"{name} is above 0", value)
         for name in ("least_area_mm2", "least_length_mm", "gap_mm"):
             require(getattr(self, name) >= 0, f"{name} is at least 0", getattr(self, name))
-        for name in ("capacity", "node_capacity"):
+        least = {"capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}
+        for name, low in least.items():
             value = getattr(self, name)
-            require(
-                0 <= value <= LARGEST_COUNT, f"{name} is between 0 (unbounded) and {LARGEST_COUNT}", value
-            )
-        for name in ("vertical_cost", "oblique_cost"):
-            value = getattr(self, name)
-            require(1 <= value <= LARGEST_COUNT, f"{name} is between 1 and {LARGEST_COUNT}", value)
+            require(low <= value <= LARGEST_COUNT, f"{name} is between {low} and {LARGEST_COUNT}", value)
 
 
 @dataclass(frozen=True)
