@@ -1,0 +1,155 @@
+"""Boxes in a build volume: rotated boxes, unions, and where an item fits an empty build."""
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Space(NamedTuple):
+    """An empty build volume for boxes.
+
+    Attributes
+    ----------
+    lo, hi
+        ``(3,)`` mm, least and greatest corner that a box may reach.
+    axis, radius
+        ``(2,)`` and mm, the circle that every corner stays in; radius 0 for none.
+    zone_lo, zone_hi
+        ``(m, 3)`` mm forbidden zones; touching them is allowed.
+    flat
+        The lowest point must be at `lo[2]`.
+    slack
+        mm by which walls and zones give.
+    """
+
+    lo: Array
+    hi: Array
+    axis: Array
+    radius: float
+    zone_lo: Array
+    zone_hi: Array
+    flat: bool
+    slack: float
+
+
+def rotated_boxes(lo: Array, hi: Array, rotation: Array) -> tuple[Array, Array]:
+    """Return ``(k, 3)`` corners of the axis-parallel boxes that enclose the boxes turned by `rotation` ``(3, 3)``."""
+    centre, half = (lo + hi) / 2.0, (hi - lo) / 2.0
+    centre, half = centre @ rotation.T, half @ np.abs(rotation).T
+    return centre - half, centre + half
+
+
+def union_volume(lo: Array, hi: Array) -> float:
+    """Return the volume (area, length) of the union of boxes ``(k, d)``; boxes turned inside out count nothing."""
+    real = (hi > lo).all(axis=1)
+    lo, hi = lo[real], hi[real]
+    if len(lo) <= 1:
+        return float(np.prod(hi - lo, axis=1).sum())
+    lines = [np.unique(np.concatenate((lo[:, a], hi[:, a]))) for a in range(lo.shape[1])]
+    covered = np.zeros([len(line) - 1 for line in lines], dtype=bool)
+    for corner, far in zip(lo, hi, strict=True):
+        cells = (np.searchsorted(line, [a, b]) for line, a, b in zip(lines, corner, far, strict=True))
+        covered[tuple(slice(*cell) for cell in cells)] = True
+    for line in reversed(lines):
+        covered = covered @ np.diff(line)
+    return float(covered)
+
+
+def find_home(lo: Array, hi: Array, space: Space) -> Array | None:
+    """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build, or None when there is none.
+
+    Exact: whenever a place exists, there is one among the crossings of the curves that bound the
+    allowed translations (walls, sides of zones, circles of the corners), lowest plane first.
+    """
+    least, most = lo.min(axis=0), hi.max(axis=0)
+    if ((most - least) > (space.hi - space.lo) + space.slack).any():
+        return None
+    if space.radius == 0.0 and not len(space.zone_lo):
+        return np.asarray(space.lo - least)
+    heights = [space.lo[2] - least[2]]
+    if not space.flat:
+        tops = (space.zone_hi[:, 2, None] - lo[:, 2]).ravel()
+        heights += sorted(tops[tops > heights[0]].tolist())
+    ways = (
+        (_simple_places, _line_places)
+        if space.radius == 0.0
+        else (_simple_places, _line_places, _round_places)
+    )
+    for places, height in itertools.product(ways, heights):
+        found = _first_allowed(places(lo, hi, space), height, lo, hi, space)
+        if found is not None:
+            return found
+    return None
+
+
+def _simple_places(lo: Array, hi: Array, space: Space) -> Array:
+    """Return the corner of a box, the centre of a circle, as translations ``(1, 2)``."""
+    least, most = lo.min(axis=0)[:2], hi.max(axis=0)[:2]
+    return (space.axis - (least + most) / 2.0 if space.radius else space.lo[:2] - least)[None]
+
+
+def _lines(lo: Array, hi: Array, space: Space, axis: int) -> Array:
+    """Return the translations along `axis` at which a box touches the lower wall or a side of a zone."""
+    beyond = (space.zone_hi[:, axis, None] - lo[:, axis]).ravel()
+    before = (space.zone_lo[:, axis, None] - hi[:, axis]).ravel()
+    return np.unique(np.concatenate(([space.lo[axis] - lo[:, axis].min()], beyond, before)))
+
+
+def _line_places(lo: Array, hi: Array, space: Space) -> Array:
+    """Return the crossings of lines as translations ``(n, 2)``."""
+    crossings = np.meshgrid(_lines(lo, hi, space, 0), _lines(lo, hi, space, 1), indexing="ij")
+    return np.stack(crossings, axis=-1).reshape(-1, 2)
+
+
+def _centres(lo: Array, hi: Array, space: Space) -> Array:
+    """Return, for each corner of the footprints, the centre of the circle of translations that keep it inside."""
+    corners = [np.stack((a[:, 0], b[:, 1]), axis=1) for a, b in itertools.product((lo, hi), (lo, hi))]
+    return np.asarray(space.axis - np.unique(np.concatenate(corners), axis=0))
+
+
+def _round_places(lo: Array, hi: Array, space: Space) -> Array:
+    """Return the crossings of the corners' circles with each other and with lines, and their extremes."""
+    centres, radius = _centres(lo, hi, space), space.radius
+    extremes = [centres + radius * np.array(way) for way in ((-1, 0), (1, 0), (0, -1), (0, 1))]
+    found = [*extremes, *_circle_circle(centres, radius)]
+    for axis in (0, 1):
+        line = _lines(lo, hi, space, axis)
+        offset = line[:, None] - centres[None, :, axis]
+        half = np.sqrt(np.maximum(radius**2 - offset**2, 0.0))
+        for sign in (-1, 1):
+            other = centres[None, :, 1 - axis] + sign * half
+            pair = (np.broadcast_to(line[:, None], other.shape), other)
+            found.append(np.stack(pair if axis == 0 else pair[::-1], axis=-1).reshape(-1, 2))
+    return np.concatenate(found)
+
+
+def _circle_circle(centres: Array, radius: float) -> list[Array]:
+    """Return the crossings of circles of one radius, pair by pair, as two arrays ``(pairs, 2)``."""
+    first, second = np.triu_indices(len(centres), 1)
+    middle, apart = (centres[first] + centres[second]) / 2.0, centres[second] - centres[first]
+    distance = np.hypot(apart[:, 0], apart[:, 1])
+    reach = np.sqrt(np.maximum(radius**2 - distance**2 / 4.0, 0.0))
+    across = np.stack((-apart[:, 1], apart[:, 0]), axis=1) * (reach / distance)[:, None]
+    return [middle + across, middle - across]
+
+
+def _first_allowed(places: Array, height: float, lo: Array, hi: Array, space: Space) -> Array | None:
+    """Return the first translation (places ``(n, 2)``, height) that keeps inside and out of the zones."""
+    allowed = (places >= space.lo[:2] - lo.min(axis=0)[:2] - space.slack).all(axis=1)
+    allowed &= (places <= space.hi[:2] - hi.max(axis=0)[:2] + space.slack).all(axis=1)
+    allowed &= height <= space.hi[2] - hi[:, 2].max() + space.slack
+    if space.radius:
+        away = places[:, None] - _centres(lo, hi, space)[None]
+        allowed &= (np.hypot(away[..., 0], away[..., 1]) <= space.radius + space.slack / 2.0).all(axis=1)
+    places = places[allowed]
+    moved = np.column_stack((places, np.full(len(places), height)))
+    for (corner, far), zone in itertools.product(
+        zip(lo, hi, strict=True), zip(space.zone_lo, space.zone_hi, strict=True)
+    ):
+        clear = (moved + far <= zone[0] + space.slack) | (moved + corner >= zone[1] - space.slack)
+        moved = moved[clear.any(axis=1)]
+    return moved[0] if len(moved) else None

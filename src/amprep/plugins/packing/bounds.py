@@ -1,0 +1,131 @@
+"""What no packing can beat: lower bounds on the number of builds, upper bounds on the value of one build.
+
+All bounds hold for every packing that the judge accepts: distances are Euclidean, and every contact may
+be penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it. Items of several boxes are relaxed
+to one of their boxes, or to the volume of their union.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.geometry.packing_space import union_volume
+from amprep.model.arrays import CONTACT_TOLERANCE, Floats
+from amprep.plugins.packing.l2 import l2_bound
+from amprep.plugins.packing.scene import Scene, Variant
+
+
+class Amounts(NamedTuple):
+    """How much of the room each kind takes, at least, and how much there is; clearance included."""
+
+    taken: Floats
+    room: float
+
+
+def builds_bound(scene: Scene) -> int:
+    """Return the fewest builds that can hold what fits: by volume, plate area, and Martello, Pisinger and Vigo's L2.
+
+    Without stacking every item counts as high as the room, which makes L2 the bound for the plane.
+    """
+    counted = scene.kind[~scene.too_large]
+    if not len(counted):
+        return 0
+    bound = 1
+    for amounts in _amounts(scene):
+        bound = max(bound, int(np.ceil(amounts.taken[counted].sum() / amounts.room - 1e-9)))
+    size, room, gap = _core_sizes(scene), _core_room(scene), scene.problem.clearance
+    return max(bound, l2_bound(size[counted], room, gap))
+
+
+def fill_bound(scene: Scene) -> float:
+    """Return a value that one build cannot exceed: the fractional knapsack over volume, and over the plate's area."""
+    items = scene.problem.items
+    value = np.array([max(item.value, 0.0) for item in items])
+    inside = ~scene.too_large
+    bound = float(value[inside].sum())
+    for taken, room in _amounts(scene):
+        weight = taken[scene.kind]
+        order = np.flatnonzero(inside)[np.argsort(-value[inside] / np.maximum(weight[inside], 1e-12), kind="stable")]
+        full = np.cumsum(weight[order])
+        share = np.clip((room - (full - weight[order])) / np.maximum(weight[order], 1e-12), 0.0, 1.0)
+        bound = min(bound, float((share * value[order]).sum()))
+    return bound
+
+
+def _amounts(scene: Scene) -> list[Amounts]:
+    """Return the volumes, and without stacking the plate areas."""
+    dimensions = (3, 2) if scene.space.flat else (3,)
+    return [Amounts(_taken(scene, d), _available(scene, d)) for d in dimensions]
+
+
+def _taken(scene: Scene, dimensions: int) -> Floats:
+    """Return the volume or plate area that each kind takes, at least, in its best orientation."""
+    gap = max(scene.problem.clearance - CONTACT_TOLERANCE, 0.0)
+    return np.array([min(_grown(variant, dimensions, gap / 2.0) for variant in kind) for kind in scene.kinds])
+
+
+def _grown(variant: Variant, dimensions: int, radius: float) -> float:
+    """Return the measure of a variant grown by a ball of `radius`; of its union alone when that is more."""
+    lo, hi = variant.lo[:, :dimensions], variant.hi[:, :dimensions] - CONTACT_TOLERANCE
+    if dimensions == 2:
+        # only boxes that stand on the plate are side by side for certain
+        low = variant.lo[:, 2] <= CONTACT_TOLERANCE
+        lo, hi = lo[low], hi[low]
+    side = np.maximum(hi - lo, 0.0)
+    faces = side.sum(axis=1)
+    measure = side.prod(axis=1)
+    if dimensions == 2:
+        grown = measure + 2.0 * radius * faces + np.pi * radius**2
+    else:
+        edges = side[:, 0] * side[:, 1] + side[:, 1] * side[:, 2] + side[:, 0] * side[:, 2]
+        grown = measure + 2.0 * radius * edges + np.pi * radius**2 * faces + 4.0 / 3.0 * np.pi * radius**3
+    return max(float(grown.max()), union_volume(lo, hi))
+
+
+def _available(scene: Scene, dimensions: int) -> float:
+    """Return the volume or plate area that grown items share in an empty build."""
+    space, gap = scene.space, scene.problem.clearance
+    side = space.hi - space.lo + gap + 2.0 * CONTACT_TOLERANCE
+    if (side <= 0.0).any():
+        return 1e-12
+    area = side[0] * side[1] if space.radius == 0.0 else np.pi * (space.radius + gap / 2.0 + CONTACT_TOLERANCE) ** 2
+    whole = area * (side[2] if dimensions == 3 else 1.0)
+    return max(float(whole) - _lost(scene, dimensions), 1e-12)
+
+
+def _lost(scene: Scene, dimensions: int) -> float:
+    """Return the volume or plate area that zones surely take: without the margin into which grown items may reach."""
+    space = scene.space
+    margin = scene.problem.clearance / 2.0 + CONTACT_TOLERANCE
+    lo, hi = space.zone_lo + margin, space.zone_hi - margin
+    if dimensions == 2:
+        inside = (lo[:, 2] <= space.lo[2]) & (hi[:, 2] > space.lo[2])
+        lo, hi = lo[inside], hi[inside]
+    if space.radius:
+        half = space.radius / np.sqrt(2.0)
+        least, most = np.array([*(space.axis - half), space.lo[2]]), np.array([*(space.axis + half), space.hi[2]])
+    else:
+        least, most = space.lo, space.hi
+    lo, hi = np.maximum(lo, least)[:, :dimensions], np.minimum(hi, most)[:, :dimensions]
+    return union_volume(lo, hi)
+
+
+def _core_room(scene: Scene) -> Floats:
+    """Return the sides of the room, ``(3,)`` mm."""
+    return np.asarray(scene.space.hi - scene.space.lo + CONTACT_TOLERANCE)
+
+
+def _core_sizes(scene: Scene) -> Floats:
+    """Return a box ``(kinds, 3)`` that each kind contains however it is turned: of its largest boxes, the least sides."""
+    room = _core_room(scene)
+    sizes = np.empty((len(scene.kinds), 3))
+    for i, kind in enumerate(scene.kinds):
+        cores = []
+        for variant in kind:
+            side = variant.hi - variant.lo
+            if scene.space.flat:
+                side = np.where((variant.lo[:, 2:] <= CONTACT_TOLERANCE), side, 0.0)
+                side[:, 2] = room[2] + CONTACT_TOLERANCE
+            cores.append(side[np.argmax(side.prod(axis=1))])
+        sizes[i] = np.min(cores, axis=0)
+    return np.asarray(np.maximum(sizes - CONTACT_TOLERANCE, 0.0))

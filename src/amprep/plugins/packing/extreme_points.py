@@ -1,0 +1,209 @@
+"""The packer `extreme-points`: the best of many sortings, each packed by the compiled kernel."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from amprep.kernels import extreme_points as kernel
+from amprep.model.arrays import Floats, Ints
+from amprep.model.control import Report, Stop
+from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
+from amprep.plugins.packing.bounds import builds_bound, fill_bound
+from amprep.plugins.packing.params import ExtremePointsParams
+from amprep.plugins.packing.scene import Scene, placements, prepare
+from amprep.plugins.packing.sortings import GRID, Pass, passes
+
+PAUSE = 1_000_000
+"""Candidate places between two looks at `stop`, some 10 ms."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What a pass found: per item its build (-1: none), variant and place.
+
+    Attributes
+    ----------
+    rank
+        Smaller for a better one.
+    complete
+        False when it was stopped on its way.
+    """
+
+    plan: Pass
+    rank: tuple[float, ...]
+    complete: bool
+    build: Ints
+    variant: Ints
+    place: Floats
+
+
+def pack_extreme_points(
+    problem: PackingProblem, *, params: ExtremePointsParams, rng: np.random.Generator, stop: Stop, report: Report
+) -> Packing:
+    """Pack by extreme points (Crainic, Perboli, Tadei 2008, doi:10.1287/ijoc.1070.0250).
+
+    Items are packed in the order of each sorting under each style, then in disturbed copies of the best
+    order, and the best packing is kept: fewest builds, then least total height, then least area covered; or
+    greatest value. The first pass is always begun, so that a late stop still gives an answer.
+    """
+    scene = prepare(problem)
+    runner = Runner(scene)
+    plans = passes(scene)[: params.sortings or None]
+    best = runner.run(plans[0], None, stop)
+    for number in range(1, len(plans) + params.restarts):
+        if stop():
+            return _packing(scene, best, stop.reason)
+        if runner.tries > params.tries * 1e6:
+            return _packing(scene, best, "all tries used")
+        report(number / (len(plans) + params.restarts), "trying orders")
+        plan = plans[number] if number < len(plans) else _disturbed(best.plan, params.disturbance, rng)
+        best = min(best, runner.run(plan, best, stop), key=lambda solution: solution.rank)
+    return _packing(scene, best, stop.reason if stop() else "finished")
+
+
+def _disturbed(plan: Pass, disturbance: float, rng: np.random.Generator) -> Pass:
+    """Return the plan with each item moved at random by up to `disturbance` of the list."""
+    n = len(plan.order)
+    return plan._replace(order=plan.order[np.argsort(np.arange(n) + rng.uniform(0.0, disturbance * n, n))])
+
+
+class Runner:
+    """Runs passes over one scene; owns the kernel's arrays."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.tries = 0
+        self.shapes = _shapes(scene)
+        self.room = _room(scene)
+        self.obstacles, self.zones = _obstacles(scene), len(scene.space.zone_lo)
+        self.scratch = _scratch(scene)
+
+    def run(self, plan: Pass, best: Solution | None, stop: Stop) -> Solution:
+        """Run a pass; it gives up as soon as it needs more builds than `best`, and ends early when told to stop."""
+        n = len(self.scene.kind)
+        most = 1 if self.scene.problem.objective == "fill" else n if best is None else int(best.rank[1])
+        answer = kernel.Answer(
+            np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3)), np.zeros((n + 1, 2))
+        )
+        self.scratch.cursor[:] = 0
+        self.scratch.cursor[kernel.LEFT] = len(plan.order)
+        self.scratch.failed[:] = -1
+        code = kernel.PAUSED
+        while code == kernel.PAUSED and len(plan.order):
+            code = kernel.pack(
+                plan.order,
+                self.shapes,
+                self.room,
+                self.obstacles,
+                self.zones,
+                plan.style,
+                most,
+                PAUSE,
+                answer,
+                self.scratch,
+            )
+            self.tries += int(self.scratch.cursor[kernel.TRIES])
+            if stop():
+                break
+        complete = code != kernel.PAUSED or not len(plan.order)
+        variant = answer.variant - self.shapes.first_variant[self.scene.kind]
+        return Solution(plan, self._rank(answer), complete, answer.build, variant, answer.place)
+
+    def _rank(self, answer: kernel.Answer) -> tuple[float, ...]:
+        """Return what is smaller for a better answer."""
+        looks = answer.looks.sum(axis=0).tolist()
+        if self.scene.problem.objective == "fill":
+            return (-_value(self.scene, answer.build), *looks)
+        return (float(self.scratch.cursor[kernel.LEFT]), float(answer.build.max(initial=-1) + 1), *looks)
+
+
+def _value(scene: Scene, build: Ints) -> float:
+    """Return the value of what is placed, fixed items included."""
+    fixed = [placement.item for placement in scene.problem.fixed]
+    return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
+
+
+def _packing(scene: Scene, best: Solution, stop_reason: str) -> Packing:
+    """Return the solution as a packing, with what is known about its quality."""
+    filling = scene.problem.objective == "fill"
+    builds = _builds(scene, best)
+    left = "out of time" if not best.complete else "no room left" if filling else "too large"
+    reasons = {int(i): "too large" for i in np.flatnonzero(scene.too_large)}
+    reasons |= {int(i): left for i in np.flatnonzero(scene.free & (best.build < 0))}
+    bound = fill_bound(scene) if filling else float(builds_bound(scene))
+    reached = _value(scene, best.build) if filling else float(len(builds))
+    return Packing(
+        builds=builds,
+        unplaced=tuple(Unplaced(i, reasons[i]) for i in sorted(reasons)),
+        bound=bound,
+        status=_status(scene, best, reached, bound),
+        stop_reason=stop_reason,
+    )
+
+
+def _status(scene: Scene, best: Solution, reached: float, bound: float) -> Status:
+    """Return ``optimal`` when the bound is met, ``infeasible`` when a builds problem has an item that fits nowhere."""
+    if scene.problem.objective == "fill":
+        return "optimal" if reached >= bound - 1e-9 * abs(bound) else "feasible"
+    if scene.too_large.any():
+        return "infeasible"
+    return "optimal" if best.complete and reached <= bound else "feasible"
+
+
+def _builds(scene: Scene, best: Solution) -> tuple[tuple[Placement, ...], ...]:
+    """Return the builds, the fixed placements first, then by item."""
+    count = max(int(best.build.max(initial=-1)) + 1, 1 if scene.problem.fixed else 0)
+    builds: list[tuple[Placement, ...]] = []
+    for number in range(count):
+        items = np.flatnonzero(best.build == number)
+        placed = placements(scene, items.tolist(), best.variant[items].tolist(), best.place[items])
+        builds.append((*(scene.problem.fixed if number == 0 else ()), *placed))
+    return tuple(builds)
+
+
+def _shapes(scene: Scene) -> kernel.Shapes:
+    """Return the scene's kinds as the kernel's arrays, clearance added at the upper sides."""
+    gap = scene.problem.clearance
+    variants = [variant for kind in scene.kinds for variant in kind]
+    return kernel.Shapes(
+        kind=scene.kind,
+        first_variant=_starts([len(kind) for kind in scene.kinds]),
+        first_box=_starts([len(variant.lo) for variant in variants]),
+        variants=np.array([[*(variant.size + gap), *variant.home] for variant in variants]).reshape(-1, 6),
+        boxes=np.array([[*lo, *(hi + gap)] for v in variants for lo, hi in zip(v.lo, v.hi, strict=True)]).reshape(-1, 6),
+    )
+
+
+def _starts(lengths: list[int]) -> Ints:
+    return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
+
+
+def _room(scene: Scene) -> Floats:
+    """Return the kernel's room: items are longer by the clearance, so the upper walls are further by it too."""
+    space, gap = scene.space, scene.problem.clearance
+    return np.array([*space.lo, *(space.hi + gap), *space.axis, space.radius, gap, space.slack, float(space.flat)])
+
+
+def _obstacles(scene: Scene) -> Floats:
+    """Return zones and fixed boxes ``(m, 6)``.
+
+    Zones need no clearance: their lower sides are moved up by it, which cancels that of the items.
+    """
+    gap = scene.problem.clearance
+    zones = np.hstack((scene.space.zone_lo + gap, scene.space.zone_hi))
+    return np.concatenate((zones, np.hstack((scene.standing_lo, scene.standing_hi + gap))))
+
+
+def _scratch(scene: Scene) -> kernel.Scratch:
+    """Return work arrays for the fullest build there can be."""
+    most = np.array([max(len(variant.lo) for variant in kind) for kind in scene.kinds], dtype=np.int64)
+    boxes = len(scene.space.zone_lo) + len(scene.standing_lo) + int(most[scene.kind[scene.free]].sum())
+    return kernel.Scratch(
+        placed=np.zeros((boxes + 1, 6)),
+        points=np.zeros((6 * boxes + 2, 6)),
+        lines=np.zeros((2, 2 * boxes + 1)),
+        candidates=np.zeros((int(most.max(initial=1)) * (6 * boxes + 2 + 4 * GRID) + 16 * boxes + 1000, 4)),
+        failed=np.full(len(scene.kinds), -1, np.int64),
+        cursor=np.zeros(9, np.int64),
+        best=np.zeros(5),
+    )

@@ -1,0 +1,99 @@
+"""The passes of `extreme-points`: orders of the items, each with a style of choosing places."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.kernels.extreme_points import CENTRE, LOW, RESIDUAL, TOUCHING
+from amprep.model.arrays import Floats, Ints
+from amprep.plugins.packing.scene import Scene
+
+BANDS = (0.1, 0.2, 0.3, 0.5)
+"""Widths of the clusters, as shares of the build volume's area or height."""
+
+
+class Pass(NamedTuple):
+    """One order of items (indices) and one way to place them."""
+
+    order: Ints
+    style: Floats
+
+
+def passes(scene: Scene) -> list[Pass]:
+    """Return every order under every style, in an order in which the best come early."""
+    orders = list(_orders(scene))
+    return [Pass(order, style) for style in _styles(scene) for order in orders]
+
+
+def _styles(scene: Scene) -> Iterator[Floats]:
+    """Yield the ways to choose places that suit the room."""
+    x, y, z = (scene.space.hi - scene.space.lo).tolist()
+    rows = [1.0 / x, 1e3 / y, 1e6 / z]
+    columns = [1e3 / x, 1.0 / y, 1e6 / z]
+    if scene.space.radius:
+        for phase in range(4):
+            yield _style(CENTRE, [0.0, 0.0, 1e3 * x], GRID, phase)
+            yield _style(LOW, rows, 0, phase)
+            yield _style(LOW, columns, 0, phase)
+            yield _style(TOUCHING, rows, GRID, phase)
+    elif scene.space.flat:
+        yield _style(LOW, rows, GRID)
+        yield _style(LOW, columns, GRID)
+        yield _style(TOUCHING, rows, GRID)
+        yield _style(RESIDUAL, rows)
+    else:
+        yield _style(RESIDUAL, rows)
+        yield _style(TOUCHING, rows)
+        yield _style(LOW, rows)
+
+
+def _style(merit: int, weights: list[float], grid: int = 0, phase: int = 0) -> Floats:
+    """Return a style as the kernel reads it."""
+    return np.array([merit, *weights, grid, phase], dtype=np.float64)
+
+
+GRID = 1024
+"""Crossings of lines tried besides the extreme points, at most."""
+
+
+def _orders(scene: Scene) -> Iterator[Ints]:
+    """Yield orders of the free items, each once."""
+    free = np.flatnonzero(scene.free)
+    seen: set[bytes] = set()
+    for keys in _keys(scene, free):
+        # ties keep copies of a part together: rows of identical parts
+        columns = [-np.asarray(key) for key in keys][::-1]
+        order = free[np.lexsort((free, scene.kind[free], *columns))].astype(np.int64)
+        if order.tobytes() not in seen:
+            seen.add(order.tobytes())
+            yield order
+
+
+def _keys(scene: Scene, free: Ints) -> Iterator[tuple[Floats, ...]]:
+    """Yield sort keys, greatest first; the first key of a tuple rules."""
+    size = np.array([variants[0].size for variants in scene.kinds])[scene.kind[free]]
+    room = scene.space.hi - scene.space.lo
+    volume, area = size.prod(axis=1), size[:, 0] * size[:, 1]
+    measure = area if scene.space.flat else volume
+    if scene.problem.objective == "fill":
+        value = np.array([scene.problem.items[i].value for i in free.tolist()])
+        yield (value / np.maximum(measure, 1e-12), value)
+        yield (value, -measure)
+        yield (value / np.maximum(np.sqrt(measure), 1e-12), value)
+    yield (measure,)
+    yield (size.max(axis=1), measure)
+    yield (size[:, :2].max(axis=1) if scene.space.flat else size.min(axis=1), measure)
+    yield (size.sum(axis=1), measure)
+    yield (size[:, 2], area)
+    yield from _clustered(size, room, (0, 1) if scene.space.flat else (2, 1, 0), flat=scene.space.flat)
+
+
+def _clustered(size: Floats, room: Floats, axes: tuple[int, ...], *, flat: bool) -> Iterator[tuple[Floats, ...]]:
+    """Yield the clustered area-height and height-area sortings along each axis, band by band."""
+    for band in BANDS:
+        for axis in axes:
+            across = [a for a in ((0, 1) if flat else (0, 1, 2)) if a != axis]
+            area, height = size[:, across].prod(axis=1), size[:, axis]
+            yield (np.ceil(area / (room[across].prod() * band) - 1e-9), height, area)
+            yield (np.ceil(height / (room[axis] * band) - 1e-9), area, height)
