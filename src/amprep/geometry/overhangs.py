@@ -81,8 +81,25 @@ class _Surface(NamedTuple):
     opposite: Longs
 
 
+class Marks(NamedTuple):
+    """What a person marked: triangles that must, triangles and vertices that must not be supported.
+
+    A blocked edge has both its ends blocked. Marked triangles count only where they look down.
+    """
+
+    enforced: Bools
+    blocked: Bools
+    blocked_vertices: Bools
+
+
 def find_overhangs(
-    vertices: Floats, triangles: Ints, *, angle_deg: float, least_area: float = 0.0, least_length: float = 0.0
+    vertices: Floats,
+    triangles: Ints,
+    *,
+    angle_deg: float,
+    least_area: float = 0.0,
+    least_length: float = 0.0,
+    marks: Marks | None = None,
 ) -> Overhangs:
     """Find what needs support when the mesh is built upwards from the plate z = 0 (thesis 3.1).
 
@@ -93,8 +110,8 @@ def find_overhangs(
     held by it.
 
     Regions smaller than `least_area` (mm2) or `least_length` (mm) are dropped, unless they hold a local
-    minimum: there the part would start in the air, however small the start. Tips are local minima and
-    never dropped.
+    minimum (there the part would start in the air, however small the start) or an enforced triangle. Tips
+    are local minima and never dropped.
 
     Parameters
     ----------
@@ -108,22 +125,28 @@ def find_overhangs(
     normals = _unit_normals(surface)
     minimum = _minimum_plateaus(surface)
     needy = _needy_faces(surface, normals, angle_deg)
-    face_label = _components_of_faces(surface, needy)
-    sharp = _knife_edges(surface, normals, needy, angle_deg)
-    edge_label = _components_of_edges(surface.edges[sharp], len(surface.points))
+    sharp = surface.edges[_knife_edges(surface, normals, needy, angle_deg)]
+    tips, tip_label = _tips(minimum, surface.triangles[needy], sharp)
 
+    enforced = np.zeros(len(triangles), np.bool_)
+    if marks is not None:
+        enforced = marks.enforced & (normals[:, 2] < -_LEVEL)
+        needy = (needy | enforced) & ~marks.blocked
+        blocked = marks.blocked_vertices[surface.first]
+        sharp = sharp[~blocked[sharp].all(axis=1)]
+        tips, tip_label = tips[~blocked[tips]], tip_label[~blocked[tips]]
     faces = np.flatnonzero(needy)
-    corners = surface.triangles[faces]
-    area = 0.5 * np.linalg.norm(_cross_products(surface.points, corners), axis=1)
-    face_keep = _large_or_minimum(face_label, area, least_area, minimum[corners].max(axis=1, initial=-1))
-    ends = surface.edges[sharp]
-    length = np.linalg.norm(surface.points[ends[:, 1]] - surface.points[ends[:, 0]], axis=1)
-    edge_keep = _large_or_minimum(edge_label, length, least_length, minimum[ends].max(axis=1, initial=-1))
-    tips, tip_label = _tips(minimum, corners, ends)
+    area = 0.5 * np.linalg.norm(_cross_products(surface.points, surface.triangles[faces]), axis=1)
+    face_label = _components_of_faces(surface, needy)
+    starts = np.asarray((minimum[surface.triangles[faces]] >= 0).any(axis=1) | enforced[faces])
+    face_keep = _kept(face_label, area, least_area, starts)
+    length = np.linalg.norm(surface.points[sharp[:, 1]] - surface.points[sharp[:, 0]], axis=1)
+    edge_label = _components_of_edges(sharp, len(surface.points))
+    edge_keep = _kept(edge_label, length, least_length, np.asarray((minimum[sharp] >= 0).any(axis=1)))
     return _labelled(
         surface,
         (faces[face_keep], face_label[face_keep], area[face_keep]),
-        (ends[edge_keep], edge_label[edge_keep], length[edge_keep]),
+        (sharp[edge_keep], edge_label[edge_keep], length[edge_keep]),
         (tips, tip_label),
     )
 
@@ -278,11 +301,11 @@ def _components_of_edges(edges: Longs, count: int) -> Longs:
     return _components(edges[:, 0], edges[:, 1], count)[edges[:, 0]]
 
 
-def _large_or_minimum(label: Longs, measure: Floats, least: float, minimum: Longs) -> Bools:
-    size = np.bincount(label, weights=measure)
-    keep = size >= least
-    keep[label[minimum >= 0]] = True
-    return keep[label]
+def _kept(label: Longs, measure: Floats, least: float, always: Bools) -> Bools:
+    """Tell which members belong to regions that are large enough or have a member to keep always."""
+    keep = np.bincount(label, weights=measure) >= least
+    keep[label[always]] = True
+    return np.asarray(keep[label])
 
 
 def _tips(minimum: Longs, corners: Longs, ends: Longs) -> tuple[Longs, Longs]:

@@ -93,7 +93,7 @@ class Limits(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Work arrays over the two states of each square: search that saw it last, stack, next arcs, seen ones."""
+    """Work arrays over the two states of each square: search that saw it last, stack, next arcs, seen."""
 
     seen: Ints
     stack: Ints
@@ -105,7 +105,7 @@ class Work(NamedTuple):
 def _beside(network: Network, flows: Flows, u: int) -> bool:
     """Tell whether a square next to `u` is in use."""
     through, width = flows.through, network.width
-    return through[u - 1] | through[u + 1] | through[u - width] | through[u + width] != 0
+    return bool(through[u - 1] | through[u + 1] | through[u - width] | through[u + width])
 
 
 @njit(cache=True)

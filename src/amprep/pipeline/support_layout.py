@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.geometry.overhangs import Overhangs
-from amprep.model.arrays import Bools, Bytes, Ints, frozen
-from amprep.model.supports import GridFrame
+from amprep.geometry.overhangs import Longs, Overhangs
+from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
+from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW, GridFrame
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,3 +75,32 @@ class SupportLayout:
         object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
         object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
+
+    def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
+        """Say for each point ``(n, 3)`` mm of a part's unsupported overhangs why nothing holds it.
+
+        The red square that counts is the highest of the part in the point's column that is not above the
+        point. Unconnected, it gives its reason; connected and with the point within its rise, the connector
+        does not get there; otherwise no cube below the point is white.
+        """
+        reds = np.flatnonzero(self.red_part == part)
+        key = self._heights(self.red[reds])
+        order = np.argsort(key)
+        size = (self.frame.pitch, self.frame.pitch, self.frame.step)
+        cube = np.floor((points - self.frame.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
+        below = np.searchsorted(key[order], self._heights(cube), side="right") - 1
+        reasons = [NO_WHITE_BELOW] * len(points)
+        for i in np.flatnonzero(below >= 0):
+            red = reds[order[below[i]]]
+            if (self.red[red, 1:] == cube[i, 1:]).all():
+                if not self.connected[red]:
+                    reasons[i] = self.reasons[red]
+                elif cube[i, 0] <= self.red[red, 0] + self.red_rise[red]:
+                    reasons[i] = CONNECTOR_BLOCKED
+        return tuple(reasons)
+
+    def _heights(self, square: Ints | Longs) -> Longs:
+        """Return the place of squares ``(n, 3)`` in the order of columns, upwards in each."""
+        nz, _, nx = self.frame.shape
+        plane, y, x = square.T.astype(np.int64)
+        return np.asarray((y * nx + x) * (nz + 2) + np.clip(plane, 0, nz + 1), np.int64)

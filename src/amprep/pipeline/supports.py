@@ -1,5 +1,138 @@
 """Plans the supports of a build: needs, grid, red squares, routing, groups (thesis 3.2)."""
 
-from amprep.pipeline.support_layout import SupportLayout
+from collections.abc import Sequence
+from typing import Literal
 
-__all__ = ["SupportLayout"]
+import numpy as np
+
+from amprep.model.arrays import Bools, Ints
+from amprep.model.build import PlacedPart
+from amprep.model.control import Report, Stop
+from amprep.model.space import BuildVolume
+from amprep.pipeline.support_grid import choose_pitch, coloured, cubes_of, frame_of
+from amprep.pipeline.support_layout import SupportLayout
+from amprep.pipeline.support_needs import needs_of
+from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
+from amprep.pipeline.support_routing import (
+    Network,
+    Route,
+    Rules,
+    components,
+    merge_edges,
+    route_apart,
+    route_together,
+)
+
+__all__ = ["Route", "SupportLayout", "choose_pitch", "plan_supports"]
+
+
+def plan_supports(
+    parts: Sequence[PlacedPart],
+    space: BuildVolume,
+    *,
+    route: Route,
+    overhang_angle_deg: float = 45.0,
+    strut_angle_deg: float = 45.0,
+    pitch: float | None = None,
+    gap: float = 0.0,
+    edge_capacity: int = 0,
+    node_capacity: int = 0,
+    costs: tuple[int, int] = (1, 2),
+    material: tuple[float, float] = (1.0, 1.0),
+    least_area: float = 0.5,
+    least_length: float = 0.5,
+    share_between_parts: Literal["avoid", "allow"] = "avoid",
+    stop: Stop,
+    report: Report,
+) -> SupportLayout:
+    """Find what needs support, lay the grid, and route every red square to the plate (thesis 3.1 and 3.2).
+
+    Parameters
+    ----------
+    route
+        The chosen router; it may be called once for each part.
+    pitch
+        mm; None chooses one by `choose_pitch`.
+    gap
+        Least distance between supports and parts sideways, mm; 0 for none.
+    share_between_parts
+        ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
+        one network.
+
+    Raises
+    ------
+    PluginError
+        When the router returns a plan that breaks its promise.
+    """
+    meshes = [placed.mesh for placed in parts]
+    limits = {
+        "overhang_angle_deg": overhang_angle_deg,
+        "least_area": least_area,
+        "least_length": least_length,
+    }
+    needs = [needs_of(placed, mesh, **limits) for placed, mesh in zip(parts, meshes, strict=True)]
+    report(0.05, "overhangs found")
+    pitch = pitch or choose_pitch(parts, space, strut_angle_deg)
+    frame = frame_of(meshes, needs, space, pitch=pitch, strut_angle_deg=strut_angle_deg)
+    blocks = [
+        cubes_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
+        for placed, mesh, own in zip(parts, meshes, needs, strict=True)
+    ]
+    cubes, meeting = coloured(frame, space, blocks)
+    red = red_squares(cubes, meeting, blocks)
+    if gap > 0:
+        close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=overhang_angle_deg)
+    report(0.15, "grid laid")
+    network = Network(frame, cubes, red, Rules(edge_capacity, node_capacity, costs, material), route, stop)
+
+    def routing(share: float, words: str) -> None:
+        report(0.15 + 0.85 * share, words)
+
+    routed = (route_apart if share_between_parts == "avoid" else route_together)(network, routing)
+    edges = merge_edges(routed.edges)
+    connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
+    group, edge_group, group_parts = _groups(edges, red, connected, len(parts))
+    shared = [group for group in group_parts if len(group) > 1]
+    return SupportLayout(
+        frame=frame,
+        cubes=cubes,
+        overhangs=tuple(needs),
+        red=red.square,
+        red_part=red.part,
+        red_region=red.region,
+        red_rise=red.rise,
+        connected=connected,
+        reasons=routed.reasons,
+        plane=edges[:, 0],
+        y=edges[:, 1],
+        x=edges[:, 2],
+        direction=edges[:, 3].astype(np.uint8),
+        flow=edges[:, 4],
+        capacity=edges[:, 5],
+        edge_part=edges[:, 6],
+        red_group=group,
+        edge_group=edge_group,
+        group_parts=group_parts,
+        notes=tuple("share supports: " + ", ".join(parts[part].label for part in group) for group in shared),
+    )
+
+
+def _groups(
+    edges: Ints, red: RedSquares, connected: Bools, count: int
+) -> tuple[Ints, Ints, tuple[tuple[int, ...], ...]]:
+    """Make one group per part, and one of all parts whose supports meet in a square."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    _, of_red = components(edges, red.square[connected])
+    part = red.part[connected]
+    owner = np.full(int(of_red.max(initial=-1)) + 1, -1)
+    owner[of_red[::-1]] = part[::-1]
+    graph = coo_array((np.ones(len(part)), (part, owner[of_red])), shape=(count, count))
+    label = connected_components(graph, directed=False)[1]
+    used, number = np.unique(label[part], return_inverse=True)
+    group = np.full(len(red.part), -1, np.int32)
+    group[connected] = number
+    edge_group = np.searchsorted(used, label[edges[:, 6]]).astype(np.int32)
+    held = [sorted(set(part[number == i].tolist())) for i in range(len(used))]
+    return group, edge_group, tuple(tuple(each) for each in held)

@@ -120,9 +120,17 @@ class _Drawing:
         self.batch += 1
         sweep(self.network, self.flows, prices, self.limits)
         failed = draw(
-            self.network, self.flows, prices, self.limits, self.start, chosen, self.first, self.ways, self.drawn,
+            self.network,
+            self.flows,
+            prices,
+            self.limits,
+            self.start,
+            chosen,
+            self.first,
+            self.ways,
+            self.drawn,
             self.batch,
-        )  # fmt: skip
+        )
         if failed:
             self._augment()
 
