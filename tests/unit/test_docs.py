@@ -1,0 +1,92 @@
+"""Every hook has a test and a page; every key of a job file is documented with its default."""
+
+import re
+from dataclasses import MISSING, fields
+from pathlib import Path
+
+import pytest
+
+from amprep.host import KINDS
+from amprep.job.loading import KEYS
+from amprep.job.printers import Profile
+from amprep.job.settings import CellSettings, PackingSettings, PartSettings, ReadingSettings, SupportSettings
+
+ROOT = Path(__file__).parents[2]
+SECTIONS = {
+    "`[packing]`": PackingSettings,
+    "`[supports]`": SupportSettings,
+    "`[cells]`": CellSettings,
+    "`[reading]`": ReadingSettings,
+    "`[[part]]`": PartSettings,
+    "Printers": Profile,
+}
+BY_OTHER_KEYS = {"stacking", "enabled", "strut_angle_deg", "volume_params"}
+
+
+def section(name):
+    """The text of one section of the page about job files."""
+    text = (ROOT / "docs" / "job-file.md").read_text(encoding="utf-8")
+    return text.partition(f"## {name}\n")[2].partition("\n## ")[0]
+
+
+def documented(text):
+    """Key -> default, from a table."""
+    return dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", text, re.MULTILINE))
+
+
+@pytest.mark.parametrize("hook", [description.hook for description in KINDS.values()])
+def test_every_hook_is_documented_and_tested(hook):
+    assert f"`{hook}()`" in (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
+    tests = [path for path in (ROOT / "tests").rglob("test_*.py") if path.name != Path(__file__).name]
+    assert any(hook in path.read_text(encoding="utf-8") for path in tests), (
+        f"no test yields an offer by {hook}"
+    )
+
+
+def test_every_key_at_the_top_is_documented():
+    keys = documented(section("At the top"))
+    assert set(keys) | {"packing", "supports", "cells", "reading", "part"} == set(KEYS)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_every_key_of_a_section_is_documented_and_no_other(name):
+    assert set(documented(section(name))) == {field.name for field in fields(SECTIONS[name])}
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_documented_defaults_are_the_real_ones(name):
+    keys = documented(section(name))
+    for field in fields(SECTIONS[name]):
+        plain = field.default is not MISSING and field.default not in (None, "", ())
+        if plain and field.name not in BY_OTHER_KEYS:
+            shown = f'"{field.default}"' if isinstance(field.default, str) else str(field.default)
+            assert f"`{shown.lower() if isinstance(field.default, bool) else shown}`" in keys[field.name], (
+                field.name
+            )
+
+
+def test_the_job_file_in_the_page_is_a_job_file(tmp_path):
+    from amprep.job import load_job
+
+    example = re.search(
+        r"```toml\n(.*?)```", (ROOT / "docs" / "job-file.md").read_text(encoding="utf-8"), re.DOTALL
+    )
+    path = tmp_path / "example.toml"
+    path.write_text(example.group(1), encoding="utf-8")
+    job = load_job(path)
+    assert (job.packing.clearance_mm, job.supports.overhang_angle_deg, job.inputs[0].quantity) == (3, 40, 4)
+
+
+@pytest.mark.parametrize("kind", ["packer", "cell"])
+def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
+    from amprep.pipeline.trial import try_plugin
+
+    blocks = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8"), re.DOTALL
+    )
+    hook = KINDS[kind].hook
+    (source,) = [block for block in blocks if f"def {hook}" in block and "return" in block]
+    path = tmp_path / f"page_{kind}.py"
+    path.write_text(source, encoding="utf-8")
+    (trial,) = try_plugin(str(path))
+    assert (trial.kind, trial.violations) == (kind, ())
