@@ -70,10 +70,19 @@ def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
     """
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     low, high = np.minimum(start, end), np.maximum(start, end)
-    base = int(triangles.max()) + 1
+    base = int(triangles.max(initial=0)) + 1
     keys, which = np.unique(low * base + high, return_inverse=True)
     balance = np.bincount(which, np.where(start == low, 1.0, -1.0), len(keys))
     return np.stack(np.divmod(keys, base), axis=1), np.bincount(which), balance.astype(np.int64)
+
+
+def edges_match(triangles: Ints) -> bool:
+    """Tell whether every edge is run along as often one way as the other."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    base = int(triangles.max(initial=0)) + 1
+    there, back = start < end, start > end
+    forward, backward = (start * base + end)[there], (end * base + start)[back]
+    return len(forward) == len(backward) and bool((np.sort(forward) == np.sort(backward)).all())
 
 
 def open_vertices(triangles: Ints) -> Ints:

@@ -13,6 +13,7 @@ from amprep.geometry.merging import (
     compact,
     count_edges,
     degenerate,
+    edges_match,
     first_of_equal_rows,
     join_near,
     open_vertices,
@@ -98,32 +99,54 @@ def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
     if defect:
         whole = np.arange(len(corners))
         return Settled(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
-    tidy = None
+    accepted: list[Settled] = []
     for candidate in _candidates(points, corners):
-        tidy = tidy or candidate
-        if _accepted(candidate):
-            return _oriented(candidate)
-    assert tidy is not None  # noqa: S101 - the first candidate is always there
-    return _refused(tidy)
+        solid = as_manifold(candidate.vertices, candidate.triangles)
+        if solid is not None:
+            accepted.append(_oriented(candidate, solid))
+            if not accepted[-1].problem and _faithful(solid, candidate):
+                return accepted[-1]
+    solids = [settled for settled in accepted if not settled.problem]
+    return (solids or accepted or [_refused(_tidied(points, corners))])[0]
 
 
-def as_manifold(vertices: Floats, triangles: ArrayLike) -> "Manifold":
-    """Hand a mesh to manifold3d, which takes no read-only arrays."""
-    from manifold3d import Manifold, Mesh64
+def as_manifold(vertices: ArrayLike, triangles: ArrayLike) -> "Manifold | None":
+    """Return the mesh as manifold3d takes it, or None where manifold3d refuses it.
 
-    return Manifold(Mesh64(np.array(vertices, order="C"), np.array(triangles, np.uint64, order="C")))
+    Indices have to be in range. Edges are matched here first: manifold3d 3.5 would say "not manifold" where
+    they do not match, but on some such meshes it crashes.
+    """
+    from manifold3d import Error, Manifold, Mesh64
+
+    corners = np.array(triangles, np.int64, order="C")
+    if len(corners) == 0 or not edges_match(corners):
+        return None
+    points = np.array(vertices, np.float64, order="C")  # a copy: manifold3d takes no read-only arrays
+    solid = Manifold(Mesh64(points, corners.astype(np.uint64)))
+    return solid if solid.status() == Error.NoError else None
 
 
 def _candidates(vertices: Floats, triangles: Ints) -> Iterator[_Candidate]:
-    """Yield ways to read the mesh: tidied, tidied less, as it came, and last with its seams sewn."""
+    """Yield ways to read the mesh: tidied, as it came, and last with its seams sewn."""
     merged = _tidied(vertices, triangles)
     unique = _without(merged, repeated(merged.triangles), "repeated triangle")
-    yield unique
+    if len(unique.triangles) < len(merged.triangles) and _same_solid(unique, merged):
+        yield unique
     yield merged
     yield _Candidate(vertices, triangles, np.arange(len(triangles)), ())
+    yield unique
     float32_step = float(np.abs(vertices).max()) * _FLOAT32_STEP
     for tolerance in sorted({min(float32_step, SEAM_TOLERANCE), SEAM_TOLERANCE / 10, SEAM_TOLERANCE}):
         yield _sewn(unique, tolerance)
+
+
+def _same_solid(one: _Candidate, other: _Candidate) -> bool:
+    """Tell whether both fill the same: whole shells that come twice do, single triangles do not."""
+    first = as_manifold(one.vertices, one.triangles)
+    second = as_manifold(other.vertices, other.triangles)
+    if first is None or second is None:
+        return False
+    return bool(np.isclose(_oriented(one, first).volume, _oriented(other, second).volume, rtol=1e-9))
 
 
 def _tidied(vertices: Floats, triangles: Ints) -> _Candidate:
@@ -155,25 +178,41 @@ def _sewn(mesh: _Candidate, tolerance: float) -> _Candidate:
     return _without(whole, degenerate(whole.triangles), "degenerate triangle")
 
 
-def _accepted(mesh: _Candidate) -> bool:
-    from manifold3d import Error
+def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
+    """Tell whether manifold3d measures what the triangles enclose.
 
-    return len(mesh.triangles) > 0 and as_manifold(mesh.vertices, mesh.triangles).status() == Error.NoError
+    Where many triangles share an edge it may pair them so that too many cancel; other readings may do better.
+    """
+    corners = mesh.vertices[mesh.triangles] - mesh.vertices[0]
+    enclosed = float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
+    size = float(np.prod(np.ptp(mesh.vertices, axis=0)))
+    return bool(abs(solid.volume() - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
 
 
-def _oriented(mesh: _Candidate) -> Settled:
-    """Turn what is inside out, and measure."""
+def _oriented(mesh: _Candidate, solid: "Manifold") -> Settled:
+    """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
     turned, count, shells = find_inside_out(mesh.vertices, mesh.triangles)
-    triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    notes = mesh.notes
     if count:
-        notes = (*notes, _turning_note(bool(turned.all()), count, shells))
-    volume = solid_volume(as_manifold(mesh.vertices, triangles))
-    size = np.ptp(mesh.vertices, axis=0)
-    if volume <= 1e-15 * float(np.linalg.norm(size)) ** 3:
-        problem = "its volume is zero: it encloses nothing"
-        return Settled(mesh.vertices, triangles.astype(np.int32), 0.0, notes, problem, mesh.kept, turned)
-    return Settled(mesh.vertices, triangles.astype(np.int32), volume, notes, "", mesh.kept, turned)
+        triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+        over = as_manifold(mesh.vertices, triangles)
+        volume = 0.0 if over is None else solid_volume(over)
+        if volume > _least_volume(mesh):
+            note = _turning_note(bool(turned.all()), count, shells)
+            return _settled(mesh._replace(triangles=triangles, notes=(*mesh.notes, note)), volume, "", turned)
+    volume = solid_volume(solid)
+    problem = "" if volume > _least_volume(mesh) else "its volume is zero: it encloses nothing"
+    return _settled(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
+
+
+def _settled(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> Settled:
+    triangles = mesh.triangles.astype(np.int32)
+    measured = 0.0 if problem else volume
+    return Settled(mesh.vertices, triangles, measured, mesh.notes, problem, mesh.kept, turned)
+
+
+def _least_volume(mesh: _Candidate) -> float:
+    """Return what rounding alone may make of a volume of zero, mm3."""
+    return 1e-15 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) ** 3
 
 
 def _turning_note(whole: bool, count: int, shells: int) -> str:
@@ -185,11 +224,8 @@ def _turning_note(whole: bool, count: int, shells: int) -> str:
 
 
 def _refused(mesh: _Candidate) -> Settled:
-    untouched = np.zeros(len(mesh.triangles), np.bool_)
     problem = _describe_edges(mesh) if len(mesh.triangles) else "every triangle is without area"
-    return Settled(
-        mesh.vertices, mesh.triangles.astype(np.int32), 0.0, mesh.notes, problem, mesh.kept, untouched
-    )
+    return _settled(mesh, 0.0, problem, np.zeros(len(mesh.triangles), np.bool_))
 
 
 def _describe_edges(mesh: _Candidate) -> str:
