@@ -1,0 +1,37 @@
+"""The built-in volume makers."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from amprep.hookspecs import VolumeMaker, hookimpl
+from amprep.model.control import Stop
+from amprep.model.part import Part
+from amprep.model.volume import Boxes
+
+amprep_api = 1
+
+
+def _box(part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> Boxes:  # noqa: ARG001
+    from amprep.plugins.volumes.boxes import enclosing_box
+
+    return enclosing_box(part)
+
+
+def _boxes(part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> Boxes:  # noqa: ARG001
+    from amprep.plugins.volumes.boxes import given_boxes
+
+    return given_boxes(part)
+
+
+@hookimpl
+def amprep_volume_makers() -> Iterable[VolumeMaker]:
+    """Yield the built-in volume makers."""
+    yield VolumeMaker(name="box", summary="The box around the part.", run=_box, makes="box")
+    yield VolumeMaker(
+        name="boxes",
+        summary="The boxes that the job gives for the part, checked to contain it.",
+        run=_boxes,
+        makes="boxes",
+    )

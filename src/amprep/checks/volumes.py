@@ -1,0 +1,82 @@
+"""The volume maker's promise: the bounding volume contains the part as a solid, interior included."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.checks.violation import Violation
+from amprep.geometry.separation import box_solids, convex_solid, thickness
+from amprep.geometry.solids import as_manifold
+from amprep.model.arrays import CONTACT_TOLERANCE, Floats
+from amprep.model.part import Part
+from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+_NOTHING_MM3 = 1e-9
+
+
+def check_volume(part: Part, volume: BoundingVolume) -> list[Violation]:
+    """Return where the part reaches further than `CONTACT_TOLERANCE` out of the volume.
+
+    The part counts as a solid: what is inside its surface has to be covered too. Of a surface that
+    encloses nothing, the triangles are.
+    """
+    if isinstance(volume, Boxes) and len(volume.lo) == 1:
+        return _in_one_box(part, volume)
+    cover = _cover(volume)
+    outside = (_solid(part) if part.is_solid else _sheet(part, volume)) - cover
+    if outside.is_empty() or outside.volume() <= _NOTHING_MM3:
+        return []
+    if not isinstance(volume, Boxes) and thickness(outside) <= CONTACT_TOLERANCE:
+        return []
+    box = outside.bounding_box()
+    return [_violation(part, f"{outside.volume():.4g} mm3 of it", np.array(box[:3]), np.array(box[3:]))]
+
+
+def _in_one_box(part: Part, volume: Boxes) -> list[Violation]:
+    least, most = part.mesh.bounds
+    if (least >= volume.lo[0] - CONTACT_TOLERANCE).all() and (most <= volume.hi[0] + CONTACT_TOLERANCE).all():
+        return []
+    reach = max(float((volume.lo[0] - least).max()), float((most - volume.hi[0]).max()))
+    return [_violation(part, f"it by up to {reach:.4g} mm", least, most)]
+
+
+def _violation(part: Part, what: str, least: Floats, most: Floats) -> Violation:
+    place = " to ".join("(" + ", ".join(f"{c:.3f}" for c in corner.tolist()) + ")" for corner in (least, most))
+    return Violation("volume contains part", part.name, f"the bounding volume leaves out {what}, within {place} mm")
+
+
+def _cover(volume: BoundingVolume) -> "Manifold":
+    """Return the volume as a solid; boxes are grown by the tolerance, which also closes gaps of rounding."""
+    from manifold3d import Manifold, OpType
+
+    if isinstance(volume, Boxes):
+        return box_solids(volume.lo - CONTACT_TOLERANCE, volume.hi + CONTACT_TOLERANCE)
+    if isinstance(volume, ConvexPieces):
+        return Manifold.batch_boolean([convex_solid(piece.vertices) for piece in volume.pieces], OpType.Add)
+    return as_manifold(volume.mesh.vertices, volume.mesh.triangles)
+
+
+def _solid(part: Part) -> "Manifold":
+    return as_manifold(part.mesh.vertices, part.mesh.triangles)
+
+
+def _sheet(part: Part, volume: BoundingVolume) -> "Manifold":
+    """Return the triangles that no single box holds, as thin prisms."""
+    from manifold3d import Manifold, OpType
+
+    corners = part.mesh.vertices[part.mesh.triangles]
+    if isinstance(volume, Boxes):
+        lo, hi = corners.min(axis=1), corners.max(axis=1)
+        held = np.zeros(len(corners), dtype=bool)
+        for least, most in zip(volume.lo - CONTACT_TOLERANCE, volume.hi + CONTACT_TOLERANCE, strict=True):
+            held |= ((lo >= least) & (hi <= most)).all(axis=1)
+        corners = corners[~held]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    corners, normal, length = corners[length > 0], normal[length > 0], length[length > 0]
+    offset = 0.1 * CONTACT_TOLERANCE * (normal / length[:, None])[:, None]
+    prisms = [convex_solid(prism) for prism in np.concatenate((corners - offset, corners + offset), axis=1)]
+    return Manifold.batch_boolean(prisms, OpType.Add) if prisms else Manifold()
