@@ -61,6 +61,43 @@ def draw(points, triangles, first, depth, ids):
 
 
 @njit(cache=True)
+def light_facets(vertices, triangles, axes, sun, pixels_per_mm, normals, facets):
+    """Compute the normal of each triangle and how it takes the light on the side that the viewer sees.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` float64 mm, ``(m, 3)`` int32.
+    axes
+        ``(3, 3)`` float64, rows: right, down, away from the viewer.
+    sun
+        ``(3,)`` float64, unit vector along the light's way.
+    normals
+        ``(m, 3)`` float32, modified in place: unit normals, zero without area.
+    facets
+        ``(m, 4)`` float32, modified in place: share of direct light, share of ambient light, and how the
+        depth grows in mm for a pixel to the right and down.
+    """
+    for k in range(triangles.shape[0]):
+        a, b, c = vertices[triangles[k, 0]], vertices[triangles[k, 1]], vertices[triangles[k, 2]]
+        x = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])
+        y = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2])
+        z = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        length = np.sqrt(x * x + y * y + z * z)
+        if length > 0.0:
+            x, y, z = x / length, y / length, z / length
+        normals[k, 0], normals[k, 1], normals[k, 2] = x, y, z
+        if x * axes[2, 0] + y * axes[2, 1] + z * axes[2, 2] > 0.0:
+            x, y, z = -x, -y, -z
+        away = x * axes[2, 0] + y * axes[2, 1] + z * axes[2, 2]
+        steep = min(away, -0.08) * pixels_per_mm
+        facets[k, 0] = 0.68 * max(-(x * sun[0] + y * sun[1] + z * sun[2]), 0.0)
+        facets[k, 1] = 0.34 + 0.20 * z - 0.10 * away
+        facets[k, 2] = -(x * axes[0, 0] + y * axes[0, 1] + z * axes[0, 2]) / steep
+        facets[k, 3] = -(x * axes[1, 0] + y * axes[1, 1] + z * axes[1, 2]) / steep
+
+
+@njit(cache=True)
 def lit_share(shadow, column, row, near, bias):
     """Return the share in [0, 1] of the four nearest shadow cells that do not lie nearer to the light."""
     height, width = shadow.shape
@@ -152,11 +189,10 @@ def shade(
         ``(s, s)`` float32 depth seen from the light.
     to_world, to_light
         ``(3, 4)`` float64: (column, row, depth) to build coordinates, and to the shadow's column, row, depth.
-    facets
-        ``(m, 4)`` float32 per triangle: share of direct light, share of ambient light, and how the depth
-        grows in mm for a pixel to the right and down.
-    normals, kinds, owner, colours
-        Per triangle: ``(m, 3)`` float32 unit normal, uint8 kind, int32 body, ``(m, 3)`` float32 linear.
+    normals, facets
+        Per triangle, see `light_facets`.
+    kinds, owner, colours
+        Per triangle: uint8 kind, int32 body, ``(m, 3)`` float32 linear colour.
     mark_colours
         ``(k, 3)`` float32 linear colour per triangle of the marks, shaded already.
     offsets

@@ -70,4 +70,4 @@ def _camera(bodies: list[Body], plate: Floats, size: tuple[int, int]) -> Camera:
 
 def _save(image: "Image", path: Path) -> None:
     with replacing(path) as temporary:
-        image.save(temporary, format="PNG", compress_level=6)
+        image.save(temporary, format="PNG", compress_level=4)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from amprep.model import BuildVolume
 from amprep.model.arrays import Floats
-from amprep.report.camera import Camera, fitted, view_axes
+from amprep.report.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.scene import Body, Scene, assemble, linear, unit_normals
 
 SUN = view_axes(-112.0, 56.0)
@@ -42,12 +42,12 @@ def render(
     main = _drawn(scene.vertices, scene.triangles, camera, size)
     over, mark_colours = _drawn_marks(marks, camera, size)
     sun, shadow = _shadow(scene)
-    normals = unit_normals(scene.vertices, scene.triangles)
+    normals, facets = _lit(scene, camera)
     reach = max(3.0, 60.0 / camera.pixels_per_mm)
     image = np.zeros((size[1], size[0], 3), np.float32)
     shade(
         main.ids, main.depth, over.ids, over.depth, shadow, camera.inverse, _chained(sun, camera),
-        _facets(normals, camera), normals.astype(np.float32), scene.kinds, scene.owner, scene.colours,
+        facets, normals, scene.kinds, scene.owner, scene.colours,
         mark_colours, _offsets(reach * camera.pixels_per_mm),
         _plate(space, camera, reach, 0.3 + 2.0 / sun.pixels_per_mm), _background(size[1]), image,
     )  # fmt: skip
@@ -70,9 +70,10 @@ def _drawn_marks(
         nothing = np.empty((0, 3))
         return _drawn(nothing, np.empty((0, 3), np.int32), camera, size), np.empty((0, 3), np.float32)
     mesh = marks.mesh
+    triangles = mesh.triangles.copy()  # writable like the scene's: a read-only array would compile `draw` again
     facing = -unit_normals(mesh.vertices, mesh.triangles) @ camera.axes[2]
     tones = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * np.array(linear(marks.colour))
-    return _drawn(mesh.vertices, mesh.triangles, camera, size), tones.astype(np.float32)
+    return _drawn(mesh.vertices, triangles, camera, size), tones.astype(np.float32)
 
 
 def _shadow(scene: Scene) -> tuple[Camera, NDArray[np.float32]]:
@@ -80,8 +81,8 @@ def _shadow(scene: Scene) -> tuple[Camera, NDArray[np.float32]]:
     from amprep.kernels.raster import PLATE, draw
 
     casting = scene.triangles[scene.kinds != PLATE]
-    points = scene.vertices[np.unique(casting)] if len(casting) else scene.vertices
-    camera = fitted(SUN, points, (SHADOW_CELLS, SHADOW_CELLS), margin=4.0)
+    corners = box_corners(scene.vertices.min(axis=0), scene.vertices.max(axis=0))
+    camera = fitted(SUN, corners, (SHADOW_CELLS, SHADOW_CELLS), margin=4.0)
     depth = np.full((SHADOW_CELLS, SHADOW_CELLS), np.inf, np.float32)
     draw(camera.project(scene.vertices), casting, 0, depth, np.empty((0, 0), np.int32))
     return camera, depth
@@ -94,14 +95,16 @@ def _chained(sun: Camera, camera: Camera) -> Floats:
     return chained
 
 
-def _facets(normals: Floats, camera: Camera) -> NDArray[np.float32]:
-    """Return what `shade` calls facets: light on the side that the viewer sees, and slopes of the depth."""
-    turned = np.where((normals @ camera.axes[2] > 0.0)[:, None], -normals, normals)
-    seen = turned @ camera.axes.T
-    steep = np.minimum(seen[:, 2], -0.08) * camera.pixels_per_mm
-    sun = 0.68 * np.maximum(-turned @ SUN[2], 0.0)
-    ambient = 0.34 + 0.20 * turned[:, 2] - 0.10 * seen[:, 2]
-    return np.column_stack([sun, ambient, -seen[:, 0] / steep, -seen[:, 1] / steep]).astype(np.float32)
+def _lit(scene: Scene, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return normals and facets, see `light_facets`."""
+    from amprep.kernels.raster import light_facets
+
+    normals = np.zeros((len(scene.triangles), 3), np.float32)
+    facets = np.zeros((len(scene.triangles), 4), np.float32)
+    light_facets(
+        scene.vertices, scene.triangles, camera.axes, SUN[2], camera.pixels_per_mm, normals, facets
+    )
+    return normals, facets
 
 
 def _offsets(reach: float) -> NDArray[np.int64]:

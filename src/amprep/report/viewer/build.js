@@ -92,14 +92,15 @@ export function addEdges(shown, colour, done) {
   const queue = [...shown.parts];
   const next = () => {
     const mesh = queue.shift();
-    if (!mesh || shown.gone) return;
+    if (shown.gone) return;
+    if (!mesh) return done();
     if (!made.has(mesh.geometry)) made.set(mesh.geometry, new THREE.EdgesGeometry(mesh.geometry, CREASE_DEG));
     const edges = new THREE.LineSegments(made.get(mesh.geometry), look);
     edges.raycast = () => {};
     mesh.add(edges);
     edges.updateMatrixWorld(true);
+    edges.visible = false;
     shown.edges.push(edges);
-    done(edges);
     setTimeout(next);
   };
   setTimeout(next);

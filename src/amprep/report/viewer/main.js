@@ -77,17 +77,14 @@ class Viewer {
     });
     this.#apply();
     this.view("oblique");
-    addEdges(this.shown, 0x10151c, (edges) => {
-      edges.visible = this.layers.edges;
-      this.stage.draw();
-    });
+    addEdges(this.shown, 0x10151c, () => this.#apply());
   }
 
   view(name) {
     const [x, y] = this.build.space.size;
     const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, 10)));
     const ball = box.getBoundingSphere(new THREE.Sphere());
-    this.stage.look(ball.center, 0.82 * ball.radius, VIEWS[name].clone());
+    this.stage.look(ball.center, 0.87 * ball.radius, VIEWS[name].clone());
   }
 
   select(found) {
@@ -131,7 +128,6 @@ class Viewer {
       mesh.material.transparent = layers.glass;
       mesh.material.opacity = layers.glass ? 0.28 : 1;
       mesh.material.depthWrite = !layers.glass;
-      mesh.material.needsUpdate = true;
     });
     for (const mesh of shown.supports) mesh.visible = layers.supports;
     for (const mesh of shown.marks) if (mesh) mesh.visible = layers.marks;
