@@ -5,13 +5,13 @@ from typing import Literal
 
 import numpy as np
 
+from amprep.checks.needs import needs_of
 from amprep.model.arrays import Bools, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
 from amprep.pipeline.support_grid import choose_pitch, coloured, cubes_of, frame_of
 from amprep.pipeline.support_layout import SupportLayout
-from amprep.pipeline.support_needs import needs_of
 from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
 from amprep.pipeline.support_routing import (
     Network,

@@ -1,0 +1,204 @@
+"""The promise of coverage: whatever needs support is within reach of a contact, or listed with its reason."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.checks.needs import needs_of
+from amprep.checks.violation import Violation
+from amprep.geometry.inside import inside
+from amprep.geometry.overhangs import OverhangRegion
+from amprep.geometry.sampling import Samples, sample_overhangs, sample_segments
+from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody, Unsupported
+from amprep.model.mesh import Mesh
+
+PROMISE = "coverage"
+
+_NUDGE = 0.01
+"""mm; a contact is looked for this far below a face, and a face this far above a support."""
+
+_JUDGE_ANGLE_DEG = 0.02
+"""What the judge grants at the threshold, so that rounding in a file breaks no promise."""
+
+Reasons = Callable[[int, Floats], Sequence[str]]
+
+
+class _Covered(NamedTuple):
+    """A part's samples, its regions, and which samples are within reach of a contact."""
+
+    samples: Samples
+    regions: tuple[OverhangRegion, ...]
+    covered: Bools
+
+
+def find_unsupported(
+    parts: Sequence[PlacedPart], bodies: Sequence[SupportBody], settings: BuildSettings, reason_of: Reasons
+) -> tuple[Unsupported, ...]:
+    """List what needs support and has no contact within reach, by part, region and reason.
+
+    Parameters
+    ----------
+    reason_of
+        Called with a part's index and points ``(n, 3)``; says for each why nothing holds it.
+    """
+    found = []
+    for part, each in enumerate(_coverage(parts, bodies, settings, settings.reach)):
+        bare = np.flatnonzero(~each.covered)
+        reasons = np.array(reason_of(part, each.samples.points[bare]), dtype=object)
+        for region in np.unique(each.samples.region[bare]):
+            here = each.samples.region[bare] == region
+            for reason in sorted(set(reasons[here])):
+                chosen = bare[here & (reasons == reason)]
+                found.append(
+                    _listed(part, parts[part].label, each, int(region), chosen, str(reason), settings)
+                )
+    return tuple(found)
+
+
+def check_coverage(build: Build) -> list[Violation]:
+    """Judge a finished build from its meshes alone: every sample of what needs support is held or listed."""
+    if not build.settings.supported:
+        return []
+    reach = build.settings.reach + _NUDGE
+    found = []
+    for part, each in enumerate(
+        _coverage(build.parts, build.supports, build.settings, reach, _JUDGE_ANGLE_DEG)
+    ):
+        covered = each.covered.copy()
+        for listed in build.unsupported:
+            if listed.part == part and not covered.all():
+                bare = np.flatnonzero(~covered)
+                near = _nearest(listed.points, each.samples.points[bare], listed.radius + _NUDGE)
+                covered[bare] = near
+        for region in np.unique(each.samples.region[~covered]):
+            bare = ~covered & (each.samples.region == region)
+            x, y, z = each.samples.points[bare][0]
+            message = (
+                f"{_name(int(region), build.parts[part].label)} ({each.regions[region].kind}) has {bare.sum()} "
+                f"sample points over {build.settings.reach:g} mm from any contact and is not listed, "
+                f"first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
+            )
+            found.append(Violation(PROMISE, build.parts[part].label, message))
+    return found
+
+
+def _coverage(
+    parts: Sequence[PlacedPart],
+    bodies: Sequence[SupportBody],
+    settings: BuildSettings,
+    reach: float,
+    grant_deg: float = 0.0,
+) -> list[_Covered]:
+    """Sample every part's needs, find all contacts, and see which samples have one within reach."""
+    angle = settings.overhang_angle_deg
+    spacing = settings.reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(min(angle, 85.0)))))
+    meshes = [placed.mesh for placed in parts]
+    samples, regions = [], []
+    for placed, mesh in zip(parts, meshes, strict=True):
+        needs = needs_of(
+            placed,
+            mesh,
+            overhang_angle_deg=angle - grant_deg,
+            least_area=settings.least_area,
+            least_length=settings.least_length,
+        )
+        samples.append(sample_overhangs(mesh.vertices, mesh.triangles, needs, spacing))
+        regions.append(needs.regions)
+    points = np.concatenate([np.empty((0, 3)), *(each.points for each in samples)])
+    touched = _touched(points, bodies)
+    covered = touched | _nearest(points[touched], points, reach)
+    if not covered.all():
+        bare = np.flatnonzero(~covered)
+        contacts = _embedded(points[bare], bodies, meshes, spacing, reach)
+        covered[bare] = _nearest(contacts, points[bare], reach)
+    first = np.concatenate([[0], np.cumsum([len(each.points) for each in samples])]).astype(int)
+    return [
+        _Covered(own, names, covered[a:b])
+        for own, names, a, b in zip(samples, regions, first[:-1], first[1:], strict=True)
+    ]
+
+
+def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
+    """Tell which points rest on the plate or have the inside of a solid support right below them."""
+    touched = np.asarray(points[:, 2] <= CONTACT_TOLERANCE)
+    lower = points - (0.0, 0.0, _NUDGE)
+    for body in bodies:
+        if not body.surface:
+            lo, hi = body.mesh.bounds
+            near = np.flatnonzero(~touched & ((lower >= lo) & (lower <= hi)).all(axis=1))
+            touched[near] = inside(lower[near], body.mesh.vertices, body.mesh.triangles)
+    return touched
+
+
+def _embedded(
+    points: Floats, bodies: Sequence[SupportBody], meshes: Sequence[Mesh], spacing: float, reach: float
+) -> Floats:
+    """Return points on the edges of supports that lie in or on a part they hold, near `points`."""
+    found = [np.empty((0, 3))]
+    for body in bodies:
+        lo, hi = body.mesh.bounds
+        near = points[((points >= lo - reach) & (points <= hi + reach)).all(axis=1)]
+        if not len(near):
+            continue
+        on_edges = _edge_points(body.mesh, near.min(axis=0) - reach, near.max(axis=0) + reach, spacing)
+        on_edges = on_edges[_nearest(near, on_edges, reach)]
+        upper = on_edges + (0.0, 0.0, _NUDGE)
+        for part in body.parts:
+            held = inside(upper, meshes[part].vertices, meshes[part].triangles)
+            found.append(on_edges[held])
+    return np.concatenate(found)
+
+
+def _edge_points(mesh: Mesh, lo: Floats, hi: Floats, spacing: float) -> Floats:
+    """Return points along the mesh's edges that can meet the box from `lo` to `hi`."""
+    ends = np.sort(
+        np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
+    )
+    key = np.unique(ends[:, 0].astype(np.int64) * len(mesh.vertices) + ends[:, 1])
+    start, end = (mesh.vertices[index] for index in np.divmod(key, len(mesh.vertices)))
+    meets = ((np.maximum(start, end) >= lo) & (np.minimum(start, end) <= hi)).all(axis=1)
+    points, _ = sample_segments(start[meets], end[meets], spacing)
+    return points[((points >= lo) & (points <= hi)).all(axis=1)]
+
+
+def _nearest(targets: Floats, points: Floats, reach: float) -> Bools:
+    """Tell which `points` have one of `targets` within `reach`."""
+    from scipy.spatial import KDTree
+
+    if not len(targets) or not len(points):
+        return np.zeros(len(points), np.bool_)
+    distance, _ = KDTree(targets).query(points, distance_upper_bound=reach)
+    return np.asarray(np.isfinite(distance))
+
+
+def _listed(
+    part: int,
+    label: str,
+    each: _Covered,
+    region: int,
+    chosen: np.ndarray,
+    reason: str,
+    settings: BuildSettings,
+) -> Unsupported:
+    """Measure what is bare by its share of the region's samples, and thin its points for the record."""
+    kind, measure, _ = each.regions[region]
+    own = each.samples.region == region
+    weight = each.samples.inner if each.samples.inner[own].any() else np.ones(len(own), np.bool_)
+    share = weight[chosen].sum() / weight[own].sum()
+    points = each.samples.points[chosen]
+    _, first = np.unique(np.floor(points / (settings.reach / 3)), axis=0, return_index=True)
+    return Unsupported(
+        part,
+        _name(region, label),
+        kind,
+        reason,
+        float(measure * share),
+        points[np.sort(first)],
+        settings.reach,
+    )
+
+
+def _name(region: int, label: str) -> str:
+    return f"overhang {region + 1} of {label}"
