@@ -11,7 +11,7 @@ from amprep.model.arrays import Floats
 from amprep.model.mesh import Mesh
 from amprep.threemf import record
 from amprep.threemf.reading_arrays import fetch_mesh
-from amprep.threemf.record_values import Record, from_json, listing, mapping, table, whole, word
+from amprep.threemf.record_values import Record, listing, mapping, table, whole, word
 from amprep.threemf.writing_merged import inverse, moved_exactly
 
 if TYPE_CHECKING:
@@ -55,8 +55,13 @@ class PieceReader:
         self._model = model
         self._shapes: dict[int, _Shape] = {}
 
-    def pieces(self) -> list[Piece]:
+    def pieces(self, recorded: Sequence[Any]) -> list[Piece]:
         """Return every part and support of every item.
+
+        Parameters
+        ----------
+        recorded
+            For each item, the list of its pieces.
 
         Raises
         ------
@@ -65,16 +70,15 @@ class PieceReader:
         """
         found: list[Piece] = []
         items = self._model.GetBuildItems()
-        while items.MoveNext():
-            found += self._item(items.GetCurrent())
+        if items.Count() != len(recorded):
+            raise ValueError(f"the pieces of {len(recorded)} items are recorded, there are {items.Count()}")
+        for entries in recorded:
+            items.MoveNext()
+            records = [mapping(each, "a piece") for each in listing(entries, record.PIECES)]
+            found += self._item(items.GetCurrent(), records)
         return found
 
-    def _item(self, item: "Lib3MF.BuildItem") -> Iterator[Piece]:
-        entries = entries_of(item.GetMetaDataGroup())
-        if record.PIECES not in entries:
-            raise ValueError("an item has no record of its pieces")
-        recorded = listing(from_json(entries[record.PIECES]), record.PIECES)
-        records = [mapping(each, "a piece") for each in recorded]
+    def _item(self, item: "Lib3MF.BuildItem", records: Sequence[Record]) -> Iterator[Piece]:
         target, matrix = item.GetObjectResource(), _matrix(item.GetObjectTransform())
         if target.IsComponentsObject():
             return self._components(target, matrix, records)
@@ -152,12 +156,6 @@ def _in_own_coordinates(piece: Piece) -> Piece:
     to_part = table(piece.record, "to_part", 16).reshape(4, 4)
     mesh = Mesh(moved_exactly(piece.mesh.vertices, to_part), piece.mesh.triangles)
     return replace(piece, mesh=mesh, matrix=piece.matrix @ inverse(to_part))
-
-
-def entries_of(group: "Lib3MF.MetaDataGroup") -> dict[str, str]:
-    """Return amprep's own metadata of a group, by name."""
-    entries = (group.GetMetaData(index) for index in range(group.GetMetaDataCount()))
-    return {each.GetName(): each.GetValue() for each in entries if each.GetNameSpace() == record.NAMESPACE}
 
 
 def _matrix(transform: "Lib3MF.Transform") -> Floats:

@@ -8,7 +8,8 @@ from amprep.errors import InputError
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.part import Part
 from amprep.threemf import record
-from amprep.threemf.build_pieces import Piece, PieceReader, entries_of
+from amprep.threemf.build_pieces import Piece, PieceReader
+from amprep.threemf.build_record import Entries, read_entries
 from amprep.threemf.package import open_package
 from amprep.threemf.reading_arrays import load_model
 from amprep.threemf.record_values import from_json, listing, text, whole, wholes
@@ -30,10 +31,9 @@ def read_build(path: Path) -> Build:
     import lib3mf
 
     try:
-        model = load_model(package.data).model
-        entries = entries_of(model.GetMetaDataGroup())
-        _check_version(entries.get(record.FORMAT), path)
-        return _build(model, entries)
+        entries = read_entries(package.data)
+        _check_version(entries.model.get(record.FORMAT), path)
+        return _build(load_model(package.data).model, entries)
     except lib3mf.ELib3MFException as error:
         raise InputError(f"{path}: lib3mf refuses the file ({error}); write the build again") from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -55,14 +55,14 @@ def _check_version(version: str | None, path: Path) -> None:
         )
 
 
-def _build(model: Any, entries: dict[str, str]) -> Build:
-    space = record.volume_of(_recorded(entries, record.VOLUME))
-    settings = record.settings_of(_recorded(entries, record.SETTINGS), space)
-    known = listing(_recorded(entries, record.PARTS), record.PARTS)
-    pieces = PieceReader(model).pieces()
+def _build(model: Any, entries: Entries) -> Build:
+    space = record.volume_of(_recorded(entries.model, record.VOLUME))
+    settings = record.settings_of(_recorded(entries.model, record.SETTINGS), space)
+    known = listing(_recorded(entries.model, record.PARTS), record.PARTS)
+    pieces = PieceReader(model).pieces([_recorded(entry, record.PIECES) for entry in entries.items])
     parts = _placed_parts([piece for piece in pieces if piece.role == "part"], known)
     supports = _supports([piece for piece in pieces if piece.role == "support"], len(parts))
-    regions = listing(_recorded(entries, record.UNSUPPORTED), record.UNSUPPORTED)
+    regions = listing(_recorded(entries.model, record.UNSUPPORTED), record.UNSUPPORTED)
     return Build(
         settings, parts, supports, tuple(record.unsupported_of(each, len(parts)) for each in regions)
     )

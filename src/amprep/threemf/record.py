@@ -39,6 +39,12 @@ PIECES = "pieces"
 HOLDS = "holds"
 """Name of a support object's metadata in `NAMESPACE`: the labels of the parts that it holds."""
 
+
+def numbered(name: str, number: int) -> str:
+    """Return the name of the n-th part of an entry that is cut into several."""
+    return name if number == 1 else f"{name}.{number}"
+
+
 _SETTING_TEXTS = ("build_id", "printer")
 _SETTING_NUMBERS = (
     "clearance",

@@ -12,6 +12,7 @@ from amprep.model.arrays import Floats
 
 Record = Mapping[str, Any]
 
+_TO_ESCAPE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]|[&<>]")
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -21,11 +22,11 @@ def xml_text(text: str) -> str:
 
 
 def to_json(value: Any) -> str:
-    """Return JSON that XML can carry; a list of records gets a line for each."""
+    """Return JSON that XML can carry without escapes; a list of records gets a line for each."""
     if isinstance(value, list) and value and isinstance(value[0], dict):
         return "[\n" + ",\n".join(to_json(entry) for entry in value) + "\n]"
     text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-    return _NOT_XML.sub(lambda found: f"\\u{ord(found.group()):04x}", text)
+    return _TO_ESCAPE.sub(lambda found: f"\\u{ord(found.group()):04x}", text)
 
 
 def from_json(text: str) -> Any:

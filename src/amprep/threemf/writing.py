@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from amprep.errors import AmprepError
@@ -13,13 +14,14 @@ from amprep.threemf.writing_document import Document
 from amprep.threemf.writing_files import replacing, write_package
 from amprep.threemf.writing_geometry import check_geometry, mesh_text, text_size
 from amprep.threemf.writing_merged import CONFIG_NAME, SLICER_NAMESPACE, merged_document, slicer_config
-from amprep.threemf.writing_skeleton import MODEL_NAME, Skeleton, make_skeleton
+from amprep.threemf.writing_skeleton import MODEL_NAME, Skeleton, is_readable, make_skeleton
 
 PREFIXES = {NAMESPACE: "amprep", CURA_NAMESPACE: "cura", SLICER_NAMESPACE: "slic3rpe"}
 """Prefixes by the letters of which other programs know a namespace, and our own to be read by people."""
 
 _MESH = re.compile(rb"<mesh>.*?</mesh>", re.DOTALL)
 _METADATA_TEXT = re.compile(rb"(?<=>)[^<]*(?=</metadata>)")
+_PADDINGS = range(0, 8000, 1000)
 
 
 def write_build(build: Build, path: Path) -> None:
@@ -42,13 +44,28 @@ def write_build(build: Build, path: Path) -> None:
     for body in document.bodies:
         check_geometry(body)
     skeleton = make_skeleton(document, ["config"] if merged else [])
-    entries = [(name, len(data), iter([data])) for name, data in skeleton.others.items()]
-    entries.append((MODEL_NAME, _model_size(document, skeleton), _model_text(document, skeleton)))
+    others = dict(skeleton.others)
     if merged:
-        config = slicer_config(document.bodies, skeleton.object_ids)
-        entries.append((CONFIG_NAME, len(config), iter([config])))
+        others[CONFIG_NAME] = slicer_config(document.bodies, skeleton.object_ids)
     with replacing(path) as temporary:
-        write_package(temporary, entries)
+        _write_readable(temporary, document, replace(skeleton, model=_finished(skeleton), others=others))
+
+
+def _write_readable(path: Path, document: Document, skeleton: Skeleton) -> None:
+    """Write the package so that lib3mf can read it.
+
+    lib3mf 2.5.0 fails on a tag or text with an escaped character that its buffer of 64 KiB cuts; some blanks
+    before the first tag with a mesh move the cut.
+    """
+    size = 2 * len(skeleton.model) + sum(map(text_size, document.bodies))
+    others = [(name, len(data), [data]) for name, data in skeleton.others.items()]
+    for padding in _PADDINGS:
+        write_package(path, [*others, (MODEL_NAME, size, _model_text(document, skeleton, padding))])
+        if b"&" not in skeleton.model or is_readable(path):
+            return
+    raise AmprepError(
+        f"cannot write {document.name!r} so that lib3mf reads it; use part names without & < > or quotes"
+    )
 
 
 def _refuse_surfaces(build: Build) -> None:
@@ -60,14 +77,15 @@ def _refuse_surfaces(build: Build) -> None:
         )
 
 
-def _model_size(document: Document, skeleton: Skeleton) -> int:
-    return 2 * len(skeleton.model) + sum(map(text_size, document.bodies))
+def _finished(skeleton: Skeleton) -> bytes:
+    """Return the model as it is to be, but for its meshes: quotes are escaped only where they must be."""
+    text = _with_placements(_with_prefixes(skeleton.model), skeleton.placements).replace(b"&apos;", b"'")
+    return _METADATA_TEXT.sub(lambda found: found.group().replace(b"&quot;", b'"'), text)
 
 
-def _model_text(document: Document, skeleton: Skeleton) -> Iterator[bytes]:
+def _model_text(document: Document, skeleton: Skeleton, padding: int) -> Iterator[bytes]:
     """Yield the model with the bodies' own meshes in the place of lib3mf's triangles."""
-    text = _with_placements(_with_prefixes(skeleton.model), skeleton.placements)
-    text = _METADATA_TEXT.sub(lambda found: found.group().replace(b"&quot;", b'"'), text)
+    text = skeleton.model.replace(b"<resources>", b" " * padding + b"<resources>", 1)
     start = 0
     places = _MESH.finditer(text)
     for body, palette, place in zip(document.bodies, skeleton.palettes, places, strict=True):

@@ -7,7 +7,7 @@ import numpy as np
 from amprep.model.build import Build, SupportBody
 from amprep.model.part import Part
 from amprep.threemf import record
-from amprep.threemf.writing_document import Body, Document, Instance, Item, Metadata, ObjectKind
+from amprep.threemf.writing_document import Body, Document, Instance, Item, ObjectKind
 from amprep.threemf.writing_groups import Group, groups_of
 from amprep.threemf.writing_pieces import (
     build_metadata,
@@ -15,6 +15,7 @@ from amprep.threemf.writing_pieces import (
     part_metadata,
     part_piece,
     pieces_metadata,
+    recorded,
     support_piece,
 )
 
@@ -23,11 +24,11 @@ CURA_NAMESPACE = "http://software.ultimaker.com/xml/cura/3mf/2015/10"
 
 def components_document(build: Build) -> Document:
     """Return the file: the mesh of a part is shared by its copies, supports stay in build coordinates."""
-    parts = distinct_parts(build)
+    groups, parts = groups_of(build), distinct_parts(build)
     bodies = [_part_body(part) for part in parts] + [
         _support_body(build, support) for support in build.supports
     ]
-    items = [_item(build, parts, group) for group in groups_of(build)]
+    items = [_item(build, parts, group) for group in groups]
     return Document(build.settings.build_id, build_metadata(build, parts), tuple(bodies), tuple(items))
 
 
@@ -44,7 +45,7 @@ def _part_body(part: Part) -> Body:
 def _support_body(build: Build, support: SupportBody) -> Body:
     """Return the support's object; a surface must not be filled, which only the type `support` says."""
     holds = ", ".join(build.parts[part].label for part in support.parts)
-    metadata: Metadata = ((record.NAMESPACE, record.HOLDS, holds),)
+    metadata = recorded(record.HOLDS, holds)
     if build.settings.target == "cura":
         metadata += ((CURA_NAMESPACE, "support_mesh", "True"),)
     kind: ObjectKind = "support" if support.surface else "solidsupport"

@@ -24,6 +24,9 @@ STANDARD_NAMES = frozenset(
 )
 """Metadata names that 3MF Core allows without a namespace."""
 
+_LONGEST = 10_000
+"""Characters of a metadata value: lib3mf cannot read back 64 KiB of text or more."""
+
 
 def distinct_parts(build: Build) -> list[Part]:
     """Return each part once, in the order of their first copies."""
@@ -40,7 +43,7 @@ def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
         record.UNSUPPORTED: to_json([record.unsupported_record(region) for region in build.unsupported]),
     }
     titles = (("", "Title", build.settings.build_id), ("", "Application", f"amprep {__version__}"))
-    return titles + tuple((record.NAMESPACE, name, value) for name, value in entries.items())
+    return titles + tuple(part for name, value in entries.items() for part in recorded(name, value))
 
 
 def part_piece(build: Build, index: int, parts: Sequence[Part], digest: str) -> Record:
@@ -65,18 +68,30 @@ def support_piece(build: Build, index: int) -> Record:
 
 def pieces_metadata(pieces: Iterable[Record]) -> Metadata:
     """Return the metadata of an item that holds the pieces."""
-    return ((record.NAMESPACE, record.PIECES, to_json(list(pieces))),)
+    return recorded(record.PIECES, to_json(list(pieces)))
+
+
+def recorded(name: str, value: str) -> Metadata:
+    """Return an entry in amprep's namespace, cut into ``name``, ``name.2`` and so on if it is long."""
+    cuts = range(0, max(len(value), 1), _LONGEST)
+    return tuple(
+        (record.NAMESPACE, record.numbered(name, number), value[cut : cut + _LONGEST])
+        for number, cut in enumerate(cuts, start=1)
+    )
 
 
 def part_metadata(part: Part) -> Metadata:
     """Return what came with the part and other programs may read.
 
-    Entries of amprep's own namespace are left out: they are instructions of the job, done by now.
+    Entries of amprep's own namespace are left out: they are instructions of the job, done by now. So is what
+    lib3mf could not write or read again; amprep's record has it all the same.
     """
     return tuple(
         (namespace, name, value)
         for (namespace, name), value in part.metadata.items()
-        if namespace != record.NAMESPACE and (name in STANDARD_NAMES if not namespace else _is_name(name))
+        if namespace != record.NAMESPACE
+        and (name in STANDARD_NAMES if not namespace else _is_name(name))
+        and len(value) <= _LONGEST
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 from zipfile import ZipFile
@@ -18,6 +19,7 @@ from amprep.threemf.writing_geometry import Palette
 
 MODEL_NAME = "3D/3dmodel.model"
 _GREY = 0x808080FF
+_LONGEST_NAME = 1000
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,24 @@ def make_skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
     return Skeleton(model, files, tuple(builder.palettes), ids, builder.placements)
 
 
+def is_readable(path: Path) -> bool:
+    """Return whether lib3mf reads the package strictly."""
+    import lib3mf
+
+    reader = lib3mf.get_wrapper().CreateModel().QueryReader("3mf")
+    reader.SetStrictModeActive(True)
+    try:
+        reader.ReadFromFile(str(path))
+    except lib3mf.ELib3MFException:
+        return False
+    return True
+
+
+def _name(text: str) -> str:
+    """Return a name that lib3mf can read again: no more than 64 KiB, escapes included."""
+    return xml_text(text)[:_LONGEST_NAME]
+
+
 class _Builder:
     """Fills a lib3mf model; every identifier follows from the document's name and the order of the calls."""
 
@@ -95,8 +115,8 @@ class _Builder:
         mesh.SetType(
             {"model": kinds.Model, "solidsupport": kinds.SolidSupport, "support": kinds.Support}[body.kind]
         )
-        mesh.SetName(xml_text(body.name))
-        mesh.SetPartNumber(xml_text(body.part_number))
+        mesh.SetName(_name(body.name))
+        mesh.SetPartNumber(_name(body.part_number))
         mesh.SetUUID(self.next_uuid())
         self.annotate(mesh.GetMetaDataGroup(), body.metadata)
         self.paint(mesh, body.appearance)
@@ -123,9 +143,7 @@ class _Builder:
         if (material, colour) not in self.paints:
             value = self.colour(_GREY if colour is None else int(colour.removeprefix("#"), 16))
             group = self.model.AddColorGroup() if material is None else self.model.AddBaseMaterialGroup()
-            added = (
-                group.AddColor(value) if material is None else group.AddMaterial(xml_text(material), value)
-            )
+            added = group.AddColor(value) if material is None else group.AddMaterial(_name(material), value)
             self.paints[material, colour] = (group.GetResourceID(), added)
         return self.paints[material, colour]
 
@@ -137,7 +155,7 @@ class _Builder:
         identity = self.wrapper.GetIdentityTransform()
         if item.group:
             target = self.model.AddComponentsObject()
-            target.SetName(xml_text(item.group))
+            target.SetName(_name(item.group))
             target.SetUUID(self.next_uuid())
             for instance in item.instances:
                 self.place(target.AddComponent(self.meshes[instance.body], identity), instance)
