@@ -10,6 +10,7 @@ from typing import Any
 
 from amprep.report.atomic import replacing
 from amprep.report.html_tables import body_sections, header
+from amprep.report.json_report import plain
 from amprep.report.record import RunRecord
 from amprep.report.view_model import view_model
 
@@ -73,5 +74,5 @@ def _digest(text: str) -> str:
 
 def _json(model: dict[str, Any]) -> str:
     """Return JSON that no string inside can end the element with."""
-    text = json.dumps(model, separators=(",", ":"), allow_nan=False)
+    text = json.dumps(plain(model), separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

@@ -5,6 +5,14 @@ import numpy as np
 from amprep.model import Mesh
 from amprep.model.arrays import Floats, Ints
 
+MOST_MARKS = 400
+"""Marks shown for one region; they are for finding it, not for measuring it."""
+
+
+def thinned(points: Floats) -> Floats:
+    """Return at most `MOST_MARKS` of the points, evenly taken."""
+    return points[:: max(1, -(-len(points) // MOST_MARKS))]
+
 
 def balls(centres: Floats, radii: Floats) -> Mesh:
     """Return one mesh of coarse balls; centres ``(n, 3)`` mm, radii ``(n,)`` mm."""

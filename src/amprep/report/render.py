@@ -70,7 +70,9 @@ def _drawn_marks(
         nothing = np.empty((0, 3))
         return _drawn(nothing, np.empty((0, 3), np.int32), camera, size), np.empty((0, 3), np.float32)
     mesh = marks.mesh
-    triangles = mesh.triangles.copy()  # writable like the scene's: a read-only array would compile `draw` again
+    triangles = (
+        mesh.triangles.copy()
+    )  # writable like the scene's: a read-only array would compile `draw` again
     facing = -unit_normals(mesh.vertices, mesh.triangles) @ camera.axes[2]
     tones = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * np.array(linear(marks.colour))
     return _drawn(mesh.vertices, triangles, camera, size), tones.astype(np.float32)
@@ -101,9 +103,7 @@ def _lit(scene: Scene, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.
 
     normals = np.zeros((len(scene.triangles), 3), np.float32)
     facets = np.zeros((len(scene.triangles), 4), np.float32)
-    light_facets(
-        scene.vertices, scene.triangles, camera.axes, SUN[2], camera.pixels_per_mm, normals, facets
-    )
+    light_facets(scene.vertices, scene.triangles, camera.axes, SUN[2], camera.pixels_per_mm, normals, facets)
     return normals, facets
 
 

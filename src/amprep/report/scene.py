@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from amprep.model import Build, Mesh
 from amprep.model.arrays import Floats, Ints
 from amprep.report.colours import SUPPORT, UNSUPPORTED, part_colours, rgb
+from amprep.report.marks import balls, thinned
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
 """The kinds of `amprep.kernels.raster`, repeated here so that scenes can be made without the compiler."""
@@ -53,16 +54,14 @@ def plate_body(low: Floats, high: Floats) -> Body:
 
 def unsupported_marks(build: Build, least_radius: float) -> Body | None:
     """Return small balls over every point listed as unsupported, or None when there is none."""
-    from amprep.report.marks import balls
-
-    points = [region.points for region in build.unsupported if len(region.points)]
-    radii = [
-        np.full(len(region.points), max(region.radius, least_radius))
-        for region in build.unsupported
-        if len(region.points)
-    ]
-    if not points:
+    regions = [region for region in build.unsupported if len(region.points)]
+    if not regions:
         return None
+    points = [thinned(region.points) for region in regions]
+    radii = [
+        np.full(len(some), max(region.radius, least_radius))
+        for some, region in zip(points, regions, strict=True)
+    ]
     return Body(balls(np.concatenate(points), np.concatenate(radii)), UNSUPPORTED, PART_KIND)
 
 

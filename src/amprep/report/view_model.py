@@ -7,12 +7,11 @@ import numpy as np
 from amprep.model import Build, Mesh, PlacedPart, SupportBody, Unsupported
 from amprep.report.colours import SUPPORT, part_colours
 from amprep.report.geometry import GeometryPack
+from amprep.report.marks import thinned
 from amprep.report.measures import build_height, part_volume
 from amprep.report.record import RunRecord
 
 LEAST_MARK_MM = 0.6
-MOST_MARKS = 400
-"""Marks shown for one unsupported region; they are for finding it, not for measuring it."""
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
@@ -73,7 +72,7 @@ def _support(body: SupportBody, build: Build, pack: GeometryPack) -> dict[str, A
 def _unsupported(region: Unsupported, pack: GeometryPack) -> dict[str, Any]:
     unit = {"face": " mm²", "edge": " mm"}.get(region.kind)
     size = f"{region.kind}, {region.measure:.2f}{unit}" if unit else region.kind
-    points = region.points[:: max(1, -(-len(region.points) // MOST_MARKS))]
+    points = thinned(region.points)
     marks = pack.add(Mesh(points, np.empty((0, 3), np.int32))) if len(points) else -1
     return {
         "name": region.label,

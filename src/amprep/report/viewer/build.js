@@ -10,6 +10,12 @@ export class Geometries {
     this.bytes = bytes;
     this.meshes = meshes;
     this.made = new Map();
+    this.outlines = new Map();
+  }
+
+  edges(index) {
+    if (!this.outlines.has(index)) this.outlines.set(index, new THREE.EdgesGeometry(this.get(index), CREASE_DEG));
+    return this.outlines.get(index);
   }
 
   get(index) {
@@ -49,7 +55,7 @@ export function showBuild(build, geometries) {
     const mesh = new THREE.Mesh(geometries.get(part.mesh), material(part.colour));
     mesh.matrixAutoUpdate = false;
     mesh.matrix.set(...part.matrix);
-    mesh.userData = { kind: "part", index };
+    mesh.userData = { kind: "part", index, mesh: part.mesh };
     shown.parts.push(mesh);
   });
   build.supports.forEach((body, index) => {
@@ -86,16 +92,14 @@ function marks(region, index, geometries) {
 }
 
 // Outlines are made one mesh at a time between frames: the view is usable before they are there.
-export function addEdges(shown, colour, done) {
-  const made = new Map();
-  const look = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.45 });
+export function addEdges(shown, geometries, done) {
+  const look = new THREE.LineBasicMaterial({ color: 0x10151c, transparent: true, opacity: 0.45 });
   const queue = [...shown.parts];
   const next = () => {
     const mesh = queue.shift();
     if (shown.gone) return;
     if (!mesh) return done();
-    if (!made.has(mesh.geometry)) made.set(mesh.geometry, new THREE.EdgesGeometry(mesh.geometry, CREASE_DEG));
-    const edges = new THREE.LineSegments(made.get(mesh.geometry), look);
+    const edges = new THREE.LineSegments(geometries.edges(mesh.userData.mesh), look);
     edges.raycast = () => {};
     mesh.add(edges);
     edges.updateMatrixWorld(true);
@@ -104,4 +108,10 @@ export function addEdges(shown, colour, done) {
     setTimeout(next);
   };
   setTimeout(next);
+}
+
+// Frees what a build no longer shown holds on the graphics card; its geometry is kept for coming back.
+export function retire(shown) {
+  shown.gone = true;
+  shown.group.traverse((object) => object.material?.dispose());
 }

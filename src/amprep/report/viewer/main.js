@@ -1,7 +1,7 @@
 // Starts the 3D view of a report: reads the page's data blocks, shows a build, connects the controls.
 import * as THREE from "three";
 import { inflate } from "./decode.js";
-import { addEdges, Geometries, showBuild } from "./build.js";
+import { addEdges, Geometries, retire, showBuild } from "./build.js";
 import { Stage, surroundings } from "./stage.js";
 
 const VIEWS = {
@@ -60,8 +60,8 @@ class Viewer {
     this.build = this.model.builds[number];
     this.hidden.clear();
     if (this.shown) {
-      this.shown.gone = true;
       this.stage.scene.remove(this.shown.group);
+      retire(this.shown);
     }
     this.shown = showBuild(this.build, this.geometries);
     this.stage.scene.add(this.shown.group);
@@ -77,7 +77,7 @@ class Viewer {
     });
     this.#apply();
     this.view("oblique");
-    addEdges(this.shown, 0x10151c, () => this.#apply());
+    addEdges(this.shown, this.geometries, () => this.#apply());
   }
 
   view(name) {
@@ -230,7 +230,7 @@ async function start() {
   }
   if (typeof DecompressionStream === "undefined") throw new Error("this browser cannot inflate the geometry; use a newer one");
   const bytes = await inflate(element("geometry").textContent);
-  window.amprepViewer = new Viewer(model, bytes);
+  new Viewer(model, bytes);
   element("wait").hidden = true;
 }
 

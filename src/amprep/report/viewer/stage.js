@@ -7,13 +7,14 @@ const UP = new THREE.Vector3(0, 0, 1);
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(32, 1, 1, 10000);
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.clip = new THREE.Plane(new THREE.Vector3(0, 0, -1), Infinity);
     this.#light();
