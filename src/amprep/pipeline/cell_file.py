@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from amprep.checks.templates import check_template
 from amprep.errors import MeshError
 from amprep.hookspecs import CellEmitter, EmitCells, NoParams
 from amprep.host import Host, Listed
 from amprep.job import Job
 from amprep.model import CellRequest, Cells, Mesh, Report, Stop, Template
-from amprep.pipeline.trial_cells import check_template
 
 
 def choose_cell(host: Host, job: Job) -> Listed[CellEmitter]:
@@ -54,7 +54,9 @@ def read_template(host: Host, job: Job, path: Path) -> Template:
 def _repeated(template: Template) -> EmitCells:
     def emit(request: CellRequest, *, params: NoParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
         count = len(request.plane)
-        return Cells((template,), np.zeros(count), np.arange(count), request.matrices)
+        return Cells(
+            (template,), np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices
+        )
 
     return emit
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from amprep.checks.cells import check_bodies
+from amprep.checks.templates import check_cells
 from amprep.checks.violation import Violation
 from amprep.hookspecs import CellEmitter
 from amprep.host import Host, Listed
@@ -21,7 +22,6 @@ from amprep.model import (
     Stop,
     SupportPlan,
     SupportProblem,
-    Template,
     silent,
 )
 from amprep.model.control import Report
@@ -31,8 +31,6 @@ from amprep.pipeline.trial import SEED, Case
 from amprep.pipeline.trial_problems import box_mesh
 
 PITCH = 2.0
-TOLERANCE = 1e-6
-"""How far a template may leave the unit cube, and how far the corners of faces that meet may be apart."""
 
 
 def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
@@ -44,42 +42,6 @@ def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
             words = f"{name}, {'walls without thickness allowed' if surfaces else 'solids only'}"
             run, judge = _building(layout, part, emit, surfaces)
             yield Case(words, run, judge, timed=False)
-
-
-def check_templates(request: CellRequest, cells: Cells) -> list[Violation]:
-    """Judge what an emitter returned: indices, maps, templates in the unit cube, solids closed."""
-    found = []
-    numbers = {"edge": (cells.edge, len(request.plane)), "template": (cells.template, len(cells.templates))}
-    for name, (values, count) in numbers.items():
-        if ((values < 0) | (values >= count)).any():
-            found.append(Violation("cell records", name, f"expected numbers from 0 to {count - 1}"))
-    lengths = {len(cells.edge), len(cells.template), len(cells.matrix)}
-    if len(lengths) > 1 or not np.isfinite(cells.matrix).all():
-        found.append(Violation("cell records", "instances", "expected as many finite matrices as edges"))
-    return found + [violation for template in cells.templates for violation in check_template(template)]
-
-
-def check_template(template: Template) -> list[Violation]:
-    """Judge one template: inside the unit cube, closed unless a surface, right side out."""
-    mesh, found = template.mesh, []
-    outside = max(-mesh.vertices.min(initial=0.0), mesh.vertices.max(initial=1.0) - 1.0)
-    if not np.isfinite(mesh.vertices).all() or outside > TOLERANCE:
-        found.append(Violation("unit cube", template.name, f"leaves the unit cube by {outside:.3g}"))
-    if not template.surface and not _is_closed(mesh):
-        found.append(Violation("closed", template.name, "a solid has each edge once in each direction"))
-    if not template.surface and mesh.signed_volume <= 0:
-        found.append(
-            Violation("closed", template.name, f"expected a positive volume, got {mesh.signed_volume:.3g}")
-        )
-    return found
-
-
-def _is_closed(mesh: Mesh) -> bool:
-    """Whether every directed edge has its opposite, as often."""
-    edges = np.concatenate([mesh.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
-    forward = edges[np.lexsort(edges.T)]
-    backward = edges[:, ::-1][np.lexsort(edges[:, ::-1].T)]
-    return bool(len(edges)) and np.array_equal(forward, backward)
 
 
 def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
@@ -114,7 +76,7 @@ def _building(
 
     def judge(answer: Any) -> list[Violation]:
         emitted, bodies = answer
-        found = [violation for request, cells in emitted for violation in check_templates(request, cells)]
+        found = [violation for request, cells in emitted for violation in check_cells(request, cells)]
         if not bodies:
             found.append(Violation("supports", part.label, "expected supports, got none"))
         settings = BuildSettings("trial", _SPACE, reach=1.5 * PITCH)

@@ -6,7 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from amprep.model import Item, Packing, PackingProblem, Placement, Report, Stop, Unplaced
+from amprep.model import (
+    CONTACT_TOLERANCE,
+    Boxes,
+    Item,
+    Packing,
+    PackingProblem,
+    Placement,
+    Report,
+    Stop,
+    Unplaced,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +56,8 @@ def pack_shelves(
     Every box keeps the clearance from the next one, the walls and the lid. Runs in time ``O(items * rows)``.
     """
     boxes = sorted(
-        (_box(number, item) for number, item in enumerate(problem.items)), key=_order(problem, params)
+        (_box(problem, number, item) for number, item in enumerate(problem.items)),
+        key=_order(problem, params),
     )
     builds: list[list[Layer]] = []
     placements: list[list[Placement]] = []
@@ -56,7 +67,7 @@ def pack_shelves(
         if stop():
             unplaced.append(Unplaced(box.item, "out of time"))
             continue
-        if not _fits_alone(problem, box):
+        if not _fits_alone(problem, box.size):
             unplaced.append(Unplaced(box.item, "too large"))
             continue
         found = _first_place(problem, builds, box)
@@ -88,7 +99,7 @@ def _first_place(
 
 def _place_in(problem: PackingProblem, layers: list[Layer], box: Box) -> np.ndarray | None:
     """Return the least corner of the first place in one build, and reserve it; None when there is none."""
-    gap, room = problem.clearance, problem.space.size - problem.clearance
+    gap, room = problem.clearance, _room(problem)
     for layer in layers:
         if box.size[2] <= layer.height:
             corner = _place_in_layer(gap, room, layer, box)
@@ -120,22 +131,31 @@ def _reserve(row: Row, gap: float, z: float, box: Box) -> np.ndarray:
     return corner
 
 
-def _fits_alone(problem: PackingProblem, box: Box) -> bool:
+def _room(problem: PackingProblem) -> np.ndarray:
+    """Return how far boxes may reach; what is too large by no more than the tolerance fits."""
+    return problem.space.size - problem.clearance + CONTACT_TOLERANCE
+
+
+def _fits_alone(problem: PackingProblem, size: np.ndarray) -> bool:
     first = np.array([problem.clearance, problem.clearance, problem.lift])
-    return bool(np.all(first + box.size <= problem.space.size - problem.clearance))
+    return bool(np.all(first + size <= _room(problem)))
 
 
-def _box(number: int, item: Item) -> Box:
-    """Return the item's box in its lowest orientation; of equals, the one preferred by the part."""
-    lo, hi = item.volume.enclosing()
-    corners = np.array(list(product(*zip(lo, hi, strict=True))))
-    turned = [corners @ rotation.T for rotation in item.orientations.matrices]
-    heights = [np.ptp(points[:, 2]).round(9) for points in turned]
-    best = int(np.argmin(heights))
-    points = turned[best]
-    return Box(
-        number, item.orientations.matrices[best], points.min(axis=0), np.ptp(points, axis=0), item.value
-    )
+def _box(problem: PackingProblem, number: int, item: Item) -> Box:
+    """Return the item's box in the lowest orientation that fits; of equals, the one preferred by the part."""
+    boxes = []
+    for rotation in item.orientations.matrices:
+        points = _corners(item) @ rotation.T
+        boxes.append(Box(number, rotation, points.min(axis=0), np.ptp(points, axis=0), item.value))
+    fitting = [box for box in boxes if _fits_alone(problem, box.size)]
+    return min(fitting or boxes, key=lambda box: float(box.size[2].round(9)))
+
+
+def _corners(item: Item) -> np.ndarray:
+    """Return the corners of the item's boxes, or of the box around its volume, ``(n, 3)``."""
+    volume = item.volume
+    boxes = zip(volume.lo, volume.hi, strict=True) if isinstance(volume, Boxes) else [volume.enclosing()]
+    return np.array([corner for lo, hi in boxes for corner in product(*zip(lo, hi, strict=True))])
 
 
 def _order(problem: PackingProblem, params: Any) -> Any:
