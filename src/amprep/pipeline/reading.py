@@ -74,9 +74,8 @@ def settle_part(part: Part, *, allow_surface: bool) -> Part:
         raise MeshError(f"{_where(part)}: {defect}; export it again from the program it was drawn in")
     settled = settle(part.mesh.vertices, part.mesh.triangles)
     if settled.problem and (not allow_surface or len(settled.triangles) == 0):
-        raise MeshError(
-            f"{_where(part)} is not a solid: {settled.problem}; repair it, or use --allow-surface to take it as it is"
-        )
+        advice = "repair it, or use --allow-surface to take it as it is"
+        raise MeshError(f"{_where(part)} is not a solid: {settled.problem}; {advice}")
     return _with_mesh(part, settled)
 
 
@@ -99,39 +98,33 @@ def with_unique_names(parts: Sequence[Part]) -> list[Part]:
 
 
 def _expand(path: str, suffixes: Collection[str]) -> list[tuple[Path, int | None]]:
-    name, count = _split_count(path)
-    if name.is_dir():
-        return [(file, count) for file in _files_in(name, suffixes)]
-    if not name.exists():
-        raise InputError(f"{name}: no such file or folder")
-    if not name.is_file():
-        raise InputError(f"{name}: expected a file or a folder, this is neither")
+    if not path.isprintable():
+        raise InputError(f"{path[:80]!r} is not a usable file name")
+    try:
+        name, count = _split_count(path)
+        if name.is_dir():
+            return [(file, count) for file in _files_in(name, suffixes)]
+        if not name.exists():
+            raise InputError(f"{name}: no such file or folder")
+        if not name.is_file():
+            raise InputError(f"{name}: expected a file or a folder, this is neither")
+    except OSError as error:
+        raise InputError(f"{path[:200]}: cannot look it up: {error.strerror or error}") from error
     return [(name, count)]
 
 
 def _split_count(path: str) -> tuple[Path, int | None]:
     """Split ``NAME:4``, unless a file is called that."""
     match = re.fullmatch(r"(.+):(\d+)", path)
-    if match is None or _exists(path):
+    if match is None or Path(path).exists():
         return Path(path), None
     if len(match[2]) > 9 or not 1 <= int(match[2]) <= MOST_COPIES:
         raise InputError(f"{path}: expected a count from 1 to {MOST_COPIES} after the colon")
     return Path(match[1]), int(match[2])
 
 
-def _exists(path: str) -> bool:
-    try:
-        return Path(path).exists()
-    except (OSError, ValueError) as error:  # too long, or with a null character
-        raise InputError(f"{path[:80]!r} is not a usable file name: {error}") from error
-
-
 def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
-    try:
-        inside = sorted(folder.iterdir())
-    except OSError as error:
-        raise InputError(f"{folder}: cannot list the folder: {error.strerror}") from error
-    files = [file for file in inside if file.suffix.lower() in suffixes and file.is_file()]
+    files = [file for file in sorted(folder.iterdir()) if file.suffix.lower() in suffixes and file.is_file()]
     files = [file for file in files if not file.name.startswith(".")]
     if not files:
         raise InputError(f"{folder}: no file to read in this folder (known: {', '.join(sorted(suffixes))})")

@@ -1,6 +1,10 @@
 """STEP, read by cascadio (OpenCASCADE), if it is installed."""
 
 import math
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from amprep.errors import InputError
@@ -27,13 +31,32 @@ def read_step_file(path: Path, params: StepParams) -> list[Part]:
         raise InputError(f"{path}: not a STEP file: expected it to begin with 'ISO-10303-21'")
     if b"END-ISO-10303-21" not in content[-1024:]:
         raise InputError(f"{path}: the file has no end ('END-ISO-10303-21'); it was cut off")
-    glb = cascadio.load(
-        content,
-        tol_linear=params.deviation_mm,
-        tol_angular=math.radians(params.angle_deg),
-        use_parallel=False,  # the same file gives the same triangles
-    )
+    with _silent_library():
+        glb = cascadio.load(
+            content,
+            tol_linear=params.deviation_mm,
+            tol_angular=math.radians(params.angle_deg),
+            use_parallel=False,  # the same file gives the same triangles
+        )
     if not glb:
         raise InputError(f"{path}: OpenCASCADE finds no shape in this STEP file")
     note = f"triangulated by OpenCASCADE to {params.deviation_mm:g} mm and {params.angle_deg:g} degrees"
     return read_gltf(glb, ".glb", path, (note,))
+
+
+@contextmanager
+def _silent_library() -> Iterator[None]:
+    """Keep OpenCASCADE's own messages off the user's screen and out of ``--json``."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(1), os.dup(2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept[0], 1)
+        os.dup2(kept[1], 2)
+        for descriptor in (*kept, nowhere):
+            os.close(descriptor)

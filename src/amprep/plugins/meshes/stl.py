@@ -40,7 +40,7 @@ def _read_ascii(content: bytes, path: Path) -> tuple[Floats, tuple[str, ...]]:
         raise InputError(f"{path}: the last 'solid' or 'facet' has no end; the file was cut off")
     rows = [line[1:] for line in lines if line and line[0] == b"vertex"]
     try:
-        corners = np.array(rows, np.bytes_).astype(np.float64).reshape(facets, 3, 3)
+        corners = np.array([[float(number) for number in row] for row in rows]).reshape(facets, 3, 3)
     except ValueError as error:
         raise InputError(f"{path}: expected three vertices of three numbers in every facet") from error
     return corners, (f"its {solids} solids are taken as one part",) if solids > 1 else ()
