@@ -235,5 +235,6 @@ async function start() {
 }
 
 start().catch((error) => {
-  element("wait").textContent = `The 3D view did not start: ${error.message}. The tables below are complete.`;
+  element("viewer").classList.add("broken");
+  element("wait").textContent = `The 3D view did not start (${error.message}). The tables below are complete.`;
 });

@@ -128,7 +128,7 @@ function lines(list, colour) {
 function plate(x, y, round, colour) {
   const geometry = round ? new THREE.CircleGeometry(x / 2, 96) : new THREE.PlaneGeometry(x, y);
   const material = new THREE.MeshBasicMaterial({
-    color: colour, transparent: true, opacity: 0.55, side: THREE.DoubleSide, depthWrite: false,
+    color: colour, transparent: true, opacity: 0.55, depthWrite: false, // seen from above only
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.position.set(x / 2, y / 2, -0.05);
