@@ -5,7 +5,6 @@ ends within that tag.
 """
 
 import io
-import re
 import zipfile
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
@@ -16,7 +15,6 @@ from amprep.threemf.writing_skeleton import MODEL_NAME
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-_MESH = re.compile(rb"<mesh>.*?</mesh>", re.DOTALL)
 _CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
 
@@ -41,7 +39,7 @@ def read_entries(package: bytes) -> Entries:
         text = archive.read(MODEL_NAME) if MODEL_NAME in archive.namelist() else b"<model/>"
     parser = etree.XMLParser(resolve_entities=False, no_network=True)
     try:
-        model = etree.fromstring(_MESH.sub(b"", text), parser)
+        model = etree.fromstring(_without_meshes(text), parser)
     except etree.XMLSyntaxError as error:
         raise ValueError(f"it is not well-formed XML: {error}") from None
     items = model.iterfind(f"{_CORE}build/{_CORE}item")
@@ -49,6 +47,12 @@ def read_entries(package: bytes) -> Entries:
         _own(model, model.iterfind(f"{_CORE}metadata")),
         [_own(item, item.iterfind(f"{_CORE}metadatagroup/{_CORE}metadata")) for item in items],
     )
+
+
+def _without_meshes(text: bytes) -> bytes:
+    """Return the model without what is nearly all of it."""
+    head, *rest = text.split(b"<mesh>")
+    return head + b"".join(each.partition(b"</mesh>")[2] for each in rest)
 
 
 def _own(scope: "_Element", metadata: Iterable["_Element"]) -> dict[str, str]:
