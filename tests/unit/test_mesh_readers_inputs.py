@@ -19,36 +19,32 @@ def named(*names):
 def test_files_stay_in_the_order_given(tmp_path):
     for name in ("b.stl", "a.stl"):
         (tmp_path / name).write_text("x")
-    paths = [str(tmp_path / "b.stl"), str(tmp_path / "a.stl")]
-    assert [path.name for path, _ in expand_inputs(paths, SUFFIXES)] == ["b.stl", "a.stl"]
+    inputs = [(tmp_path / "b.stl", None), (tmp_path / "a.stl", 2)]
+    assert expand_inputs(inputs, SUFFIXES) == inputs
 
 
 def test_a_folder_stands_for_the_files_in_it_that_can_be_read_by_name(tmp_path):
     for name in ("b.STL", "a.stl", "notes.txt", "c.3mf", ".hidden.stl"):
         (tmp_path / name).write_text("x")
     (tmp_path / "deeper.stl").mkdir()
-    assert [path.name for path, _ in expand_inputs([str(tmp_path)], SUFFIXES)] == ["a.stl", "b.STL", "c.3mf"]
-
-
-def test_a_count_after_a_colon_holds_for_a_file_and_for_a_folder(tmp_path):
-    (tmp_path / "a.stl").write_text("x")
-    assert expand_inputs([f"{tmp_path}/a.stl:4", f"{tmp_path}:2"], SUFFIXES) == [
-        (tmp_path / "a.stl", 4),
-        (tmp_path / "a.stl", 2),
+    assert [path.name for path, _ in expand_inputs([(tmp_path, None)], SUFFIXES)] == [
+        "a.stl",
+        "b.STL",
+        "c.3mf",
     ]
 
 
-def test_a_file_that_is_really_called_like_that_wins(tmp_path):
-    (tmp_path / "a.stl:4").write_text("x")
-    assert expand_inputs([f"{tmp_path}/a.stl:4"], SUFFIXES) == [(tmp_path / "a.stl:4", None)]
+def test_the_count_of_a_folder_holds_for_each_file_in_it(tmp_path):
+    (tmp_path / "a.stl").write_text("x")
+    (tmp_path / "b.stl").write_text("x")
+    expected = [(tmp_path / "a.stl", 2), (tmp_path / "b.stl", 2)]
+    assert expand_inputs([(tmp_path, 2)], SUFFIXES) == expected
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
     [
         ("none.stl", "no such file"),
-        ("a.stl:0", "count from 1"),
-        ("a.stl:9999999", "count from 1"),
         ("empty", "no file to read"),
         ("\0", "not a usable"),
         ("x" * 5000, "too long"),
@@ -58,7 +54,7 @@ def test_what_is_not_there_is_refused_in_one_line(tmp_path, name, words):
     (tmp_path / "a.stl").write_text("x")
     (tmp_path / "empty").mkdir()
     with pytest.raises(InputError, match=words) as caught:
-        expand_inputs([f"{tmp_path}/{name}"], SUFFIXES)
+        expand_inputs([(tmp_path / name, None)], SUFFIXES)
     assert "\n" not in str(caught.value)
 
 

@@ -194,10 +194,11 @@ def test_what_manifold3d_accepts_is_never_refused(tetrahedra, more, seed):
     vertices = np.random.default_rng(seed).integers(0, 3, (6, 3)).astype(float)
     faces = [[p[0], p[2], p[1]] for p in tetrahedra] + [[p[0], p[1], p[3]] for p in tetrahedra]
     faces += [[p[1], p[2], p[3]] for p in tetrahedra] + [[p[0], p[3], p[2]] for p in tetrahedra] + more
-    judged = Manifold(Mesh64(vertices, np.array(faces, np.uint64)))
     settled = settle(vertices, faces)
-    if judged.status().name == "NoError" and judged.volume() > 1e-9:
-        assert settled.problem == ""
+    if not more:  # then all edges match; where they do not, manifold3d itself may crash
+        judged = Manifold(Mesh64(vertices, np.array(faces, np.uint64)))
+        if judged.status().name == "NoError" and judged.volume() > 1e-9:
+            assert settled.problem == ""
     if not settled.problem:
         assert settled.volume > 0.0
         again = Manifold(Mesh64(np.array(settled.vertices), settled.triangles.astype(np.uint64)))

@@ -1,6 +1,5 @@
 """From what the user names to parts: folders and counts expanded, meshes settled, names made unique."""
 
-import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,21 +12,21 @@ from amprep.model.control import Report, silent
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region
 
-MOST_COPIES = 100_000
 
+def expand_inputs(
+    inputs: Sequence[tuple[Path, int | None]], suffixes: Collection[str]
+) -> list[tuple[Path, int | None]]:
+    """Return the files to read with the counts asked for, in order.
 
-def expand_inputs(paths: Sequence[str], suffixes: Collection[str]) -> list[tuple[Path, int | None]]:
-    """Return the files the user names, with the counts given, in order.
-
-    A folder stands for the files in it (not in folders below) whose suffix is known, by name. ``NAME:4``
-    asks for four of everything in NAME, unless there is a file of that very name.
+    A folder stands for the files in it (not in folders below) whose suffix is known, by name; its count
+    holds for each of them.
 
     Raises
     ------
     InputError
-        If something is not there, a folder holds nothing to read, or a count is not 1 to `MOST_COPIES`.
+        If something is not there, or a folder holds nothing to read.
     """
-    return [file for path in paths for file in _expand(path, suffixes)]
+    return [(file, count) for path, count in inputs for file in _expand(path, suffixes)]
 
 
 def read_all(
@@ -97,30 +96,19 @@ def with_unique_names(parts: Sequence[Part]) -> list[Part]:
     return unique
 
 
-def _expand(path: str, suffixes: Collection[str]) -> list[tuple[Path, int | None]]:
-    if not path.isprintable():
-        raise InputError(f"{path[:80]!r} is not a usable file name")
+def _expand(path: Path, suffixes: Collection[str]) -> list[Path]:
+    if not str(path).isprintable():
+        raise InputError(f"{str(path)[:80]!r} is not a usable file name")
     try:
-        name, count = _split_count(path)
-        if name.is_dir():
-            return [(file, count) for file in _files_in(name, suffixes)]
-        if not name.exists():
-            raise InputError(f"{name}: no such file or folder")
-        if not name.is_file():
-            raise InputError(f"{name}: expected a file or a folder, this is neither")
+        if path.is_dir():
+            return _files_in(path, suffixes)
+        if not path.exists():
+            raise InputError(f"{path}: no such file or folder")
+        if not path.is_file():
+            raise InputError(f"{path}: expected a file or a folder, this is neither")
     except OSError as error:
-        raise InputError(f"{path[:200]}: cannot look it up: {error.strerror or error}") from error
-    return [(name, count)]
-
-
-def _split_count(path: str) -> tuple[Path, int | None]:
-    """Split ``NAME:4``, unless a file is called that."""
-    match = re.fullmatch(r"(.+):(\d+)", path)
-    if match is None or Path(path).exists():
-        return Path(path), None
-    if len(match[2]) > 9 or not 1 <= int(match[2]) <= MOST_COPIES:
-        raise InputError(f"{path}: expected a count from 1 to {MOST_COPIES} after the colon")
-    return Path(match[1]), int(match[2])
+        raise InputError(f"{str(path)[:200]}: cannot look it up: {error.strerror or error}") from error
+    return [path]
 
 
 def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
