@@ -137,12 +137,11 @@ def _print_offers(host: "Host") -> None:
 
     from amprep.host import KINDS
 
-    table = Table("kind", "name", "what it does", "from")
+    table = Table("kind", "name", "what it does", "from", box=None)
     for kind, description in KINDS.items():
         for each in host.offers(kind).values():
             origin = f"[dim]{each.origin}" if each.builtin else escape(each.origin)
             table.add_row(description.noun, escape(each.offer.name), escape(each.offer.summary), origin)
-        table.add_section()
     Console().print(table)
 
 
@@ -151,15 +150,11 @@ def _print_trials(trials: "tuple[Trial, ...]") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table("offer", "tried on", "", "found")
+    table = Table("offer", "problem", "", "found", box=None)
     for trial in trials:
-        table.add_row(
-            escape(trial.title),
-            escape(", ".join(trial.problems)),
-            "[green]holds" if trial.passed else "[red]broken",
-        )
+        result = "[green]holds" if trial.passed else "[red]broken"
+        table.add_row(escape(trial.title), f"{len(trial.problems)} tried", result)
         for violation in trial.violations:
-            table.add_row(
-                "", escape(violation.subject), f"[red]{violation.promise}", escape(violation.message)
-            )
+            promise, found = escape(violation.promise), escape(violation.message)
+            table.add_row("", escape(violation.subject), f"[red]{promise}", found)
     Console().print(table)

@@ -44,13 +44,13 @@ def packing_problems() -> Iterator[tuple[str, PackingProblem]]:
     tilted = Orientations("list", _turned_about_z(np.radians([30.0, 75.0])))
     for objective in ("builds", "fill", "height"):
         asked = replace(plain, objective=objective)
-        yield f"objective {objective}", asked
-        yield f"objective {objective}, parts beside each other", replace(asked, stacking=False)
-        yield f"objective {objective}, no items", replace(asked, items=())
-        yield f"objective {objective}, no clearance", replace(asked, clearance=0.0, lift=0.0)
-        yield f"objective {objective}, several boxes an item", replace(asked, items=_items("boxes"))
-        yield f"objective {objective}, convex pieces", replace(asked, items=_items("convex"))
-        yield f"objective {objective}, solids", replace(asked, items=_items("solid"))
+        yield f"{objective}", asked
+        yield f"{objective}, parts beside each other", replace(asked, stacking=False)
+        yield f"{objective}, no items", replace(asked, items=())
+        yield f"{objective}, no clearance", replace(asked, clearance=0.0, lift=0.0)
+        yield f"{objective}, several boxes an item", replace(asked, items=_items("boxes"))
+        yield f"{objective}, convex pieces", replace(asked, items=_items("convex"))
+        yield f"{objective}, solids", replace(asked, items=_items("solid"))
         for word, allowed in (
             ("one tilted orientation", Orientations("list", _turned_about_z(np.radians([30.0])))),
             ("turns from axis to axis", Orientations("list", axis_rotations())),
@@ -59,13 +59,13 @@ def packing_problems() -> Iterator[tuple[str, PackingProblem]]:
             ("any orientation", Orientations("free")),
         ):
             items = tuple(replace(item, orientations=allowed) for item in plain.items)
-            yield f"objective {objective}, {word}", replace(asked, items=items)
+            yield f"{objective}, {word}", replace(asked, items=items)
         cylinder = BuildVolume(np.full(3, 100.0), "cylinder")
-        yield f"objective {objective}, a cylinder", replace(asked, space=cylinder)
+        yield f"{objective}, a cylinder", replace(asked, space=cylinder)
         zones = BuildVolume(np.full(3, 100.0), "box", np.array([[40.0, 40, 0]]), np.array([[60.0, 60, 100]]))
-        yield f"objective {objective}, a forbidden zone", replace(asked, space=zones)
+        yield f"{objective}, a forbidden zone", replace(asked, space=zones)
         fixed = (Placement(0, np.eye(3), np.array([50.0, 50, 2])),)
-        yield f"objective {objective}, a fixed part", replace(asked, fixed=fixed)
+        yield f"{objective}, a fixed part", replace(asked, fixed=fixed)
 
 
 def support_problems() -> Iterator[tuple[str, SupportProblem]]:
