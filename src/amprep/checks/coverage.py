@@ -127,7 +127,7 @@ def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
     for body in bodies:
         if not body.surface:
             lo, hi = body.mesh.bounds
-            near = np.flatnonzero(~touched & ((lower >= lo) & (lower <= hi)).all(axis=1))
+            near = np.flatnonzero(~touched & _between(lower, lo, hi))
             touched[near] = inside(lower[near], body.mesh.vertices, body.mesh.triangles)
     return touched
 
@@ -139,12 +139,12 @@ def _embedded(
     found = [np.empty((0, 3))]
     for body in bodies:
         lo, hi = body.mesh.bounds
-        near = points[((points >= lo - reach) & (points <= hi + reach)).all(axis=1)]
+        near = points[_between(points, lo - reach, hi + reach)]
         if not len(near):
             continue
         on_edges = _edge_points(body.mesh, near.min(axis=0) - reach, near.max(axis=0) + reach, spacing)
         on_edges = on_edges[_nearest(near, on_edges, reach)]
-        upper = on_edges + (0.0, 0.0, _NUDGE)
+        upper = np.add(on_edges, (0.0, 0.0, _NUDGE))
         for part in body.parts:
             held = inside(upper, meshes[part].vertices, meshes[part].triangles)
             found.append(on_edges[held])
@@ -153,14 +153,28 @@ def _embedded(
 
 def _edge_points(mesh: Mesh, lo: Floats, hi: Floats, spacing: float) -> Floats:
     """Return points along the mesh's edges that can meet the box from `lo` to `hi`."""
-    ends = np.sort(
-        np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
-    )
-    key = np.unique(ends[:, 0].astype(np.int64) * len(mesh.vertices) + ends[:, 1])
+    triangles = mesh.triangles[_boxes_meet(mesh, lo, hi)]
+    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
+    key = np.unique(ends.min(axis=1) * len(mesh.vertices) + ends.max(axis=1))
     start, end = (mesh.vertices[index] for index in np.divmod(key, len(mesh.vertices)))
-    meets = ((np.maximum(start, end) >= lo) & (np.minimum(start, end) <= hi)).all(axis=1)
-    points, _ = sample_segments(start[meets], end[meets], spacing)
-    return points[((points >= lo) & (points <= hi)).all(axis=1)]
+    points, _ = sample_segments(start, end, spacing)
+    return points[_between(points, lo, hi)]
+
+
+def _boxes_meet(mesh: Mesh, lo: Floats, hi: Floats) -> Bools:
+    """Tell which triangles' bounding boxes meet the box from `lo` to `hi`."""
+    meets = np.ones(len(mesh.triangles), np.bool_)
+    for axis in range(3):
+        a, b, c = mesh.vertices[:, axis][mesh.triangles.T]
+        meets &= (np.maximum(np.maximum(a, b), c) >= lo[axis]) & (np.minimum(np.minimum(a, b), c) <= hi[axis])
+    return meets
+
+
+def _between(points: Floats, lo: Floats, hi: Floats) -> Bools:
+    within = np.ones(len(points), np.bool_)
+    for axis in range(3):
+        within &= (points[:, axis] >= lo[axis]) & (points[:, axis] <= hi[axis])
+    return within
 
 
 def _nearest(targets: Floats, points: Floats, reach: float) -> Bools:

@@ -15,8 +15,9 @@ def inside(points: Floats, vertices: Floats, triangles: Ints) -> Bools:
 
     winding = np.zeros(len(points), np.int32)
     if len(points) and len(triangles):
-        near = np.flatnonzero(_within(points, vertices))
-        low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
+        lo, hi = _bounds(vertices)
+        near = np.flatnonzero(_within(points, lo, hi))
+        low, high = lo[:2], hi[:2]
         side = max(
             float((high - low).max()) / 512, float(np.sqrt(np.prod(high - low) / (len(near) + 1))), 1e-6
         )
@@ -41,6 +42,14 @@ def inside(points: Floats, vertices: Floats, triangles: Ints) -> Bools:
     return np.asarray(winding > 0)
 
 
-def _within(points: Floats, vertices: Floats) -> Bools:
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+def _bounds(vertices: Floats) -> tuple[Floats, Floats]:
+    columns = vertices.T
+    return np.array([column.min() for column in columns]), np.array([column.max() for column in columns])
+
+
+def _within(points: Floats, low: Floats, high: Floats) -> Bools:
+    """Tell which points lie in the box; axis by axis, far faster than over rows of three."""
+    within = np.ones(len(points), np.bool_)
+    for axis in range(3):
+        within &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
+    return within

@@ -10,7 +10,7 @@ Longs = NDArray[np.int64]
 
 @njit(cache=True)
 def lattice_points(vertices: Floats, triangles: Longs, spacing: float, points: Floats, owner: Longs) -> int:
-    """Fill `points` ``(n, 3)`` and `owner` ``(n,)`` (the triangle) as far as there is room; return their number.
+    """Fill `points` ``(n, 3)`` and `owner` ``(n,)`` (the triangle) while there is room; return their number.
 
     Call it with empty arrays to count first. A line through a shared edge meets one of its two triangles.
     """
