@@ -90,7 +90,7 @@ def support_problems() -> Iterator[tuple[str, SupportProblem]]:
 
 
 def sample_parts() -> list[Part]:
-    """Return a box, a tetrahedron away from the origin, and two boxes apart; each with a box given by hand."""
+    """Return a box, a tetrahedron away from the origin, two boxes apart; each with a box given by hand."""
     box = box_mesh(np.zeros(3), np.array([10.0, 20, 30]))
     corner = Mesh(np.array([[5.0, 5, 5], [15, 5, 5], [5, 15, 5], [5, 5, 15]]), np.array(_TETRAHEDRON))
     far = box_mesh(np.array([40.0, 0, 0]), np.array([50.0, 5, 5]))
