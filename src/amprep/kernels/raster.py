@@ -50,11 +50,16 @@ def draw(points, triangles, first, depth, ids):
             beta = beta_x * (left - xa) + beta_y * (row - ya)
             gamma = gamma_x * (left - xa) + gamma_y * (row - ya)
             near = za + beta * (zb - za) + gamma * (zc - za)
+            entered = False
             for column in range(left, right + 1):
-                if beta >= 0.0 and gamma >= 0.0 and beta + gamma <= 1.0 and near < depth[row, column]:
-                    depth[row, column] = near
-                    if keep:
-                        ids[row, column] = first + k
+                if beta >= 0.0 and gamma >= 0.0 and beta + gamma <= 1.0:
+                    entered = True
+                    if near < depth[row, column]:
+                        depth[row, column] = near
+                        if keep:
+                            ids[row, column] = first + k
+                elif entered:
+                    break  # a row meets a triangle in one run
                 beta += beta_x
                 gamma += gamma_x
                 near += slope

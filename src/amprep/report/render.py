@@ -108,9 +108,9 @@ def _lit(scene: Scene, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.
 
 
 def _offsets(reach: float) -> NDArray[np.int64]:
-    """Return ``(4, 10, 2)`` rows and columns around a pixel: four spirals, turned, out to `reach` pixels."""
-    step = np.arange(40).reshape(10, 4).T
-    angle, distance = GOLDEN_ANGLE * step, reach * np.sqrt((step + 1) / 40)
+    """Return ``(4, 7, 2)`` rows and columns around a pixel: four spirals, turned, out to `reach` pixels."""
+    step = np.arange(28).reshape(7, 4).T
+    angle, distance = GOLDEN_ANGLE * step, reach * np.sqrt((step + 1) / 28)
     return np.round(np.stack([distance * np.sin(angle), distance * np.cos(angle)], axis=2)).astype(np.int64)
 
 
