@@ -123,6 +123,12 @@ def test_an_empty_build_has_no_height_and_no_density():
     assert (build_height(empty), build_density(empty), support_volume(empty)) == (0.0, 0.0, 0.0)
 
 
+def test_unplaced_copies_are_a_fault_unless_the_job_fills_one_build(record):
+    # an unsupported region, a violation, an unplaced copy
+    assert record.faults == 3
+    assert replace(record, objective="fill").faults == 2
+
+
 def test_the_closing_table_says_what_came_of_the_run(record):
     text = printed(record)
     for words in ("25.0 %", "5.0 mm", "0.05 cm³", "12.5 mm²", "no (1)", "3 parts in 1 build, 1 unplaced"):

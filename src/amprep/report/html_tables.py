@@ -88,7 +88,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     return [
         ("Builds", str(len(builds)), False),
         ("Parts placed", str(placed), False),
-        ("Unplaced", str(len(record.unplaced)), bool(record.unplaced)),
+        ("Unplaced", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
         ("Height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
         ("Supports", f"{volume:.2f} <small>cm³</small>", False),

@@ -28,6 +28,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "printer": record.printer,
         "target": record.target,
         "seed": record.seed,
+        "objective": record.objective,
         "status": record.status,
         "stop_reason": record.stop_reason,
         "bound": record.bound,

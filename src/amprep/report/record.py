@@ -101,6 +101,8 @@ class RunRecord:
         What the packing objective cannot beat, or None.
     settings
         The job's settings as nested plain values, shown and kept as they are.
+    objective
+        ``builds``, ``height`` or ``fill``; in a fill problem unplaced copies are the answer, not a fault.
     """
 
     job: str
@@ -117,12 +119,10 @@ class RunRecord:
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
+    objective: str = "builds"
 
     @property
     def faults(self) -> int:
-        """How many things a person should look at: unplaced, unsupported and unconnected ones, violations."""
-        listed = sum(
-            len(entry.build.unsupported) + len(entry.unconnected) + len(entry.verification or ())
-            for entry in self.builds
-        )
-        return listed + len(self.unplaced)
+        """How many things a person should look at: copies missing, regions unsupported, promises broken."""
+        listed = sum(len(entry.build.unsupported) + len(entry.verification or ()) for entry in self.builds)
+        return listed + (0 if self.objective == "fill" else len(self.unplaced))
