@@ -10,7 +10,7 @@ import trimesh
 
 from amprep.errors import AmprepError
 from amprep.model import TARGETS, Mesh, SupportBody
-from amprep.threemf import write_build, writing, writing_files
+from amprep.threemf import write_build, writing, writing_files, writing_pieces
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
@@ -118,6 +118,22 @@ def test_copies_share_the_mesh_of_their_part(written):
 def test_a_wall_without_thickness_has_the_type_that_machines_do_not_fill(written):
     first = next(items_of(written(surface=True)))
     assert [each.get("type") for each in first] == ["model", "support"]
+
+
+@pytest.mark.parametrize(("target", "kind"), [("generic", "surface"), ("prusaslicer", "model")])
+def test_a_part_that_is_no_solid_says_so_where_that_is_understood(make_build, written, target, kind):
+    build = make_build(target)
+    sheet = replace(build.parts[1].part, is_solid=False)
+    path = written(
+        replace(build, parts=(build.parts[0], replace(build.parts[1], part=sheet), build.parts[2]))
+    )
+    assert [each[0].get("type") for each in items_of(path)] == ["model", kind, "model"]
+
+
+def test_what_lib3mf_refuses_is_an_error_of_one_line(make_build, written, monkeypatch):
+    monkeypatch.setattr(writing_pieces, "STANDARD_NAMES", frozenset(["not a standard name"]))
+    with pytest.raises(AmprepError, match=r"lib3mf refuses it"):
+        written(make_build())
 
 
 @pytest.mark.parametrize("target", ["prusaslicer", "cura"])

@@ -33,9 +33,11 @@ def components_document(build: Build) -> Document:
 
 
 def _part_body(part: Part) -> Body:
+    """Return the part's object; of type `surface` where the user allowed a mesh that is no solid."""
     return Body(
         part.name,
         part.mesh,
+        "model" if part.is_solid else "surface",
         part_number=part.part_number,
         appearance=part.appearance,
         metadata=part_metadata(part),

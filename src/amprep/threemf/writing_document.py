@@ -7,7 +7,7 @@ from amprep.model.arrays import Floats
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance
 
-ObjectKind = Literal["model", "solidsupport", "support"]
+ObjectKind = Literal["model", "surface", "solidsupport", "support"]
 Metadata = tuple[tuple[str, str, str], ...]
 """Namespace, name and value of each entry."""
 

@@ -10,11 +10,12 @@ from zipfile import ZipFile
 
 import numpy as np
 
+from amprep.errors import AmprepError
 from amprep.model.arrays import Floats
 from amprep.model.part import Appearance
 from amprep.threemf.record import NAMESPACE
 from amprep.threemf.record_values import xml_text
-from amprep.threemf.writing_document import Body, Document, Instance, Item, Metadata
+from amprep.threemf.writing_document import Body, Document, Instance, Item, Metadata, ObjectKind
 from amprep.threemf.writing_geometry import Palette
 
 MODEL_NAME = "3D/3dmodel.model"
@@ -48,7 +49,22 @@ class Skeleton:
 
 
 def make_skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
-    """Return the package without its meshes; `suffixes` are those of files that will be added to it."""
+    """Return the package without its meshes; `suffixes` are those of files that will be added to it.
+
+    Raises
+    ------
+    AmprepError
+        If lib3mf refuses anything in it.
+    """
+    import lib3mf
+
+    try:
+        return _skeleton(document, suffixes)
+    except lib3mf.ELib3MFException as error:
+        raise AmprepError(f"cannot write {document.name!r}: lib3mf refuses it ({error})") from error
+
+
+def _skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
     builder = _Builder(document.name)
     builder.annotate(builder.model.GetMetaDataGroup(), document.metadata)
     for body in document.bodies:
@@ -91,6 +107,13 @@ class _Builder:
         self.lib3mf = lib3mf
         self.wrapper = lib3mf.get_wrapper()
         self.model = self.wrapper.CreateModel()
+        types = lib3mf.ObjectType
+        self.kinds: dict[ObjectKind, Any] = {
+            "model": types.Model,
+            "surface": types.Surface,
+            "solidsupport": types.SolidSupport,
+            "support": types.Support,
+        }
         self.name = xml_text(name)
         self.uuids = 0
         self.meshes: list[Any] = []
@@ -111,10 +134,7 @@ class _Builder:
         mesh = self.model.AddMeshObject()
         corners = [self.lib3mf.Position(row) for row in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))]
         mesh.SetGeometry(corners, [self.lib3mf.Triangle((0, 1, 2))])
-        kinds = self.lib3mf.ObjectType
-        mesh.SetType(
-            {"model": kinds.Model, "solidsupport": kinds.SolidSupport, "support": kinds.Support}[body.kind]
-        )
+        mesh.SetType(self.kinds[body.kind])
         mesh.SetName(_name(body.name))
         mesh.SetPartNumber(_name(body.part_number))
         mesh.SetUUID(self.next_uuid())
