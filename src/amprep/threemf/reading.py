@@ -1,5 +1,6 @@
 """Read the parts of a 3MF job: what each build item shows, in millimetres, with all that is said of it."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, NamedTuple
@@ -163,8 +164,9 @@ def _scaled(region: Region, scale: float) -> Region:
 
 
 def _meant(warnings: tuple[str, ...]) -> list[str]:
-    """Return the warnings worth telling: not those of attributes that other programs add."""
-    return [f"lib3mf warns: {words}" for words in warnings if "namespace" not in words.lower()][:10]
+    """Return the warnings worth telling: not those of attributes others add, nor of missing UUIDs."""
+    worth = [words for words in warnings if not re.search("namespace|uuid", words, re.IGNORECASE)]
+    return [f"lib3mf warns: {words}" for words in worth[:10]]
 
 
 def _because(notes: list[str]) -> str:
