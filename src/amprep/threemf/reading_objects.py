@@ -81,7 +81,8 @@ class Gatherer:
         elif thing.IsComponentsObject():
             for index in range(thing.GetComponentCount()):
                 component = thing.GetComponent(index)
-                placed = row_matrix(component.GetTransform()) @ frame
+                with np.errstate(all="ignore"):  # what overflows is found out with the mesh
+                    placed = row_matrix(component.GetTransform()) @ frame
                 self._gather(component.GetObjectResource(), placed, shape)
         else:
             shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: it is no mesh")
@@ -93,6 +94,10 @@ class Gatherer:
                 f"{self.where}: more than {MOST_TRIANGLES} triangles in the build; split the job"
             )
         raw = fetch_mesh(thing)
+        if not np.abs(frame).max() < 1e30:
+            raise InputError(
+                f"{self.where}: the transform of {thing.GetName()!r} is not made of usable numbers"
+            )
         turns = np.linalg.det(frame[:3, :3])
         if turns == 0.0:
             raise InputError(f"{self.where}: {thing.GetName()!r} is squashed flat by its transform")
