@@ -1,0 +1,62 @@
+"""Every support router on offer keeps the promise of a plan, on generated scenes."""
+
+import numpy as np
+import pytest
+
+from amprep.checks.supports import check_plan
+from amprep.host import Host
+from amprep.model.control import Stop, silent
+from amprep.model.supports import Cube, GridFrame, SupportProblem
+
+HOST = Host.load()
+ROUTERS = sorted(HOST.offers("router"))
+SIDE = 16
+
+
+def ball(cubes, needy, centre, radius):
+    z, y, x = (np.indices(cubes.shape) + 0.5) / SIDE - np.reshape(centre[::-1], (3, 1, 1, 1))
+    inside = z**2 + y**2 + x**2 <= radius**2
+    cubes[inside] = Cube.BLACK
+    needy |= inside & (z < 0) & (y**2 + x**2 <= 0.5 * radius**2)
+
+
+def scene(name, **rules):
+    """Scenes of the references: one ball, two balls above one another, a slab over a crowd of balls."""
+    cubes, needy = np.zeros((SIDE,) * 3, np.uint8), np.zeros((SIDE,) * 3, bool)
+    if name == "ball":
+        ball(cubes, needy, (0.5, 0.5, 0.65), 0.28)
+    elif name == "two-balls":
+        ball(cubes, needy, (0.5, 0.5, 0.76), 0.20)
+        ball(cubes, needy, (0.55, 0.5, 0.32), 0.18)
+    else:
+        rng = np.random.default_rng(3)
+        for _ in range(10):
+            ball(cubes, needy, (*rng.uniform(0.1, 0.9, 2), rng.uniform(0.15, 0.6)), rng.uniform(0.05, 0.1))
+        cubes[13:15, 2:14, 2:14] = Cube.BLACK
+        needy[13, 2:14, 2:14] = True
+    red = needy.copy()
+    red[0] = False
+    red[1:] &= cubes[:-1] == Cube.WHITE
+    red = np.argwhere(red)
+    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
+    nothing = np.zeros(len(red), np.int32)
+    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE, **rules)
+
+
+@pytest.mark.parametrize("router", ROUTERS)
+@pytest.mark.parametrize("name", ["ball", "two-balls", "plate"])
+@pytest.mark.parametrize(
+    "rules", [{}, {"edge_capacity": 2}, {"node_capacity": 3}, {"costs": (2, 3)}], ids=str
+)
+def test_a_plan_is_legal_conserved_and_complete(router, name, rules):
+    listed = HOST.choose("router", router)
+    task = scene(name, **rules)
+
+    def route():
+        rng = np.random.default_rng(7)
+        return HOST.call(listed, task, params=HOST.params(listed, {}), rng=rng, stop=Stop(), report=silent)
+
+    plan, again = route(), route()
+    assert check_plan(task, plan) == []
+    for each in ("plane", "y", "x", "direction", "flow", "capacity"):
+        assert getattr(plan, each).tolist() == getattr(again, each).tolist(), "two runs differ"
