@@ -280,6 +280,24 @@ def test_a_negative_volume_is_refused_rather_than_printed(tmp_path):
         read_parts(pack(tmp_path / "a.3mf", three_boxes(), '<item objectid="1"/>', files=files))
 
 
+def test_a_component_that_bambu_studio_calls_a_blocker_is_not_printed(tmp_path):
+    resources = (
+        box_object(1)
+        + box_object(2)
+        + '<object id="3"><components><component objectid="1"/>'
+        + '<component objectid="2" transform="1 0 0 0 1 0 0 0 1 9 0 0"/></components></object>'
+    )
+    config = (
+        '<config><object id="3"><part id="1" subtype="normal_part"/><part id="2" subtype="support_blocker">'
+        '<metadata key="name" value="no"/></part></object></config>'
+    )
+    files = {"Metadata/model_settings.config": config}
+    (part,) = settled(pack(tmp_path / "a.3mf", resources, '<item objectid="3"/>', files=files))
+    assert part.volume_mm3 == pytest.approx(6)
+    assert [(region.kind, region.name) for region in part.regions] == [("blocker", "no")]
+    assert part.regions[0].mesh.bounds[0][0] == pytest.approx(8.5)
+
+
 def test_items_marked_as_not_printable_are_left_out_and_that_is_said(tmp_path):
     build = '<item objectid="1" printable="0"/><item objectid="1"/><item objectid="1" printable="0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", box_object(), build))

@@ -24,6 +24,7 @@ _PIECE = 1 << 20
 _XML = (".model", ".rels", ".config", ".xml")
 _ROOT_RELATIONS = "_rels/.rels"
 _SLICER_CONFIG = "Metadata/Slic3r_PE_model.config"
+_PART_CONFIG = "Metadata/model_settings.config"
 
 
 class Package(NamedTuple):
@@ -35,6 +36,8 @@ class Package(NamedTuple):
         A package with the same contents, stored without compression, every byte of it seen by us.
     config
         ``Metadata/Slic3r_PE_model.config``, where PrusaSlicer keeps what triangles mean; may be empty.
+    part_config
+        ``Metadata/model_settings.config``, where Bambu Studio and OrcaSlicer keep what components mean.
     unprintable
         Indices of build items marked as not to be printed.
     notes
@@ -43,6 +46,7 @@ class Package(NamedTuple):
 
     data: bytes
     config: bytes
+    part_config: bytes
     unprintable: frozenset[int]
     notes: tuple[str, ...]
 
@@ -67,8 +71,8 @@ def open_package(path: Path) -> Package:
         raise InputError(f"{path}: no 3D model in this package; expected a 3MF file")
     check_instances(outlines, str(path))
     root = outlines.get(_root_model(entries), Outline())
-    config = entries.get(_SLICER_CONFIG, b"")
-    return Package(_stored(entries), config, frozenset(root.unprintable), tuple(notes))
+    config, part_config = entries.get(_SLICER_CONFIG, b""), entries.get(_PART_CONFIG, b"")
+    return Package(_stored(entries), config, part_config, frozenset(root.unprintable), tuple(notes))
 
 
 def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:

@@ -16,7 +16,7 @@ from amprep.threemf.reading_arrays import Model3MF, load_model
 from amprep.threemf.reading_colours import appearance_of
 from amprep.threemf.reading_job import foreign, wishes_of
 from amprep.threemf.reading_objects import Gatherer, Shape, row_matrix
-from amprep.threemf.reading_slicer import parse_slicer_config
+from amprep.threemf.reading_slicer import parse_part_roles, parse_slicer_config
 
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
@@ -84,7 +84,9 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
         notes.append(f"scaled from {unit} to millimetres")
     if package.unprintable:
         notes.append(f"left out {len(package.unprintable)} items that the file marks as not to be printed")
-    gatherer = Gatherer(loaded.model, parse_slicer_config(package.config, str(path)), str(path))
+    volumes = parse_slicer_config(package.config, str(path))
+    roles = parse_part_roles(package.part_config, str(path))
+    gatherer = Gatherer(loaded.model, volumes, roles, str(path))
     parts: list[Part] = []
     for item, count in _items(loaded.model, package.unprintable):
         shape = gatherer.shape_of(item.thing, item.linear)

@@ -18,6 +18,7 @@ from amprep.threemf.reading_slicer import (
     ENFORCER,
     NEGATIVE,
     SOLID,
+    Role,
     SlicerObject,
     Volume,
 )
@@ -58,9 +59,16 @@ class Shape:
 class Gatherer:
     """Gathers the shapes of a model's objects; `where` names the file."""
 
-    def __init__(self, model: "Lib3MF.Model", slicer: Mapping[int, SlicerObject], where: str) -> None:
+    def __init__(
+        self,
+        model: "Lib3MF.Model",
+        slicer: Mapping[int, SlicerObject],
+        roles: Mapping[tuple[int, int], Role],
+        where: str,
+    ) -> None:
         self.model = model
         self.slicer = slicer
+        self.roles = roles
         self.where = where
         self._triangles = 0
 
@@ -69,25 +77,29 @@ class Gatherer:
         shape = Shape()
         frame = np.eye(4)
         frame[:3, :3] = linear
-        self._gather(thing, frame, shape)
+        self._gather(thing, frame, None, shape)
         return shape
 
-    def _gather(self, thing: "Lib3MF.Object", frame: Floats, shape: Shape) -> None:
+    def _gather(self, thing: "Lib3MF.Object", frame: Floats, role: Role | None, shape: Shape) -> None:
         skipped = _why_skipped(thing)
         if skipped:
             shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: {skipped}")
         elif thing.IsMeshObject():
-            self._gather_mesh(thing, frame, shape)
+            self._gather_mesh(thing, frame, role, shape)
         elif thing.IsComponentsObject():
             for index in range(thing.GetComponentCount()):
                 component = thing.GetComponent(index)
+                inner = component.GetObjectResource()
+                names = thing.GetModelResourceID(), inner.GetModelResourceID()
                 with np.errstate(all="ignore"):  # what overflows is found out with the mesh
                     placed = row_matrix(component.GetTransform()) @ frame
-                self._gather(component.GetObjectResource(), placed, shape)
+                self._gather(inner, placed, self.roles.get(names, role), shape)
         else:
             shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: it is no mesh")
 
-    def _gather_mesh(self, thing: "Lib3MF.MeshObject", frame: Floats, shape: Shape) -> None:
+    def _gather_mesh(
+        self, thing: "Lib3MF.MeshObject", frame: Floats, role: Role | None, shape: Shape
+    ) -> None:
         self._triangles += thing.GetTriangleCount()
         if self._triangles > MOST_TRIANGLES:
             raise InputError(
@@ -109,20 +121,22 @@ class Gatherer:
             shape.notes.append(f"left out the beam lattice of {thing.GetName()!r}: beams are not read yet")
         if paint.lost:
             shape.notes.append("textures and mixed materials are not kept")
-        self._add(thing, vertices, triangles, paint, shape)
+        known = self.slicer.get(thing.GetModelResourceID(), SlicerObject("", ()))
+        shape.names.append(thing.GetName() or known.name)
+        whole = (Volume(*role, 0, len(triangles) - 1),) if role else ()
+        self._add(vertices, triangles, paint, known.volumes or whole, shape)
 
     def _add(
         self,
-        thing: "Lib3MF.MeshObject",
         vertices: Floats,
         triangles: NDArray[np.int64],
         paint: Paint,
+        volumes: tuple[Volume, ...],
         shape: Shape,
     ) -> None:
         """Add a mesh, its blockers and enforcers apart from what is printed."""
-        known = self.slicer.get(thing.GetModelResourceID(), SlicerObject("", ()))
         printed = np.ones(len(triangles), np.bool_)
-        for volume in known.volumes:
+        for volume in volumes:
             if volume.kind != SOLID:
                 self._set_apart(volume, vertices, triangles, printed, shape)
         if not printed.all():
@@ -130,7 +144,6 @@ class Gatherer:
         shape.vertices.append(vertices)
         shape.triangles.append(triangles)
         shape.paints.append(paint)
-        shape.names.append(thing.GetName() or known.name)
 
     def _set_apart(
         self,

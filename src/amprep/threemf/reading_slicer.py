@@ -1,8 +1,11 @@
-"""What PrusaSlicer says about the triangles of an object: solid volumes, support blockers, modifiers."""
+"""What slicers say about triangles and components: solid volumes, support blockers, modifiers."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.errors import InputError
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
 
 SOLID, BLOCKER, ENFORCER, NEGATIVE, MODIFIER = "solid", "blocker", "enforcer", "negative", "modifier"
 
@@ -12,6 +15,13 @@ _KINDS = {
     "ParameterModifier": MODIFIER,
     "SupportBlocker": BLOCKER,
     "SupportEnforcer": ENFORCER,
+}
+
+_ROLES = {
+    "negative_part": NEGATIVE,
+    "modifier_part": MODIFIER,
+    "support_blocker": BLOCKER,
+    "support_enforcer": ENFORCER,
 }
 
 
@@ -31,6 +41,13 @@ class SlicerObject(NamedTuple):
     volumes: tuple[Volume, ...]
 
 
+class Role(NamedTuple):
+    """What a component is for, and its name."""
+
+    kind: str
+    name: str
+
+
 def parse_slicer_config(config: bytes, where: str) -> dict[int, SlicerObject]:
     """Return object id -> what ``Metadata/Slic3r_PE_model.config`` says of it.
 
@@ -39,33 +56,60 @@ def parse_slicer_config(config: bytes, where: str) -> dict[int, SlicerObject]:
     InputError
         If the part is not what PrusaSlicer writes.
     """
-    from lxml import etree
-
-    if not config:
-        return {}
+    root = _root(config, where)
     try:
-        root = etree.fromstring(config, etree.XMLParser(resolve_entities=False, no_network=True))
         return {
-            int(element.get("id")): SlicerObject(
+            int(element.get("id", "")): SlicerObject(
                 _value(element, "name"), tuple(_volume(volume) for volume in element.iterchildren("volume"))
             )
             for element in root.iterchildren("object")
         }
-    except (etree.XMLSyntaxError, TypeError, ValueError) as error:
+    except ValueError as error:
         raise InputError(f"{where}: cannot understand PrusaSlicer's model config ({error})") from error
 
 
-def _volume(element: object) -> Volume:
+def parse_part_roles(config: bytes, where: str) -> dict[tuple[int, int], Role]:
+    """Return (object id, component's object id) -> what ``Metadata/model_settings.config`` says it is for.
+
+    Raises
+    ------
+    InputError
+        If the part is not what Bambu Studio and OrcaSlicer write.
+    """
+    root = _root(config, where)
+    try:
+        return {
+            (int(element.get("id", "")), int(part.get("id", ""))): Role(
+                _ROLES.get(part.get("subtype", ""), SOLID), _value(part, "name")
+            )
+            for element in root.iterchildren("object")
+            for part in element.iterchildren("part")
+        }
+    except ValueError as error:
+        raise InputError(f"{where}: cannot understand the slicer's model settings ({error})") from error
+
+
+def _root(config: bytes, where: str) -> "_Element":
+    from lxml import etree
+
+    try:
+        parser = etree.XMLParser(resolve_entities=False, no_network=True)
+        return etree.fromstring(config or b"<config/>", parser)
+    except etree.XMLSyntaxError as error:
+        raise InputError(f"{where}: cannot understand the slicer's settings ({error})") from error
+
+
+def _volume(element: "_Element") -> Volume:
     kind = _KINDS.get(_value(element, "volume_type"), SOLID)
     if not _value(element, "volume_type") and _value(element, "modifier") == "1":  # before PrusaSlicer 2
         kind = MODIFIER
-    first, last = int(element.get("firstid")), int(element.get("lastid"))  # type: ignore[attr-defined]
+    first, last = int(element.get("firstid", "")), int(element.get("lastid", ""))
     return Volume(kind, _value(element, "name"), first, last)
 
 
-def _value(element: object, key: str) -> str:
+def _value(element: "_Element", key: str) -> str:
     """Return the value of the element's own metadata called `key`, "" if there is none."""
-    for child in element.iterchildren("metadata"):  # type: ignore[attr-defined]
+    for child in element.iterchildren("metadata"):
         if child.get("key") == key:
-            return child.get("value") or ""
+            return str(child.get("value", ""))
     return ""

@@ -71,8 +71,6 @@ def _load(content: bytes, kind: str, path: Path, **options: Any) -> list[_Named]
                 io.BytesIO(content), file_type=kind, process=False, skip_materials=True, **options
             )
         return list(_instances(scene))
-    except MemoryError:
-        raise
     except Exception as error:  # trimesh raises whatever its parts raise
         words = " ".join(f"{type(error).__name__}: {error}".split())[:200]
         raise InputError(f"{path}: cannot be read as {kind.upper()} ({words}); is it damaged?") from error
