@@ -226,6 +226,35 @@ def test_damaged_metadata_of_a_stranger_is_survived(site, tmp_path):
     assert load().choose("packer", "rows").version in ("?", "1.2")
 
 
+def test_a_damaged_list_of_entry_points_costs_one_warning(site, tmp_path):
+    site("fake-rows", GOOD.format(name="rows"))
+    site("fake-damaged", GOOD.format(name="other"))
+    (tmp_path / "fake_damaged-1.2.dist-info" / "entry_points.txt").write_text("[amprep]\nnonsense\n")
+    host = load()
+    assert host.choose("packer", "rows").distribution == "fake-rows"
+    (warning,) = own_warnings(host)
+    assert "the entry points of fake-damaged 1.2 cannot be read" in warning
+
+
+def test_a_file_that_has_the_name_of_a_loaded_module_is_refused(tmp_path):
+    path = tmp_path / "json.py"
+    path.write_text(GOOD.format(name="rows"))
+    with pytest.raises(PluginError, match="another module called 'json' is loaded already"):
+        load(str(path))
+
+
+def test_a_package_given_by_path_may_import_its_own_modules(site, tmp_path):
+    package = tmp_path / "fake_package"
+    package.mkdir()
+    (package / "__init__.py").write_text("from fake_package.inner import *\namprep_api = 1")
+    (package / "inner.py").write_text(GOOD.format(name="rows"))
+    host = load(str(package))
+    assert host.choose("packer", "rows").plugin == "fake_package"
+    assert load(str(package)).choose("packer", "rows").plugin == "fake_package", (
+        "loading it again does no harm"
+    )
+
+
 def test_listing_imports_nothing_heavy():
     import subprocess
 

@@ -5,7 +5,7 @@ import importlib.util
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import Distribution, EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, distributions, entry_points
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -60,13 +60,14 @@ def installed(environment: Mapping[str, str]) -> tuple[list[Source], list[str]]:
 
     With ``AMPREP_LOAD_PLUGINS`` set, only the entry points (or distributions) it lists; empty means none.
     """
-    found = sorted(map(_from_entry_point, entry_points(group=ENTRY_POINT_GROUP)), key=_by_distribution)
+    points, warnings = _entry_points()
+    found = sorted(map(_from_entry_point, points), key=_by_distribution)
     if CHOSEN_BY_ENVIRONMENT not in environment:
-        return found, []
+        return found, warnings
     wanted = [name.strip() for name in environment[CHOSEN_BY_ENVIRONMENT].split(",") if name.strip()]
     known = sorted({name for source in found for name in (source.name, source.distribution)})
     missing = [name for name in wanted if name not in known]
-    warnings = [
+    warnings += [
         f"{CHOSEN_BY_ENVIRONMENT} names {name!r}, but no such plugin is installed{nearest_hint(name, known)}"
         for name in missing
     ]
@@ -156,6 +157,22 @@ def _is_hook(plugin: object, name: str, manager: pluggy.PluginManager) -> bool:
     return name.startswith("amprep_") and isinstance(value, FunctionType) and not imported
 
 
+def _entry_points() -> tuple[list[EntryPoint], list[str]]:
+    """Return the entry points of all installed packages; one with a damaged list costs a warning."""
+    try:
+        return list(entry_points(group=ENTRY_POINT_GROUP)), []
+    except Exception:  # noqa: BLE001 the list of some package is damaged: look at each by itself
+        found: list[EntryPoint] = []
+        warnings = []
+        for distribution in distributions():
+            try:
+                found += distribution.entry_points.select(group=ENTRY_POINT_GROUP)
+            except Exception as error:  # noqa: BLE001
+                name, version = _identity(distribution)
+                warnings.append(f"the entry points of {name} {version} cannot be read: {one_line(error)}")
+        return found, warnings
+
+
 def _from_entry_point(entry_point: EntryPoint) -> Source:
     name, version = _identity(entry_point.dist)
     return Source(entry_point.name, name, version, entry_point.load)
@@ -186,11 +203,25 @@ def _import_file(path: Path) -> ModuleType:
     file = path / "__init__.py" if path.is_dir() else path
     if not file.is_file():
         raise FileNotFoundError(f"no Python module at {path}")
-    name = file.resolve().parent.name if file.name == "__init__.py" else file.stem
-    spec = importlib.util.spec_from_file_location(name, file.resolve())
+    file = file.resolve()
+    name = file.parent.name if file.name == "__init__.py" else file.stem
+    if name in sys.modules:
+        return _loaded_before(name, file)
+    spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
         raise ImportError(f"{file} is not a Python module")
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def _loaded_before(name: str, file: Path) -> ModuleType:
+    module = sys.modules[name]
+    if Path(getattr(module, "__file__", None) or "").resolve() != file:
+        raise ImportError(f"another module called {name!r} is loaded already; rename the file")
     return module
