@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.geometry.overhangs import Overhangs
 from amprep.geometry.voxels import UNMARKED, Grid, Window, holding_cubes, met_cubes, near_cubes
-from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Bytes, Ints
+from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Bytes, Floats, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
 from amprep.model.space import BuildVolume
@@ -31,7 +31,7 @@ def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_de
         return USUAL_PITCH
     sizes = [float(np.prod(hi - lo)) ** (1 / 3) for lo, hi in bounds]
     pitch = min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), FINEST_PITCH), USUAL_PITCH)
-    lo, hi = np.min([lo for lo, _ in bounds], axis=0), np.max([hi for _, hi in bounds], axis=0)
+    lo, hi = _common_bounds(bounds)
     extent = np.minimum(hi, space.size) - np.append(np.maximum(lo[:2], 0.0), 0.0)
     volume = float(np.prod(np.maximum(extent, 0.0)))
     while volume / (pitch**3 * np.tan(np.radians(strut_angle_deg))) > _MOST_CUBES:
@@ -64,8 +64,7 @@ def frame_of(
     """
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))
     top = min(_whole(highest_need(meshes, overhangs) / step) + 1, _whole(space.size[2] / step))
-    bounds = [mesh.bounds for mesh in meshes]
-    lo, hi = np.min([lo for lo, _ in bounds], axis=0), np.max([hi for _, hi in bounds], axis=0)
+    lo, hi = _common_bounds([mesh.bounds for mesh in meshes])
     origin, count = np.zeros(3), [max(top, 1), 1, 1]
     for axis in (0, 1):
         whole = _whole(space.size[axis] / pitch)
@@ -80,6 +79,12 @@ def frame_of(
 
 def _whole(count: float) -> int:
     return int(np.floor(count + 1e-9))
+
+
+def _common_bounds(bounds: Sequence[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    if not bounds:
+        return np.zeros(3), np.zeros(3)
+    return np.min([lo for lo, _ in bounds], axis=0), np.max([hi for _, hi in bounds], axis=0)
 
 
 def closed_cubes(frame: GridFrame, space: BuildVolume) -> Bools:

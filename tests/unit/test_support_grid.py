@@ -1,0 +1,295 @@
+"""Grid, red squares and the whole plan, on builds whose supports can be drawn by hand."""
+
+import manifold3d
+import numpy as np
+import pytest
+
+from amprep.errors import PluginError
+from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
+from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, Cube
+from amprep.pipeline.supports import choose_pitch, plan_supports
+from amprep.plugins.supports.params import ShortestPathsParams
+from amprep.plugins.supports.shortest_paths import route_shortest_paths
+
+Solid = manifold3d.Manifold
+SPACE = BuildVolume([60, 60, 60])
+
+
+def box(size, corner):
+    return Solid.cube(size).translate(corner)
+
+
+def mesh_of(solid):
+    mesh = solid.to_mesh()
+    return Mesh(mesh.vert_properties[:, :3], mesh.tri_verts)
+
+
+def placed(*solids, **settings):
+    parts = [Part(f"p{i}", mesh_of(solid), solid.volume(), **settings) for i, solid in enumerate(solids)]
+    return [PlacedPart(part.name, part, np.eye(4)) for part in parts]
+
+
+def route(problem, stop, report):
+    rng = np.random.default_rng(0)
+    return route_shortest_paths(problem, params=ShortestPathsParams(), rng=rng, stop=stop, report=report)
+
+
+def layout(parts, space=SPACE, **settings):
+    settings = {"pitch": 1.0, "route": route, "stop": Stop(), "report": silent} | settings
+    return plan_supports(parts, space, **settings)
+
+
+def columns(plan):
+    """Red squares as ``(plane, y, x)`` in whole-volume indices."""
+    x0, y0, _ = np.round(plan.frame.origin / plan.frame.pitch).astype(int)
+    return {(p, y + y0, x + x0) for p, y, x in plan.red.tolist()}
+
+
+TABLE = box((20, 20, 3), (20, 20, 10)) + box((6, 6, 10), (27, 27, 0))
+
+
+def test_a_table_has_a_red_square_under_every_cube_of_its_slab_beside_the_leg():
+    plan = layout(placed(TABLE))
+    assert columns(plan) == {
+        (10, y, x) for y in range(20, 40) for x in range(20, 40) if not (27 <= y < 33 and 27 <= x < 33)
+    }
+    assert plan.connected.all()
+    assert set(plan.red_rise.tolist()) == {1}
+    assert plan.group_parts == ((0,),)
+    assert set(plan.edge_group.tolist()) == {0}
+    assert plan.frame.shape[0] == 11  # no higher than the highest overhang's cube
+
+
+def test_what_lies_in_the_layer_on_the_plate_is_connected_directly():
+    plan = layout(placed(box((5, 4, 3), (10, 10, 0.5))))
+    assert columns(plan) == {(0, y, x) for y in range(10, 14) for x in range(10, 15)}
+    assert plan.connected.all()
+    assert len(plan.flow) == 0
+    assert set(plan.red_group.tolist()) == {0}
+
+
+def test_a_part_on_the_plate_without_overhangs_gets_nothing():
+    plan = layout(placed(box((5, 4, 3), (10, 10, 0))))
+    assert len(plan.red) == 0
+    assert plan.group_parts == ()
+
+
+def test_a_build_without_parts_gets_an_empty_layout():
+    assert len(layout([]).red) == 0
+
+
+def test_a_knife_edge_gets_red_squares_along_it():
+    wedge = Solid.hull_points(
+        [(10.2, 20.5, 8.5), (18.8, 20.5, 8.5)] + [(x, y, 20) for x in (10.2, 18.8) for y in (17, 24)]
+    )
+    assert columns(layout(placed(wedge))) == {(8, 20, x) for x in range(10, 19)}
+
+
+def test_a_tip_gets_one_red_square():
+    assert columns(layout(placed(Solid.cylinder(20, 0, 4, 16).translate((20.5, 30.5, 6))))) == {(6, 30, 20)}
+
+
+def test_the_rise_counts_the_cubes_that_the_connector_may_pass():
+    """A ramp of 26.6 degrees over squares of 1 mm: in every other column its face passes two cubes."""
+    side = [(0, 8.25), (12, 14.25), (12, 18), (0, 18)]
+    ramp = Solid.extrude(manifold3d.CrossSection([side]), 2).rotate((90, 0, 0)).translate((20, 22, 0))
+    plan = layout(placed(ramp))
+    assert plan.red[np.argsort(plan.red[:, 2])][::2, 0].tolist() == [
+        8,
+        8,
+        9,
+        9,
+        10,
+        10,
+        11,
+        11,
+        12,
+        12,
+        13,
+        13,
+    ]
+    assert plan.red_rise[np.argsort(plan.red[:, 2])][::2].tolist() == [1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2]
+
+
+def test_a_ceiling_in_a_closed_room_is_listed_as_enclosed():
+    room = box((12, 12, 12), (10, 10, 0)) - box((6, 6, 6), (13, 13, 3))
+    plan = layout(placed(room))
+    assert columns(plan) == {(9, y, x) for y in range(13, 19) for x in range(13, 19)}
+    assert set(plan.reasons) == {ENCLOSED}
+    assert not plan.connected.any()
+    assert plan.reason_at(0, np.array([[15.0, 15.2, 9.0]])) == (ENCLOSED,)
+
+
+def test_an_overhang_right_above_material_is_listed_as_no_white_cube_below():
+    slot = box((12, 12, 12), (10, 10, 0)) - box((6, 12, 0.5), (13, 10, 5.2))
+    plan = layout(placed(slot))
+    assert len(plan.red) == 0
+    assert plan.reason_at(0, np.array([[15.0, 15.2, 5.7]])) == (NO_WHITE_BELOW,)
+
+
+def test_what_a_connected_red_square_does_not_hold_is_a_blocked_connector():
+    plan = layout(placed(TABLE))
+    assert plan.reason_at(0, np.array([[21.5, 21.5, 10.0], [30.0, 30.0, 10.0]])) == (
+        CONNECTOR_BLOCKED,
+        NO_WHITE_BELOW,
+    )
+
+
+def test_paths_lead_out_of_a_hole_sideways():
+    """A T above a blind hole, open to one side: the squares over the hole go round through the opening."""
+    block = box((12, 12, 6), (10, 10, 0)) - box((4, 9, 4), (14, 13, 2))
+    roof = box((12, 12, 2), (10, 10, 14)) + box((2, 2, 8), (10, 10, 6))
+    plan = layout(placed(block + roof))
+    over_block = (plan.red[:, 0] == 14).sum()
+    assert over_block == 144 - 4
+    assert plan.connected.all()
+
+
+def two_balls():
+    lower, upper = (Solid.sphere(6, 48).translate((30, 30, z)) for z in (9, 30))
+    return placed(lower, upper)
+
+
+def test_two_balls_above_one_another_share_nothing_by_default():
+    plan = layout(two_balls())
+    assert plan.connected.all()
+    assert plan.group_parts == ((0,), (1,))
+    assert plan.notes == ()
+    used = [set(), set()]
+    for p, y, x, d, part in zip(plan.plane, plan.y, plan.x, plan.direction, plan.edge_part, strict=True):
+        dy, dx = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))[d]
+        used[part] |= {(p - 1, y, x), (p - 1, y + dy, x + dx)}
+    assert not used[0] & used[1]
+
+
+def shaft(width):
+    """A chamber with two plates, one above the other and beside it, over a narrow way down to the plate."""
+    well = (
+        box((14, 14, 30), (10, 10, 0)) - box((width, width, 30), (16, 16, 0)) - box((8, 8, 20), (13, 13, 10))
+    )
+    return placed(well, box((8, 2, 1), (13, 13, 20)), box((8, 2, 1), (13, 18, 24)))
+
+
+def test_supports_are_shared_only_where_there_is_no_other_way():
+    plan = layout(shaft(1), least_area=0.0)
+    assert plan.connected.all()
+    assert plan.group_parts == ((1, 2),)
+    assert plan.notes == ("share supports: p1, p2",)
+    assert plan.flow.max() == 32
+    apart = layout(shaft(5), least_area=0.0)
+    assert apart.connected.all()
+    assert apart.group_parts == ((1,), (2,))
+
+
+def test_one_network_may_be_asked_for():
+    plan = layout(two_balls(), share_between_parts="allow")
+    assert plan.connected.all()
+    key = np.column_stack([plan.plane, plan.y, plan.x, plan.direction])
+    assert len(np.unique(key, axis=0)) == len(key)
+
+
+@pytest.mark.parametrize("share", ["avoid", "allow"])
+def test_capacities_hold_for_the_whole_build(share):
+    plan = layout(shaft(2), share_between_parts=share, node_capacity=3, least_area=0.0)
+    assert plan.connected.sum() == 12  # the shaft has four squares of at most three paths each
+    assert {reason for reason in plan.reasons if reason} == {CAPACITY}
+    _, square = np.unique(np.column_stack([plan.plane, plan.y, plan.x]), axis=0, return_inverse=True)
+    assert np.bincount(square.reshape(-1), weights=plan.flow).max() <= 3
+
+
+def test_cubes_outside_the_build_volume_are_closed():
+    drum = BuildVolume([40, 40, 40], shape="cylinder")
+    plan = layout(placed(box((20, 20, 2), (10, 10, 20))), space=drum)
+    x0, y0, _ = plan.frame.origin
+    for y, x in np.ndindex(plan.cubes.shape[1:]):
+        far = max(np.hypot(x0 + x + i - 20, y0 + y + j - 20) for i in (0, 1) for j in (0, 1))
+        assert (plan.cubes[0, y, x] == Cube.CLOSED) == (far > 20.001)
+
+
+def test_forbidden_zones_are_closed_and_gone_round():
+    zone = {"zone_lo": [[12, 12, 0]], "zone_hi": [[18, 18, 5.5]]}
+    plan = layout(placed(box((4, 4, 2), (13, 13, 20))), space=BuildVolume([60, 60, 60], **zone))
+    x0, y0, _ = plan.frame.origin.astype(int)
+    closed = np.zeros(plan.cubes.shape, bool)
+    closed[0:6, 12 - y0 : 18 - y0, 12 - x0 : 18 - x0] = True
+    assert ((plan.cubes == Cube.CLOSED) == closed).all()
+    assert plan.connected.all()
+
+
+def test_the_grid_ends_inside_the_box_and_is_shifted_to_a_wall_where_a_part_stands():
+    space = BuildVolume([40.5, 60, 60])
+    plan = layout(placed(box((10, 10, 2), (30.5, 20, 10))), space=space)
+    end = plan.frame.origin[0] + plan.frame.shape[2] * plan.frame.pitch
+    assert end == pytest.approx(40.5)
+    assert len(plan.red) == 100
+    assert plan.connected.all()
+    free = layout(placed(box((10, 10, 2), (20, 20, 10))), space=space)
+    assert free.frame.origin[0] + free.frame.shape[2] * free.frame.pitch <= 40.5
+
+
+def test_the_strut_angle_sets_the_step():
+    assert layout(placed(TABLE), strut_angle_deg=60.0).frame.step == pytest.approx(np.sqrt(3))
+
+
+def test_a_part_may_have_its_own_angle_or_no_supports():
+    ball = Solid.sphere(6, 48).translate((30, 30, 12))
+    usual = len(layout(placed(ball)).red)
+    flat = layout(placed(ball, overrides=Overrides(overhang_angle_deg=20.0)))
+    assert 0 < len(flat.red) < usual
+    none = layout(placed(ball, overrides=Overrides(supports=False)))
+    assert len(none.red) == 0
+    assert none.cubes.max(initial=0) == 0 or (none.cubes == Cube.BLACK).any()
+
+
+def test_a_blocker_mesh_takes_needs_away_and_enforcer_triangles_add_some():
+    table = mesh_of(TABLE)
+    below = table.vertices[table.triangles][:, :, 2].max(axis=1) == 10
+    blocker = Region("blocker", "none here", triangles=np.flatnonzero(below).astype(np.int32))
+    assert len(layout(placed(TABLE, regions=(blocker,))).red) == 0
+    away = Region("blocker", "elsewhere", mesh=mesh_of(box((5, 5, 5), (50, 50, 50))))
+    assert len(layout(placed(TABLE, regions=(away,))).red) == 364
+    around = Region("blocker", "all", mesh=mesh_of(box((30, 30, 30), (15, 15, -5))))
+    assert len(layout(placed(TABLE, regions=(around,))).red) == 0
+    cone = Solid.cylinder(10, 6, 10, 32).translate((30, 30, 0))  # its side looks down at 68 degrees
+    assert len(layout(placed(cone)).red) == 0
+    mesh = mesh_of(cone)
+    low = np.flatnonzero(mesh.vertices[mesh.triangles][:, :, 2].min(axis=1) < 1).astype(np.int32)
+    assert len(layout(placed(cone, regions=(Region("enforcer", "side", triangles=low),))).red) > 0
+
+
+def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
+    post = box((4, 4, 30), (28, 28, 0))
+    slab = box((14, 4, 2), (32, 28, 20))
+    free, kept = (layout(placed(post + slab), gap=gap) for gap in (0.0, 2.0))
+    assert free.connected.all()
+    x0, y0, _ = kept.frame.origin.astype(int)
+    x, y = kept.x + x0, kept.y + y0
+    low = kept.plane <= 15
+    assert ((x[low] >= 34) | (y[low] < 26) | (y[low] >= 34)).all()
+    far = kept.red[:, 2] + x0 >= 34
+    assert kept.connected[far].all()
+
+
+def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
+    def pitch(size, space=SPACE):
+        return choose_pitch(placed(box(size, (0, 0, 0))), space)
+
+    assert pitch((30, 30, 30)) == 1.0
+    assert pitch((15, 15, 15)) == 0.6
+    assert pitch((4, 4, 4)) == 0.4
+    assert pitch((700, 700, 700), BuildVolume([800, 800, 800])) > 1.5
+    assert choose_pitch([], SPACE) == 1.0
+
+
+def test_a_router_that_breaks_its_promise_is_refused():
+    def lazy(problem, stop, report):
+        return SupportPlan([], [], [], [], [], [])
+
+    with pytest.raises(PluginError, match="broke its promise"):
+        layout(placed(TABLE), route=lazy)
+
+
+def test_the_same_build_gives_the_same_layout():
+    first, second = layout(two_balls()), layout(two_balls())
+    for name in ("red", "plane", "y", "x", "direction", "flow", "edge_part", "red_group"):
+        assert getattr(first, name).tolist() == getattr(second, name).tolist()
