@@ -7,7 +7,6 @@ import typer
 
 from amprep import cli
 from amprep.errors import JobError
-from amprep.model.build import Target
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -40,7 +39,10 @@ def run(
     packer: Annotated[str | None, typer.Option(help="Packer by name; see 'amprep plugins list'.")] = None,
     router: Annotated[str | None, typer.Option(help="Support router by name.")] = None,
     cell: Annotated[str | None, typer.Option(help="Lattice cell by name.")] = None,
-    target: Annotated[Target | None, typer.Option("--for", help="Who will open the build jobs.")] = None,
+    target: Annotated[
+        str | None,
+        typer.Option("--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."),
+    ] = None,
     sets: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),
@@ -88,7 +90,7 @@ def run(
         time_limit=time_limit,
     )
     _print(record, as_json=as_json, quiet=quiet)
-    raise typer.Exit(cli.INCOMPLETE if record.incomplete(job.packing.objective) else cli.DONE)
+    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
 
 
 def _watched(

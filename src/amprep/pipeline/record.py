@@ -24,7 +24,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         support_volume_mm3=support_volume(build),
         red=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),
-        shared=() if layout is None else layout.shared,
+        shared=() if layout is None else layout.notes,
     )
 
 
@@ -46,6 +46,7 @@ def run_record(
         seed=job.seed,
         printer=job.printer.name,
         target=job.target,
+        objective=job.packing.objective,
         builds=tuple(builds),
         unplaced=_unplaced(parts, problem, packing),
         status=packing.status,

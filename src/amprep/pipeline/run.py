@@ -9,6 +9,7 @@ from amprep.host import Host, Listed
 from amprep.hookspecs import Packer
 from amprep.job import Job, apply_part_settings
 from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, Stop
+from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
 from amprep.pipeline.reading import expand_inputs, read_all
@@ -83,7 +84,7 @@ def check_choices(job: Job, host: Host) -> None:
     chosen = (
         (host.choose("packer", job.packing.strategy), job.packing.params),
         (host.choose("router", job.supports.strategy), job.supports.params),
-        (host.choose("cell", job.cells.strategy), job.cells.params),
+        (choose_cell(host, job), job.cells.params),
         (host.choose("volume", job.packing.volumes), job.packing.volume_params),
     )
     for listed, params in chosen:

@@ -16,6 +16,7 @@ from amprep.model import (
     SupportPlan,
     SupportProblem,
 )
+from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.supports import SupportLayout, choose_pitch, plan_supports
@@ -35,12 +36,12 @@ def support_build(
     """Return build `number` with supports for everything that needs some, or listed with its reason."""
     if not job.supports.enabled:
         return SupportedBuild(Build(build_settings(job, number, pitch=1.0), parts))
-    pitch = job.supports.pitch_mm or choose_pitch(parts, job.printer.space)
+    pitch = job.supports.pitch_mm or choose_pitch(parts, job.printer.space, job.supports.strut_angle_deg)
     settings = build_settings(job, number, pitch)
     with clock.stage("route") as report:
         layout = _plan(job, host, parts, number, pitch, stop, report)
     with clock.stage("cells") as report:
-        emitter = host.choose("cell", job.cells.strategy)
+        emitter = choose_cell(host, job)
         bodies = build_supports(
             layout,
             parts,
@@ -82,7 +83,7 @@ def _plan(
     job: Job, host: Host, parts: tuple[PlacedPart, ...], number: int, pitch: float, stop: Stop, report: Report
 ) -> SupportLayout:
     wishes, angle = job.supports, job.supports.strut_angle_deg
-    router, emitter = host.choose("router", wishes.strategy), host.choose("cell", job.cells.strategy)
+    router, emitter = host.choose("router", wishes.strategy), choose_cell(host, job)
     params, stop = host.params(router, wishes.params), stop.within(wishes.time_limit_s)
     rng = np.random.default_rng([job.seed, number])
 

@@ -3,11 +3,28 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from amprep.checks import cells, coverage
 from amprep.checks.cells import check_bodies
 from amprep.checks.coverage import check_coverage
 from amprep.checks.placed import check_placed
 from amprep.checks.violation import Violation
 from amprep.model import Build, Report, Stop, silent
+
+PROMISES = (
+    "inside build volume",
+    "outside forbidden zones",
+    "no intersection",
+    "clearance",
+    "lift",
+    "allowed motion",
+    "part unchanged",
+    cells.CLOSED,
+    cells.INSIDE,
+    cells.STANDING,
+    cells.PENETRATION,
+    coverage.PROMISE,
+)
+"""The names of all promises, in the order they are judged."""
 
 
 def verify_build(build: Build, *, stop: Stop | None = None, report: Report = silent) -> tuple[Violation, ...]:

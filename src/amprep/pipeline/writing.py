@@ -25,7 +25,7 @@ def finish_build(
     record = build_record(supported)
     if not dry_run:
         with clock.stage("write"):
-            record = replace(record, **_write(build, number, outputs, stl))
+            record = _written(record, number, outputs, stl)
     with clock.stage("verify") as report:
         judged = build if dry_run else _read_back(number, outputs)
         return replace(record, verification=verify_build(judged, stop=stop, report=report))
@@ -57,15 +57,13 @@ def _read_back(number: int, outputs: OutputFolder) -> Build:
     return read_build(outputs.staged(f"build-{number}.3mf"))
 
 
-def _write(build: Build, number: int, outputs: OutputFolder, stl: bool) -> dict[str, str | tuple[str, ...]]:
+def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool) -> BuildRecord:
     from amprep.threemf import write_build
 
     name = f"build-{number}.3mf"
-    write_build(build, outputs.path(name))
-    return {
-        "file": outputs.name(name),
-        "stl_files": _write_stl(build, number, outputs) if stl else (),
-    }
+    write_build(record.build, outputs.path(name))
+    stl_files = _write_stl(record.build, number, outputs) if stl else ()
+    return replace(record, file=outputs.name(name), stl_files=stl_files)
 
 
 def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, ...]:

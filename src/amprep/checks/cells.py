@@ -1,0 +1,154 @@
+"""The promise of finished supports: closed, inside, on the plate, in no part deeper than allowed."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.checks.placed import TOLERANCE
+from amprep.checks.violation import Violation
+from amprep.geometry.inside import inside
+from amprep.geometry.merging import merge_equal
+from amprep.geometry.shells import label_shells
+from amprep.geometry.solids import as_manifold
+from amprep.model.arrays import Floats
+from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody
+from amprep.model.control import Stop
+from amprep.model.space import BuildVolume
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+CLOSED = "support is closed"
+INSIDE = "support inside build volume"
+STANDING = "support stands on the plate"
+PENETRATION = "support in a part"
+
+NEGLIGIBLE_VOLUME = 1e-4
+"""mm3; booleans on coordinates of 1e-5 mm leave slivers up to about 10 mm2 times that."""
+
+
+class Body:
+    """A support body, its solid made when it is first needed."""
+
+    def __init__(self, support: SupportBody) -> None:
+        self.support = support
+        self.name = support.name
+
+    @cached_property
+    def solid(self) -> "Manifold":
+        """The body as a solid."""
+        return as_manifold(self.support.mesh.vertices, self.support.mesh.triangles)
+
+
+def check_bodies(build: Build, stop: Stop) -> list[Violation]:
+    """Return how the supports of a build break their promise.
+
+    Solids are judged by manifold3d, exactly; of walls without thickness the corners and the middles of
+    triangles and edges are judged.
+    """
+    found: list[Violation] = []
+    for body in map(Body, build.supports):
+        faults = _closed(body)
+        found += faults
+        if faults:
+            continue
+        found += [*_inside(body, build.settings.space), *_standing(body)]
+        for index, placed in enumerate(build.parts):
+            if stop.cancelled.is_set():
+                return found
+            found += _penetration(body, placed, build.settings, holds=index in body.support.parts)
+    return found
+
+
+def _closed(body: Body) -> list[Violation]:
+    """Judge a solid by manifold3d; a surface has only to be finite."""
+    mesh = body.support.mesh
+    if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
+        return [Violation(CLOSED, body.name, "expected a finite mesh with triangles, found none")]
+    if body.support.surface:
+        return []
+    status, volume = body.solid.status().name, body.solid.volume()
+    if status == "NoError" and volume > 0:
+        return []
+    return [Violation(CLOSED, body.name, f"expected a solid, manifold3d says {status} and {volume:.3g} mm3")]
+
+
+def _inside(body: Body, space: BuildVolume) -> list[Violation]:
+    points = body.support.mesh.vertices
+    below, above = -points.min(axis=0), points.max(axis=0) - space.size
+    if space.shape == "cylinder":
+        radius = space.size[0] / 2
+        above[:2] = below[:2] = np.hypot(*(points[:, :2] - radius).T).max() - radius
+    excess = float(max(below.max(), above.max()))
+    found = []
+    if excess > TOLERANCE:
+        found.append(Violation(INSIDE, body.name, f"sticks out of the build volume by {excess:.4f} mm"))
+    return [*found, *_zones(body, space)]
+
+
+def _zones(body: Body, space: BuildVolume) -> list[Violation]:
+    found = []
+    for lo, hi in zip(space.zone_lo + TOLERANCE, space.zone_hi - TOLERANCE, strict=True):
+        if _volume_in_box(body, lo, hi):
+            found.append(Violation(INSIDE, body.name, f"reaches into the forbidden zone at {lo.tolist()} mm"))
+    return found
+
+
+def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
+    from manifold3d import Manifold
+
+    corners = body.support.mesh.vertices[body.support.mesh.triangles]
+    near = ((corners.max(axis=1) > lo) & (corners.min(axis=1) < hi)).all(axis=1)
+    if body.support.surface or not near.any():
+        return bool(near.any())
+    common = body.solid ^ Manifold.cube((hi - lo).tolist()).translate(lo.tolist())
+    return bool(common.volume() > NEGLIGIBLE_VOLUME)
+
+
+def _standing(body: Body) -> list[Violation]:
+    """Judge that every connected piece reaches the plate; pieces that meet in a point are connected."""
+    points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
+    count, shell = label_shells(triangles, len(points))
+    lowest = np.full(count, np.inf)
+    np.minimum.at(lowest, shell, points[triangles, 2].min(axis=1))
+    floating = int((lowest > TOLERANCE).sum())
+    if not floating:
+        return []
+    first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
+    place = np.round(first, 2).tolist()
+    message = f"{floating} of {count} pieces do not reach the plate, one of them at {place} mm"
+    return [Violation(STANDING, body.name, message)]
+
+
+def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, holds: bool) -> list[Violation]:
+    """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all."""
+    depth = (settings.overlap if holds else 0.0) + TOLERANCE
+    (lo, hi), (part_lo, part_hi) = body.support.mesh.bounds, placed.mesh.bounds
+    if ((lo > part_hi) | (hi < part_lo)).any() or not placed.part.is_solid:
+        return []
+    if body.support.surface:
+        deep = _sheet_enters(body, placed, depth)
+        found = f"a wall runs more than {depth:.4g} mm into it" if deep else ""
+    else:
+        volume = _volume_deeper(body, placed, depth)
+        found = f"{volume:.3g} mm3 lie more than {depth:.4g} mm deep" if volume > NEGLIGIBLE_VOLUME else ""
+    return [Violation(PENETRATION, body.name, f"enters {placed.label}: {found}")] if found else []
+
+
+def _volume_deeper(body: Body, placed: PlacedPart, depth: float) -> float:
+    """Return the volume of the points common to body and part with a common point `depth` below them."""
+    common = body.solid ^ as_manifold(placed.mesh.vertices, placed.mesh.triangles)
+    if common.is_empty() or common.volume() <= NEGLIGIBLE_VOLUME:
+        return 0.0
+    return float((common ^ common.translate((0.0, 0.0, depth))).volume())
+
+
+def _sheet_enters(body: Body, placed: PlacedPart, depth: float) -> bool:
+    """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too."""
+    corners = body.support.mesh.vertices[body.support.mesh.triangles]
+    middles = (corners + np.roll(corners, 1, axis=1)) / 2
+    points = np.concatenate([corners.reshape(-1, 3), middles.reshape(-1, 3), corners.mean(axis=1)])
+    mesh = placed.mesh
+    entered = points[inside(points, mesh.vertices, mesh.triangles)]
+    return bool(inside(entered - (0.0, 0.0, depth), mesh.vertices, mesh.triangles).any())
