@@ -9,6 +9,15 @@ MOST_MARKS = 400
 """Marks shown for one region; they are for finding it, not for measuring it."""
 
 
+MARK_MM = (0.6, 0.9)
+"""Least and greatest radius of a mark."""
+
+
+def mark_radius(reach: float, least: float = MARK_MM[0]) -> float:
+    """Return the radius of marks for a region whose points cover `reach` mm, at least `least`."""
+    return max(min(reach, MARK_MM[1]), least)
+
+
 def thinned(points: Floats) -> Floats:
     """Return at most `MOST_MARKS` of the points, evenly taken."""
     return points[:: max(1, -(-len(points) // MOST_MARKS))]
@@ -31,4 +40,6 @@ def _octahedron_twice() -> tuple[Floats, Ints]:
         middles = [corners[a] + corners[b], corners[b] + corners[c], corners[c] + corners[a]]
         points += [corners[a], corners[b], corners[c], *(middle / np.sqrt(2.0) for middle in middles)]
     split = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]], np.int32)
-    return np.array(points), np.concatenate([split + 6 * k for k in range(len(faces))])
+    distinct, index = np.unique(np.round(points, 12), axis=0, return_inverse=True)
+    triangles = np.concatenate([split + 6 * k for k in range(len(faces))])
+    return distinct, index.reshape(-1)[triangles].astype(np.int32)

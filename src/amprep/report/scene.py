@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from amprep.model import Build, Mesh
 from amprep.model.arrays import Floats, Ints
 from amprep.report.colours import SUPPORT, UNSUPPORTED, part_colours, rgb
-from amprep.report.marks import balls, thinned
+from amprep.report.marks import balls, mark_radius, thinned
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
 """The kinds of `amprep.kernels.raster`, repeated here so that scenes can be made without the compiler."""
@@ -59,7 +59,7 @@ def unsupported_marks(build: Build, least_radius: float) -> Body | None:
         return None
     points = [thinned(region.points) for region in regions]
     radii = [
-        np.full(len(some), max(region.radius, least_radius))
+        np.full(len(some), mark_radius(region.radius, least_radius))
         for some, region in zip(points, regions, strict=True)
     ]
     return Body(balls(np.concatenate(points), np.concatenate(radii)), UNSUPPORTED, PART_KIND)

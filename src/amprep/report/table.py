@@ -1,7 +1,9 @@
 """The closing table of a run, for the terminal."""
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
+from amprep.model import Build
 from amprep.report.record import BuildRecord, RunRecord, StageTime
 
 if TYPE_CHECKING:
@@ -68,12 +70,25 @@ def _attention(record: RunRecord) -> list[str]:
     lines = list(record.warnings)
     lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in record.unplaced]
     for number, entry in enumerate(record.builds, start=1):
-        for found in entry.verification or ():
-            lines.append(f"build {number}: {found.promise}: {found.subject}: {found.message}")
         lines += [
-            f"build {number}: unsupported: {region.label}: {region.reason}"
-            for region in entry.build.unsupported
+            f"build {number}: {found.promise}: {found.subject}: {found.message}"
+            for found in entry.verification or ()
         ]
+        lines += [f"build {number}: unsupported: {words}" for words in _unsupported(entry.build)]
+    return lines
+
+
+def _unsupported(build: Build) -> list[str]:
+    """Return one line for each part with unsupported regions."""
+    lines = []
+    for index, placed in enumerate(build.parts):
+        regions = [region for region in build.unsupported if region.part == index]
+        reasons = Counter(region.reason for region in regions)
+        if len(regions) == 1:
+            lines.append(f"{regions[0].label}: {regions[0].reason}")
+        elif regions:
+            counts = ", ".join(f"{count} {reason}" for reason, count in reasons.most_common())
+            lines.append(f"{len(regions)} regions of {placed.label}: {counts}")
     return lines
 
 

@@ -7,11 +7,9 @@ import numpy as np
 from amprep.model import Build, Mesh, PlacedPart, SupportBody, Unsupported
 from amprep.report.colours import SUPPORT, part_colours
 from amprep.report.geometry import GeometryPack
-from amprep.report.marks import thinned
+from amprep.report.marks import mark_radius, thinned
 from amprep.report.measures import build_height, part_volume
 from amprep.report.record import RunRecord
-
-LEAST_MARK_MM = 0.6
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
@@ -78,6 +76,6 @@ def _unsupported(region: Unsupported, pack: GeometryPack) -> dict[str, Any]:
         "name": region.label,
         "reason": region.reason,
         "points": marks,
-        "radius": max(region.radius, LEAST_MARK_MM),
+        "radius": mark_radius(region.radius),
         "facts": [size, region.reason],
     }
