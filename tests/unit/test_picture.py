@@ -127,8 +127,9 @@ def test_an_own_colour_is_used_unless_all_parts_carry_the_same():
 
 def test_unsupported_regions_are_red_and_shine_through_what_hides_them():
     block = box((30, 30, 0), (40, 40, 30))
-    above = Unsupported(0, "tip", "tip", "enclosed", 0.0, [[50, 50, 31]], 4.0)
-    inside = replace(above, points=np.array([[50.0, 50.0, 15.0]]))
+    grid = np.array([[x, y, 31.0] for x in range(40, 61, 2) for y in range(40, 61, 2)])
+    above = Unsupported(0, "face", "face", "enclosed", 400.0, grid, 1.5)
+    inside = replace(above, points=grid - [0, 0, 15])
     plain, hidden, open_ = (
         pixels(build_of(block, unsupported=regions)) for regions in ((), (inside,), (above,))
     )
