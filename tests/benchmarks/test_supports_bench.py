@@ -1,4 +1,4 @@
-"""How long the stages of support planning take on the scenes of the references; seconds are printed, not judged."""
+"""How long the stages of support planning take on the scenes of the references; seconds are printed only."""
 
 import numpy as np
 import pytest

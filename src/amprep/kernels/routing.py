@@ -365,10 +365,13 @@ def _shift(network: Network, flows: Flows, state: int, to: int) -> None:
         else:
             flows.through[u] -= 1
         return
-    upper, lower, change = (u, v, 1) if state & 1 else (v, u, -1)
+    upper, lower = (u, v) if state & 1 else (v, u)
     for d in range(5):
         if upper - network.stride + network.offset[d] == lower:
-            flows.flow[upper, d] = flows.flow[upper, d] + change
+            if state & 1:
+                flows.flow[upper, d] += 1
+            else:
+                flows.flow[upper, d] -= 1
 
 
 @njit(cache=True)
