@@ -11,9 +11,10 @@ ROTATION_TOLERANCE = 5e-6
 
 def motion_fault(rotation: Floats, orientations: Orientations) -> str:
     """Return why a rotation ``(3, 3)`` is not one of `orientations`; empty when it is."""
-    if not np.isfinite(rotation).all():
-        return "is not finite"
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 4.0 * ROTATION_TOLERANCE:
+    if (
+        not np.isfinite(rotation).all()
+        or np.abs(rotation @ rotation.T - np.eye(3)).max() > 4.0 * ROTATION_TOLERANCE
+    ):
         return "changes lengths or angles"
     if np.linalg.det(rotation) < 0.0:
         return "mirrors"

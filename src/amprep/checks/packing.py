@@ -85,8 +85,8 @@ class PlacedVolume:
 def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
     """Return how a packing breaks the packer's promise.
 
-    Clearance is the true distance of the volumes, contact up to `CONTACT_TOLERANCE`. Fixed placements must be kept and
-    are not judged otherwise. Items said to be too large must not fit an empty build (judged for boxes).
+    Clearance is the true distance of the volumes, contact up to `CONTACT_TOLERANCE`. Fixed placements must be
+    kept and are not judged otherwise. Items of boxes said to be too large must not fit an empty build.
     """
     faults = _each_item_once(problem, packing)
     if any(v.promise == "known item" for v in faults):
@@ -104,15 +104,23 @@ def _each_item_once(problem: PackingProblem, packing: Packing) -> list[Violation
     placed = [placement.item for build in packing.builds for placement in build]
     count = Counter([*placed, *(unplaced.item for unplaced in packing.unplaced)])
     n = len(problem.items)
-    faults = [Violation("known item", f"item {i}", f"items are 0 to {n - 1}") for i in sorted(count) if not 0 <= i < n]
-    for i in range(n):
-        if count[i] != 1:
-            faults.append(Violation("every item once", f"item {i}", f"is in builds or unplaced {count[i]} times, not once"))
+    faults = [
+        Violation("known item", f"item {i}", f"items are 0 to {n - 1}")
+        for i in sorted(count)
+        if not 0 <= i < n
+    ]
+    faults += [
+        Violation("every item once", f"item {i}", f"is in builds or unplaced {count[i]} times, not once")
+        for i in range(n)
+        if count[i] != 1
+    ]
     for number, build in enumerate(packing.builds, start=1):
         if not build:
             faults.append(Violation("no empty build", f"build {number}", "holds no item"))
     if problem.objective != "builds" and len(packing.builds) > 1:
-        faults.append(Violation("one build", "packing", f"has {len(packing.builds)} builds, the problem has one"))
+        faults.append(
+            Violation("one build", "packing", f"has {len(packing.builds)} builds, the problem has one")
+        )
     return faults
 
 
@@ -153,7 +161,11 @@ def _inside(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
     else:
         walls = float(min(points[:, :2].min(), (size[:2] - points[:, :2]).min()))
     return [
-        Violation("inside build volume", volume.label, f"it is {distance:.6g} mm from the {name}, needs {problem.clearance:g}")
+        Violation(
+            "inside build volume",
+            volume.label,
+            f"it is {distance:.6g} mm from the {name}, needs {problem.clearance:g}",
+        )
         for name, distance in (("walls", walls), ("lid", float(size[2] - points[:, 2].max())))
         if distance < problem.clearance - TOLERANCE
     ]
@@ -163,7 +175,9 @@ def _standing(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
     """Return whether a volume's lowest point is below `lift`, or above it without stacking."""
     lowest = float(volume.points[:, 2].min())
     if lowest < problem.lift - TOLERANCE:
-        return [Violation("lift", volume.label, f"its lowest point is at {lowest:.6g} mm, needs {problem.lift:g}")]
+        return [
+            Violation("lift", volume.label, f"its lowest point is at {lowest:.6g} mm, needs {problem.lift:g}")
+        ]
     if not problem.stacking and lowest > problem.lift + TOLERANCE:
         message = f"its lowest point is at {lowest:.6g} mm; without stacking all stand at {problem.lift:g}"
         return [Violation("stacking", volume.label, message)]
@@ -174,7 +188,9 @@ def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
     """Return the zones that a volume reaches into."""
     faults = []
     least, most = volume.points.min(axis=0), volume.points.max(axis=0)
-    for number, (lo, hi) in enumerate(zip(problem.space.zone_lo, problem.space.zone_hi, strict=True), start=1):
+    for number, (lo, hi) in enumerate(
+        zip(problem.space.zone_lo, problem.space.zone_hi, strict=True), start=1
+    ):
         if (least >= hi - TOLERANCE).any() or (most <= lo + TOLERANCE).any():
             continue
         if volume.boxes is not None:
@@ -182,7 +198,11 @@ def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
         else:
             gap = solid_gap(volume.solid, box_solids(lo[None], hi[None]), 0.0)
         if gap < -TOLERANCE:
-            faults.append(Violation("outside forbidden zones", volume.label, f"it is {-gap:.6g} mm inside zone {number}"))
+            faults.append(
+                Violation(
+                    "outside forbidden zones", volume.label, f"it is {-gap:.6g} mm inside zone {number}"
+                )
+            )
     return faults
 
 
@@ -211,8 +231,16 @@ def _reasons(problem: PackingProblem, packing: Packing) -> list[Violation]:
     for unplaced in packing.unplaced:
         if not unplaced.reason:
             faults.append(Violation("reason given", f"item {unplaced.item}", "is unplaced without a reason"))
-        if unplaced.reason == "too large" and 0 <= unplaced.item < len(problem.items) and _fits(problem, unplaced.item):
-            faults.append(Violation("reason true", f"item {unplaced.item}", "is called too large but fits an empty build"))
+        if (
+            unplaced.reason == "too large"
+            and 0 <= unplaced.item < len(problem.items)
+            and _fits(problem, unplaced.item)
+        ):
+            faults.append(
+                Violation(
+                    "reason true", f"item {unplaced.item}", "is called too large but fits an empty build"
+                )
+            )
     return faults
 
 
@@ -227,7 +255,9 @@ def _fits(problem: PackingProblem, index: int) -> bool:
     zones = problem.space.zone_lo, problem.space.zone_hi
     lo = np.array([gap, gap, problem.lift])
     space = Space(lo, size - gap, size[:2] / 2.0, radius, *zones, not problem.stacking, 0.0)
-    turned = (rotated_boxes(item.volume.lo, item.volume.hi, rotation) for rotation in item.orientations.matrices)
+    turned = (
+        rotated_boxes(item.volume.lo, item.volume.hi, rotation) for rotation in item.orientations.matrices
+    )
     return any(find_home(lo, hi, space) is not None for lo, hi in turned)
 
 
@@ -238,11 +268,14 @@ def _claims(problem: PackingProblem, packing: Packing) -> list[Violation]:
     left_out = problem.objective != "fill" and bool(packing.unplaced)
     faults = []
     if packing.bound is not None and not left_out and sign * (packing.bound - reached) > slack:
-        faults.append(Violation("bound", "packing", f"reaches {reached:g}, beyond its own bound {packing.bound:g}"))
+        faults.append(
+            Violation("bound", "packing", f"reaches {reached:g}, beyond its own bound {packing.bound:g}")
+        )
     if packing.status == "optimal":
         proved = packing.bound is not None and sign * (reached - packing.bound) <= slack
         if left_out or not proved:
-            message = f"is called optimal but reaches {reached:g} with bound {packing.bound} and {len(packing.unplaced)} unplaced"
+            left = len(packing.unplaced)
+            message = f"is called optimal but reaches {reached:g}, bound {packing.bound}, {left} unplaced"
             faults.append(Violation("status", "packing", message))
     if packing.status == "infeasible" and not packing.unplaced:
         faults.append(Violation("status", "packing", "is called infeasible but places every item"))

@@ -60,8 +60,9 @@ class Body:
 def check_placed(parts: Sequence[PlacedPart], settings: BuildSettings, stop: Stop) -> list[Violation]:
     """Return how the parts of a build break the packer's promise.
 
-    A part's own clearance and lift hold instead of the build's; between two parts the greater clearance does. Exact on
-    the meshes: solids by manifold3d, surfaces triangle by triangle. Overlaps up to `CONTACT_TOLERANCE` are contact.
+    A part's own clearance and lift hold instead of the build's; between two parts the greater clearance does.
+    Exact on the meshes: solids by manifold3d, surfaces triangle by triangle. Overlaps up to
+    `CONTACT_TOLERANCE` are contact.
     """
     bodies = [Body(placed, settings) for placed in parts]
     found = [*_moved(bodies), *_unchanged(bodies)]
@@ -86,14 +87,16 @@ def _moved(bodies: Sequence[Body]) -> list[Violation]:
 def _unchanged(bodies: Sequence[Body]) -> list[Violation]:
     """Return the parts whose geometry is not what the build file recorded."""
     return [
-        Violation("part unchanged", body.label, "its geometry differs from what the build file recorded (SHA-256)")
+        Violation(
+            "part unchanged", body.label, "its geometry differs from what the build file recorded (SHA-256)"
+        )
         for body in bodies
         if body.placed.recorded_digest and body.placed.recorded_digest != body.placed.part.mesh.digest
     ]
 
 
 def _inside(body: Body, settings: BuildSettings) -> list[Violation]:
-    """Return how far a part reaches out of the build volume, or how near it comes to a wall, the lid, the plate."""
+    """Return how far a part reaches out of the build volume, or comes too near to walls, lid or plate."""
     least, most = body.mesh.bounds
     size = settings.space.size
     found = []
@@ -113,20 +116,28 @@ def _inside(body: Body, settings: BuildSettings) -> list[Violation]:
         message = f"it reaches {-least[2]:.4g} mm below the plate"
         found.append(Violation("inside build volume", body.label, message))
     elif least[2] < body.lift - TOLERANCE:
-        found.append(Violation("lift", body.label, f"it is {least[2]:.4g} mm above the plate, needs {body.lift:g} mm"))
+        found.append(
+            Violation("lift", body.label, f"it is {least[2]:.4g} mm above the plate, needs {body.lift:g} mm")
+        )
     return found
 
 
 def _zones(bodies: Sequence[Body], settings: BuildSettings) -> list[Violation]:
     """Return the parts that reach into a forbidden zone."""
     found = []
-    for number, (lo, hi) in enumerate(zip(settings.space.zone_lo, settings.space.zone_hi, strict=True), start=1):
+    for number, (lo, hi) in enumerate(
+        zip(settings.space.zone_lo, settings.space.zone_hi, strict=True), start=1
+    ):
         for body in bodies:
             least, most = body.mesh.bounds
             if (least >= hi - TOLERANCE).any() or (most <= lo + TOLERANCE).any():
                 continue
             zone = box_solids(lo[None], hi[None])
-            depth = -solid_gap(body.solid, zone, 0.0) if body.is_solid else -triangle_gap(body.corners, _faces(zone), 0.0)
+            depth = (
+                -solid_gap(body.solid, zone, 0.0)
+                if body.is_solid
+                else -triangle_gap(body.corners, _faces(zone), 0.0)
+            )
             if depth > TOLERANCE or (not body.is_solid and _any_inside(body, lo, hi)):
                 message = f"it reaches into forbidden zone {number}"
                 found.append(Violation("outside forbidden zones", body.label, message))
@@ -151,17 +162,19 @@ def _apart(bodies: Sequence[Body], stop: Stop) -> list[Violation]:
         return []
     lo, hi = (np.array([body.mesh.bounds[side] for body in bodies]) for side in (0, 1))
     greatest = max(body.clearance for body in bodies)
-    found = []
+    found: list[Violation] = []
     pairs = near_pairs(lo, hi, greatest - TOLERANCE)
     for done, (i, j) in enumerate(pairs):
         if stop():
-            message = f"stopped ({stop.reason}) after {done} of {len(pairs)} near pairs: the others are not known to be apart"
+            message = f"stopped ({stop.reason}) after {done} of {len(pairs)} near pairs; the rest is unknown"
             return [*found, Violation("clearance", "build", message)]
         one, other = bodies[i], bodies[j]
         needed = max(one.clearance, other.clearance)
         gap = one.gap(other, needed)
         if gap < -TOLERANCE:
-            found.append(Violation("no intersection", one.label, f"it overlaps {other.label}, {-gap:.4g} mm deep"))
+            found.append(
+                Violation("no intersection", one.label, f"it overlaps {other.label}, {-gap:.4g} mm deep")
+            )
         elif gap < needed - TOLERANCE:
             message = f"it is {max(gap, 0.0):.4g} mm from {other.label}, needs {needed:g} mm"
             found.append(Violation("clearance", one.label, message))

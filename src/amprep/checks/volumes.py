@@ -44,8 +44,12 @@ def _in_one_box(part: Part, volume: Boxes) -> list[Violation]:
 
 
 def _violation(part: Part, what: str, least: Floats, most: Floats) -> Violation:
-    place = " to ".join("(" + ", ".join(f"{c:.3f}" for c in corner.tolist()) + ")" for corner in (least, most))
-    return Violation("volume contains part", part.name, f"the bounding volume leaves out {what}, within {place} mm")
+    place = " to ".join(
+        "(" + ", ".join(f"{c:.3f}" for c in corner.tolist()) + ")" for corner in (least, most)
+    )
+    return Violation(
+        "volume contains part", part.name, f"the bounding volume leaves out {what}, within {place} mm"
+    )
 
 
 def _cover(volume: BoundingVolume) -> "Manifold":

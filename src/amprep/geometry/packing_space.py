@@ -37,14 +37,14 @@ class Space(NamedTuple):
 
 
 def rotated_boxes(lo: Array, hi: Array, rotation: Array) -> tuple[Array, Array]:
-    """Return ``(k, 3)`` corners of the axis-parallel boxes that enclose the boxes turned by `rotation` ``(3, 3)``."""
+    """Return ``(k, 3)`` corners of the axis-parallel boxes around boxes turned by `rotation` ``(3, 3)``."""
     centre, half = (lo + hi) / 2.0, (hi - lo) / 2.0
     centre, half = centre @ rotation.T, half @ np.abs(rotation).T
     return centre - half, centre + half
 
 
 def union_volume(lo: Array, hi: Array) -> float:
-    """Return the volume (area, length) of the union of boxes ``(k, d)``; boxes turned inside out count nothing."""
+    """Return the volume (area) of the union of boxes ``(k, d)``; boxes turned inside out count nothing."""
     real = (hi > lo).all(axis=1)
     lo, hi = lo[real], hi[real]
     if len(lo) <= 1:
@@ -60,7 +60,7 @@ def union_volume(lo: Array, hi: Array) -> float:
 
 
 def find_home(lo: Array, hi: Array, space: Space) -> Array | None:
-    """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build, or None when there is none.
+    """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build; None if there is none.
 
     Exact: whenever a place exists, there is one among the crossings of the curves that bound the
     allowed translations (walls, sides of zones, circles of the corners), lowest plane first.
@@ -89,7 +89,7 @@ def find_home(lo: Array, hi: Array, space: Space) -> Array | None:
 def _simple_places(lo: Array, hi: Array, space: Space) -> Array:
     """Return the corner of a box, the centre of a circle, as translations ``(1, 2)``."""
     least, most = lo.min(axis=0)[:2], hi.max(axis=0)[:2]
-    return (space.axis - (least + most) / 2.0 if space.radius else space.lo[:2] - least)[None]
+    return np.asarray(space.axis - (least + most) / 2.0 if space.radius else space.lo[:2] - least)[None]
 
 
 def _lines(lo: Array, hi: Array, space: Space, axis: int) -> Array:
@@ -106,7 +106,7 @@ def _line_places(lo: Array, hi: Array, space: Space) -> Array:
 
 
 def _centres(lo: Array, hi: Array, space: Space) -> Array:
-    """Return, for each corner of the footprints, the centre of the circle of translations that keep it inside."""
+    """Return, for each footprint corner, the centre of the circle of translations that keep it inside."""
     corners = [np.stack((a[:, 0], b[:, 1]), axis=1) for a, b in itertools.product((lo, hi), (lo, hi))]
     return np.asarray(space.axis - np.unique(np.concatenate(corners), axis=0))
 

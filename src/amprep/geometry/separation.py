@@ -63,7 +63,7 @@ def thickness(solid: "Manifold") -> float:
 
 
 def solid_gap(solid: "Manifold", other: "Manifold", limit: float) -> float:
-    """Return the distance of two solids, at most `limit`; when they overlap, less the `thickness` they share."""
+    """Return the distance of two solids, at most `limit`; if they overlap, less the `thickness` shared."""
     shared = thickness(solid ^ other)
     if shared > 0.0 or limit <= 0.0:
         return -shared
@@ -71,10 +71,10 @@ def solid_gap(solid: "Manifold", other: "Manifold", limit: float) -> float:
 
 
 def triangle_gap(corners: Array, other: Array, limit: float) -> float:
-    """Return the distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; when they cross, less the depth.
+    """Return the distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; if crossing, less depth.
 
-    The depth of a crossing is how far the edge would have to be drawn back, or the pierced triangle trimmed. Triangles
-    that enclose others without touching them do not cross them.
+    The depth of a crossing is how far the edge would have to be drawn back, or the pierced triangle trimmed.
+    Triangles that enclose others without touching them do not cross them.
     """
     from amprep.kernels.separation import least_gap
 

@@ -1,259 +1,44 @@
 """Extreme points, compiled: one pass that packs items of boxes into builds in a given order.
 
 After Crainic, Perboli and Tadei, *Extreme point-based heuristics for three-dimensional bin packing*,
-INFORMS Journal on Computing 20 (2008), doi:10.1287/ijoc.1070.0250. A build is filled with every remaining item that
-still fits, in order, before the next one is opened, which is first fit over the builds; within a build the
-item takes the candidate place of least merit. Added to the paper: items of several boxes (every box's corner is tried
-at a point), obstacles, builds without stacking, and candidates for a round plate, where extreme points alone are poor.
+INFORMS Journal on Computing 20 (2008), doi:10.1287/ijoc.1070.0250. A build is filled with every remaining
+item that still fits, in order, before the next one is opened, which is first fit over the builds; within a
+build the item takes the candidate place of least merit. Added to the paper: items of several boxes (every
+box's corner is tried at a point), obstacles, builds without stacking, and candidates for a round plate, where
+extreme points alone are poor.
 
-Clearance is in the data: each box is longer by it at its upper sides, and so are the walls and obstacles moved, so
-that boxes which touch here keep it there. Boxes touch exactly (`PAIR_SLACK` absorbs rounding, so that errors do not
-add up); walls and obstacles, which do not move, give by the room's slack.
+Clearance is in the data: each box is longer by it at its upper sides, and the walls and obstacles are moved
+to match, so that boxes which touch here keep it there. Boxes touch exactly (`PAIR_SLACK` absorbs rounding, so
+that errors do not add up); walls and obstacles, which do not move, give by the room's slack.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-
-PAIR_SLACK = 1e-6
-"""mm; boxes that overlap by less touch."""
-
-FINISHED, PAUSED, GAVE_UP = 0, 1, 2
-"""What `pack` returns: all placed; tries used up, call again; more builds needed than allowed."""
-
-RESIDUAL, LOW, TOUCHING, CENTRE = 0, 1, 2, 3
-"""Merits: least residual space left; lowest weighted far corner; most contact; nearest to the axis."""
-
-AXIS_X, AXIS_Y, RADIUS, GAP, SLACK, FLAT = 6, 7, 8, 9, 10, 11
-"""Places in the room after its corners: the axis, radius less clearance (0: a box), clearance, slack, no stacking."""
-
-KIND, WEIGHT, GRID, PHASE = 0, 1, 4, 5
-"""Places in the style: merit, three weights of the far corner, most crossings of lines tried, phase.
-
-Bits of the phase, for round plates: 1 and 2 centre the first item in x and y, 4 also slides items to the wall across the rows.
-"""
-
-BUILD, INDEX, PLACED, POINTS, LINES, MOVED, LEFT, TRIES = 0, 1, 2, 3, 4, 6, 7, 8
-"""Places in the cursor: build, index in the order; boxes, points, lines in x and y, items in the build; items left, tries."""
-
-MERIT, VARIANT, PLACE = 0, 1, 2
-"""Places in the best candidate."""
-
-
-class Shapes(NamedTuple):
-    """What is packed. A kind is a volume with its orientations, a variant one orientation of it.
-
-    Attributes
-    ----------
-    kind
-        ``(n,)`` kind of each item.
-    first_variant, first_box
-        ``(kinds + 1,)`` and ``(variants + 1,)``: where the variants of a kind, the boxes of a variant start.
-    variants
-        ``(variants, 6)`` size of the enclosing box with clearance, and a place in an empty build (NaN: none).
-    boxes
-        ``(boxes, 6)`` corners relative to the enclosing box's least corner, clearance added to the upper one.
-    """
-
-    kind: Indices
-    first_variant: Indices
-    first_box: Indices
-    variants: Array
-    boxes: Array
-
-
-class Scratch(NamedTuple):
-    """Work arrays of `pack`, which hold the state of a paused pass.
-
-    Attributes
-    ----------
-    placed
-        ``(m, 6)`` corners of the boxes in the open build, obstacles first.
-    points
-        ``(p, 6)`` extreme points and their residual space.
-    lines
-        ``(2, l)`` where box sides lie in x and in y.
-    candidates
-        ``(c, 4)`` places of one variant to be tried: x, y, z, residual space.
-    failed
-        ``(kinds,)`` the last build in which a kind found no place.
-    """
-
-    placed: Array
-    points: Array
-    lines: Array
-    candidates: Array
-    failed: Indices
-    cursor: Indices
-    best: Array
-
-
-class Answer(NamedTuple):
-    """Written by `pack`: build (-1: none) and variant ``(n,)``, place ``(n, 3)``; ``(n + 1, 2)`` looks of each build.
-
-    The looks are the build's height and the area of the rectangle around its boxes.
-    """
-
-    build: Indices
-    variant: Indices
-    place: Array
-    looks: Array
-
-
-@njit(cache=True)
-def _settle(first, last, x, y, z, rise, boxes, room, placed, count, standing):
-    """Return the least height from z up (z alone unless `rise`) at which the boxes fit; -1 for none."""
-    slack = room[SLACK]
-    k = first
-    while k < last:
-        x0, x1 = x + boxes[k, 0], x + boxes[k, 3]
-        y0, y1 = y + boxes[k, 1], y + boxes[k, 4]
-        z0, z1 = z + boxes[k, 2], z + boxes[k, 5]
-        if x0 < room[0] - slack or y0 < room[1] - slack or z0 < room[2] - slack:
-            return -1.0
-        if x1 > room[3] + slack or y1 > room[4] + slack or z1 > room[5] + slack:
-            return -1.0
-        if room[RADIUS] > 0.0:
-            far_x = max(room[AXIS_X] - x0, x1 - room[GAP] - room[AXIS_X])
-            far_y = max(room[AXIS_Y] - y0, y1 - room[GAP] - room[AXIS_Y])
-            if far_x * far_x + far_y * far_y > (room[RADIUS] + slack) * (room[RADIUS] + slack):
-                return -1.0
-        raised = False
-        for j in range(count):
-            give = slack if j < standing else PAIR_SLACK
-            if x0 < placed[j, 3] - give and placed[j, 0] + give < x1:
-                if y0 < placed[j, 4] - give and placed[j, 1] + give < y1:
-                    if z0 < placed[j, 5] - give and placed[j, 2] + give < z1:
-                        if not rise:
-                            return -1.0
-                        z = placed[j, 5] - boxes[k, 2]
-                        raised = True
-                        break
-        k = first if raised else k + 1
-    return z
-
-
-@njit(cache=True)
-def _touching(first, last, x, y, z, boxes, room, placed, count):
-    """Return the area with which the boxes touch walls and other boxes (Lodi, Martello, Vigo 2002)."""
-    area, near = 0.0, room[SLACK]
-    for k in range(first, last):
-        x0, x1 = x + boxes[k, 0], x + boxes[k, 3]
-        y0, y1 = y + boxes[k, 1], y + boxes[k, 4]
-        z0, z1 = z + boxes[k, 2], z + boxes[k, 5]
-        if abs(x0 - room[0]) <= near or abs(x1 - room[3]) <= near:
-            area += (y1 - y0) * (z1 - z0)
-        if abs(y0 - room[1]) <= near or abs(y1 - room[4]) <= near:
-            area += (x1 - x0) * (z1 - z0)
-        if abs(z0 - room[2]) <= near or abs(z1 - room[5]) <= near:
-            area += (x1 - x0) * (y1 - y0)
-        for j in range(count):
-            shared_x = max(0.0, min(x1, placed[j, 3]) - max(x0, placed[j, 0]))
-            shared_y = max(0.0, min(y1, placed[j, 4]) - max(y0, placed[j, 1]))
-            shared_z = max(0.0, min(z1, placed[j, 5]) - max(z0, placed[j, 2]))
-            if abs(x0 - placed[j, 3]) <= near or abs(x1 - placed[j, 0]) <= near:
-                area += shared_y * shared_z
-            if abs(y0 - placed[j, 4]) <= near or abs(y1 - placed[j, 1]) <= near:
-                area += shared_x * shared_z
-            if abs(z0 - placed[j, 5]) <= near or abs(z1 - placed[j, 2]) <= near:
-                area += shared_x * shared_y
-    return area
-
-
-@njit(cache=True)
-def _merit(variant, x, y, z, variants, room, style):
-    """Return the merit of a place under `LOW` or `CENTRE`; never less at a greater z."""
-    x1, y1, z1 = x + variants[variant, 0], y + variants[variant, 1], z + variants[variant, 2]
-    if style[KIND] == CENTRE:
-        far_x = max(room[AXIS_X] - x, x1 - room[GAP] - room[AXIS_X])
-        far_y = max(room[AXIS_Y] - y, y1 - room[GAP] - room[AXIS_Y])
-        return far_x * far_x + far_y * far_y + 1e-3 * (y + 1e-3 * x) + style[WEIGHT + 2] * z1
-    return style[WEIGHT] * x1 + style[WEIGHT + 1] * y1 + style[WEIGHT + 2] * z1
-
-
-@njit(cache=True)
-def _choose(variant, known, found, shapes, room, style, placed, count, standing, candidates, best):
-    """Keep the feasible candidate of least merit in `best` (modified in place); those from `known` on may rise."""
-    first, last = shapes.first_box[variant], shapes.first_box[variant + 1]
-    simple = style[KIND] == LOW or style[KIND] == CENTRE
-    for c in range(found):
-        x, y, z = candidates[c, 0], candidates[c, 1], candidates[c, 2]
-        merit = _merit(variant, x, y, z, shapes.variants, room, style) if simple else candidates[c, 3]
-        if style[KIND] != TOUCHING and merit >= best[MERIT]:
-            continue
-        rise = c >= known and room[FLAT] == 0.0
-        height = _settle(first, last, x, y, z, rise, shapes.boxes, room, placed, count, standing)
-        if height < 0.0:
-            continue
-        if style[KIND] == TOUCHING:
-            low = style[WEIGHT] * x + style[WEIGHT + 1] * y + style[WEIGHT + 2] * height
-            merit = 1e-9 * low - _touching(first, last, x, y, height, shapes.boxes, room, placed, count)
-        elif simple:
-            merit = _merit(variant, x, y, height, shapes.variants, room, style)
-        if merit < best[MERIT]:
-            best[MERIT], best[VARIANT] = merit, variant
-            best[PLACE], best[PLACE + 1], best[PLACE + 2] = x, y, height
-
-
-@njit(cache=True)
-def _wall(axis, start, length, across, room, candidates, found):
-    """Add the places at both ends of the round wall for a box with its low side across `axis` at `start`."""
-    far = max(room[AXIS_X + axis] - start, start + length - room[AXIS_X + axis])
-    if far > room[RADIUS]:
-        return found
-    half = np.sqrt(room[RADIUS] * room[RADIUS] - far * far)
-    for end in range(2):
-        slid = room[AXIS_Y - axis] + (half - across if end else -half)
-        candidates[found, axis], candidates[found, 1 - axis] = start, slid
-        candidates[found, 2], candidates[found, 3] = room[2], 0.0
-        found += 1
-    return found
-
-
-@njit(cache=True)
-def _round_places(variant, variants, room, style, lines, cursor, candidates, found):
-    """Add places for a round plate: the middle or rows from the wall on when empty, else slid along lines to the wall.
-
-    Under `LOW` rows begin at the wall; other slides are tried only when the phase says so.
-    """
-    kind, phase = style[KIND], int(style[PHASE])
-    rows = 1 if style[WEIGHT + 1] > style[WEIGHT] else 0
-    empty = cursor[MOVED] == 0
-    for axis in range(2):
-        length, across = variants[variant, axis] - room[GAP], variants[variant, 1 - axis] - room[GAP]
-        if empty:
-            start = room[AXIS_X + axis] - (length / 2.0 if phase & (1 + axis) else length + room[GAP] / 2.0)
-            candidates[found, axis] = start
-            while kind == LOW and axis == rows and start > room[axis]:
-                found = _wall(axis, start, length, across, room, candidates, found)
-                start -= length + room[GAP]
-        elif kind != LOW or axis == rows or phase & 4:
-            for i in range(2 * cursor[LINES + axis]):
-                start = lines[axis, i // 2] - (i % 2) * variants[variant, axis]
-                found = _wall(axis, start, length, across, room, candidates, found)
-    if empty and kind != LOW:
-        candidates[found, 2], candidates[found, 3] = room[2], 0.0
-        found += 1
-    return found
-
-
-@njit(cache=True)
-def _crossings(first, last, boxes, room, lines, cursor, candidates, found):
-    """Add all crossings of lines; on a round plate boxes may lie on either side of a line."""
-    sides = 2 if room[RADIUS] > 0.0 else 1
-    for k in range(first, last):
-        for i in range(sides * cursor[LINES]):
-            for j in range(sides * cursor[LINES + 1]):
-                candidates[found, 0] = lines[0, i // sides] - boxes[k, 3 * (i % sides)]
-                candidates[found, 1] = lines[1, j // sides] - boxes[k, 1 + 3 * (j % sides)]
-                candidates[found, 2], candidates[found, 3] = room[2], 0.0
-                found += 1
-    return found
+from amprep.kernels.box_places import (
+    BUILD,
+    FINISHED,
+    FLAT,
+    GAVE_UP,
+    GRID,
+    INDEX,
+    LEFT,
+    LINES,
+    MERIT,
+    MOVED,
+    PAIR_SLACK,
+    PAUSED,
+    PLACE,
+    PLACED,
+    POINTS,
+    RADIUS,
+    SLACK,
+    VARIANT,
+    WORK,
+    choose,
+    crossings,
+    round_places,
+)
 
 
 @njit(cache=True)
@@ -289,7 +74,7 @@ def _fall(x, y, z, axis, room, placed, count):
 
 @njit(cache=True)
 def _add_point(x, y, z, room, placed, points, cursor):
-    """Add a point with its residual space, unless it is covered or known (points and cursor modified in place)."""
+    """Add a point and its residual space, unless it is covered or known (modified in place)."""
     known = cursor[POINTS]
     for p in range(known):
         if abs(points[p, 0] - x) + abs(points[p, 1] - y) + abs(points[p, 2] - z) <= PAIR_SLACK:
@@ -306,7 +91,7 @@ def _add_point(x, y, z, room, placed, points, cursor):
 
 @njit(cache=True)
 def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
-    """Put box b moved by x, y, z into the build: prune the points, add its projections and lines (modified in place)."""
+    """Put box b, moved, into the build: prune points, add its projections and lines (modified in place)."""
     new = cursor[PLACED]
     for axis in range(3):
         shift = x if axis == 0 else y if axis == 1 else z
@@ -319,6 +104,7 @@ def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
                 points[kept, i] = points[p, i]
             kept += 1
     cursor[POINTS] = kept
+    cursor[WORK] += 7 * kept + 12 * new
     flat = room[FLAT] != 0.0
     for axis in range(2 if flat else 3):
         for fall in range(3):
@@ -367,11 +153,11 @@ def _look(zones, placed, count, build, looks):
 
 
 @njit(cache=True)
-def pack(order, shapes, room, obstacles, zones, style, most_builds, tries, answer, scratch):
-    """Pack the items of `order` into at most `most_builds` builds; pause after `tries` candidate places.
+def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer, scratch):
+    """Pack the items of `order` into at most `most_builds` builds; pause after `work` comparisons.
 
-    Start with the cursor all 0 but LEFT = len(order), `failed` and `answer.build` all -1; to go on after PAUSED
-    call again with the same arguments. Several items of one kind cost one failed search a build.
+    Start with the cursor all 0 but LEFT = len(order), `failed` and `answer.build` all -1; to go on after
+    PAUSED call again with the same arguments. Several items of one kind cost one failed search a build.
 
     Parameters
     ----------
@@ -391,7 +177,7 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, tries, answe
     """
     kinds, first_variant, first_box, variants, boxes = shapes
     placed, points, lines, candidates, failed, cursor, best = scratch
-    cursor[TRIES] = 0
+    cursor[WORK] = 0
     slack, flat, is_round = room[SLACK], room[FLAT] != 0.0, room[RADIUS] > 0.0
     while cursor[BUILD] < most_builds:
         build = cursor[BUILD]
@@ -399,7 +185,7 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, tries, answe
         if cursor[INDEX] == 0:
             _open(standing, room, obstacles, placed, points, lines, cursor)
         while cursor[INDEX] < order.size:
-            if cursor[TRIES] > tries:
+            if cursor[WORK] > work:
                 return PAUSED
             item = order[cursor[INDEX]]
             kind = kinds[item]
@@ -413,7 +199,7 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, tries, answe
                 found, first, last = 0, first_box[v], first_box[v + 1]
                 # a single box that is longer than a point's residual space cannot lie there
                 least = -slack if last - first == 1 else -np.inf
-                cursor[TRIES] += cursor[POINTS]
+                cursor[WORK] += cursor[POINTS]
                 for p in range(cursor[POINTS]):
                     over_x, over_y = points[p, 3] - variants[v, 0], points[p, 4] - variants[v, 1]
                     over_z = points[p, 5] - variants[v, 2]
@@ -431,13 +217,12 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, tries, answe
                     found += 1
                 known = found
                 if is_round:
-                    found = _round_places(v, variants, room, style, lines, cursor, candidates, found)
+                    found = round_places(v, variants, room, style, lines, cursor, candidates, found)
                 if grid:
-                    found = _crossings(first, last, boxes, room, lines, cursor, candidates, found)
+                    found = crossings(first, last, boxes, room, lines, cursor, candidates, found)
                 if found:
-                    count = cursor[PLACED]
-                    cursor[TRIES] += found
-                    _choose(v, known, found, shapes, room, style, placed, count, standing, candidates, best)
+                    cursor[WORK] += found
+                    choose(v, known, found, shapes, room, style, placed, cursor, standing, candidates, best)
             if best[MERIT] == np.inf:
                 failed[kind] = build
                 continue

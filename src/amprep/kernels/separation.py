@@ -89,9 +89,9 @@ def _corners(triangles, i):
 
 @njit(cache=True)
 def least_gap(triangles, others, widest, limit):
-    """Return the least distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; less the depth if they cross.
+    """Return the least distance of two sets of triangles ``(n, 3, 3)``, at most `limit`.
 
-    `others` are sorted by their least x; `widest` is the greatest extent of one of them in x.
+    When they cross, it is less the depth.     `others` are sorted by their least x; `widest` is the greatest extent of one of them in x.
     """
     least = limit
     starts = np.empty(others.shape[0])
@@ -107,8 +107,14 @@ def least_gap(triangles, others, widest, limit):
             j += 1
             apart = False
             for axis in range(1, 3):
-                lo_1, hi_1 = min(one[0][axis], one[1][axis], one[2][axis]), max(one[0][axis], one[1][axis], one[2][axis])
-                lo_2, hi_2 = min(two[0][axis], two[1][axis], two[2][axis]), max(two[0][axis], two[1][axis], two[2][axis])
+                lo_1, hi_1 = (
+                    min(one[0][axis], one[1][axis], one[2][axis]),
+                    max(one[0][axis], one[1][axis], one[2][axis]),
+                )
+                lo_2, hi_2 = (
+                    min(two[0][axis], two[1][axis], two[2][axis]),
+                    max(two[0][axis], two[1][axis], two[2][axis]),
+                )
                 apart = apart or lo_1 > hi_2 + reach or lo_2 > hi_1 + reach
             if apart:
                 continue

@@ -13,7 +13,12 @@ amprep_api = 1
 
 
 def _extreme_points(
-    problem: PackingProblem, *, params: ExtremePointsParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem,
+    *,
+    params: ExtremePointsParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
 ) -> Packing:
     from amprep.plugins.packing.extreme_points import pack_extreme_points
 
@@ -25,7 +30,7 @@ def amprep_packers() -> Iterable[Packer]:
     """Yield the built-in packers."""
     yield Packer(
         name="extreme-points",
-        summary="Constructive: best of many sortings, each item at its best extreme point (Crainic, Perboli, Tadei 2008).",
+        summary="The best of many sortings, each item at its best extreme point (Crainic, Perboli, Tadei).",
         run=_extreme_points,
         accepts=PackerAccepts(
             volumes=frozenset({"box", "boxes"}),

@@ -1,8 +1,8 @@
 """What no packing can beat: lower bounds on the number of builds, upper bounds on the value of one build.
 
-All bounds hold for every packing that the judge accepts: distances are Euclidean, and every contact may
-be penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it. Items of several boxes are relaxed
-to one of their boxes, or to the volume of their union.
+All bounds hold for every packing that the judge accepts: distances are Euclidean, and every contact may be
+penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it. Items of several boxes are
+relaxed to one of their boxes, or to the volume of their union.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ class Amounts(NamedTuple):
 
 
 def builds_bound(scene: Scene) -> int:
-    """Return the fewest builds that can hold what fits: by volume, plate area, and Martello, Pisinger and Vigo's L2.
+    """Return the fewest builds that can hold what fits: by volume, plate area and `l2_bound`.
 
     Without stacking every item counts as high as the room, which makes L2 the bound for the plane.
     """
@@ -38,14 +38,16 @@ def builds_bound(scene: Scene) -> int:
 
 
 def fill_bound(scene: Scene) -> float:
-    """Return a value that one build cannot exceed: the fractional knapsack over volume, and over the plate's area."""
+    """Return a value that one build cannot exceed: the fractional knapsacks over volume and plate area."""
     items = scene.problem.items
     value = np.array([max(item.value, 0.0) for item in items])
     inside = ~scene.too_large
     bound = float(value[inside].sum())
     for taken, room in _amounts(scene):
         weight = taken[scene.kind]
-        order = np.flatnonzero(inside)[np.argsort(-value[inside] / np.maximum(weight[inside], 1e-12), kind="stable")]
+        order = np.flatnonzero(inside)[
+            np.argsort(-value[inside] / np.maximum(weight[inside], 1e-12), kind="stable")
+        ]
         full = np.cumsum(weight[order])
         share = np.clip((room - (full - weight[order])) / np.maximum(weight[order], 1e-12), 0.0, 1.0)
         bound = min(bound, float((share * value[order]).sum()))
@@ -88,13 +90,17 @@ def _available(scene: Scene, dimensions: int) -> float:
     side = space.hi - space.lo + gap + 2.0 * CONTACT_TOLERANCE
     if (side <= 0.0).any():
         return 1e-12
-    area = side[0] * side[1] if space.radius == 0.0 else np.pi * (space.radius + gap / 2.0 + CONTACT_TOLERANCE) ** 2
+    area = (
+        side[0] * side[1]
+        if space.radius == 0.0
+        else np.pi * (space.radius + gap / 2.0 + CONTACT_TOLERANCE) ** 2
+    )
     whole = area * (side[2] if dimensions == 3 else 1.0)
     return max(float(whole) - _lost(scene, dimensions), 1e-12)
 
 
 def _lost(scene: Scene, dimensions: int) -> float:
-    """Return the volume or plate area that zones surely take: without the margin into which grown items may reach."""
+    """Return the volume or plate area that zones surely take, less the margin that grown items may enter."""
     space = scene.space
     margin = scene.problem.clearance / 2.0 + CONTACT_TOLERANCE
     lo, hi = space.zone_lo + margin, space.zone_hi - margin
@@ -103,7 +109,10 @@ def _lost(scene: Scene, dimensions: int) -> float:
         lo, hi = lo[inside], hi[inside]
     if space.radius:
         half = space.radius / np.sqrt(2.0)
-        least, most = np.array([*(space.axis - half), space.lo[2]]), np.array([*(space.axis + half), space.hi[2]])
+        least, most = (
+            np.array([*(space.axis - half), space.lo[2]]),
+            np.array([*(space.axis + half), space.hi[2]]),
+        )
     else:
         least, most = space.lo, space.hi
     lo, hi = np.maximum(lo, least)[:, :dimensions], np.minimum(hi, most)[:, :dimensions]
@@ -116,7 +125,7 @@ def _core_room(scene: Scene) -> Floats:
 
 
 def _core_sizes(scene: Scene) -> Floats:
-    """Return a box ``(kinds, 3)`` that each kind contains however it is turned: of its largest boxes, the least sides."""
+    """Return a box ``(kinds, 3)`` within each kind however turned: of its largest boxes, the least sides."""
     room = _core_room(scene)
     sizes = np.empty((len(scene.kinds), 3))
     for i, kind in enumerate(scene.kinds):

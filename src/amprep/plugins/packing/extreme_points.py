@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.kernels import extreme_points as kernel
-from amprep.model.arrays import Floats, Ints
+from amprep.kernels import box_places as records
+from amprep.kernels.extreme_points import pack
+from amprep.model.arrays import Floats
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packing.bounds import builds_bound, fill_bound
@@ -13,8 +14,8 @@ from amprep.plugins.packing.params import ExtremePointsParams
 from amprep.plugins.packing.scene import Scene, placements, prepare
 from amprep.plugins.packing.sortings import GRID, Pass, passes
 
-PAUSE = 1_000_000
-"""Candidate places between two looks at `stop`, some 10 ms."""
+PAUSE = 10_000_000
+"""Comparisons between two looks at `stop`, some 20 ms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,13 +33,18 @@ class Solution:
     plan: Pass
     rank: tuple[float, ...]
     complete: bool
-    build: Ints
-    variant: Ints
+    build: records.Indices
+    variant: records.Indices
     place: Floats
 
 
 def pack_extreme_points(
-    problem: PackingProblem, *, params: ExtremePointsParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem,
+    *,
+    params: ExtremePointsParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
 ) -> Packing:
     """Pack by extreme points (Crainic, Perboli, Tadei 2008, doi:10.1287/ijoc.1070.0250).
 
@@ -53,8 +59,8 @@ def pack_extreme_points(
     for number in range(1, len(plans) + params.restarts):
         if stop():
             return _packing(scene, best, stop.reason)
-        if runner.tries > params.tries * 1e6:
-            return _packing(scene, best, "all tries used")
+        if runner.work > params.work * 1e6:
+            return _packing(scene, best, "work used up")
         report(number / (len(plans) + params.restarts), "trying orders")
         plan = plans[number] if number < len(plans) else _disturbed(best.plan, params.disturbance, rng)
         best = min(best, runner.run(plan, best, stop), key=lambda solution: solution.rank)
@@ -72,25 +78,25 @@ class Runner:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.tries = 0
+        self.work = 0
         self.shapes = _shapes(scene)
         self.room = _room(scene)
         self.obstacles, self.zones = _obstacles(scene), len(scene.space.zone_lo)
         self.scratch = _scratch(scene)
 
     def run(self, plan: Pass, best: Solution | None, stop: Stop) -> Solution:
-        """Run a pass; it gives up as soon as it needs more builds than `best`, and ends early when told to stop."""
+        """Run a pass; it gives up once it needs more builds than `best`, and ends when told to stop."""
         n = len(self.scene.kind)
         most = 1 if self.scene.problem.objective == "fill" else n if best is None else int(best.rank[1])
-        answer = kernel.Answer(
+        answer = records.Answer(
             np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3)), np.zeros((n + 1, 2))
         )
         self.scratch.cursor[:] = 0
-        self.scratch.cursor[kernel.LEFT] = len(plan.order)
+        self.scratch.cursor[records.LEFT] = len(plan.order)
         self.scratch.failed[:] = -1
-        code = kernel.PAUSED
-        while code == kernel.PAUSED and len(plan.order):
-            code = kernel.pack(
+        code = records.PAUSED
+        while code == records.PAUSED and len(plan.order):
+            code = pack(
                 plan.order,
                 self.shapes,
                 self.room,
@@ -102,22 +108,22 @@ class Runner:
                 answer,
                 self.scratch,
             )
-            self.tries += int(self.scratch.cursor[kernel.TRIES])
+            self.work += int(self.scratch.cursor[records.WORK])
             if stop():
                 break
-        complete = code != kernel.PAUSED or not len(plan.order)
+        complete = code != records.PAUSED or not len(plan.order)
         variant = answer.variant - self.shapes.first_variant[self.scene.kind]
         return Solution(plan, self._rank(answer), complete, answer.build, variant, answer.place)
 
-    def _rank(self, answer: kernel.Answer) -> tuple[float, ...]:
+    def _rank(self, answer: records.Answer) -> tuple[float, ...]:
         """Return what is smaller for a better answer."""
         looks = answer.looks.sum(axis=0).tolist()
         if self.scene.problem.objective == "fill":
             return (-_value(self.scene, answer.build), *looks)
-        return (float(self.scratch.cursor[kernel.LEFT]), float(answer.build.max(initial=-1) + 1), *looks)
+        return (float(self.scratch.cursor[records.LEFT]), float(answer.build.max(initial=-1) + 1), *looks)
 
 
-def _value(scene: Scene, build: Ints) -> float:
+def _value(scene: Scene, build: records.Indices) -> float:
     """Return the value of what is placed, fixed items included."""
     fixed = [placement.item for placement in scene.problem.fixed]
     return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
@@ -142,7 +148,7 @@ def _packing(scene: Scene, best: Solution, stop_reason: str) -> Packing:
 
 
 def _status(scene: Scene, best: Solution, reached: float, bound: float) -> Status:
-    """Return ``optimal`` when the bound is met, ``infeasible`` when a builds problem has an item that fits nowhere."""
+    """Return ``optimal`` when the bound is met, ``infeasible`` when an item to be built fits nowhere."""
     if scene.problem.objective == "fill":
         return "optimal" if reached >= bound - 1e-9 * abs(bound) else "feasible"
     if scene.too_large.any():
@@ -161,27 +167,31 @@ def _builds(scene: Scene, best: Solution) -> tuple[tuple[Placement, ...], ...]:
     return tuple(builds)
 
 
-def _shapes(scene: Scene) -> kernel.Shapes:
+def _shapes(scene: Scene) -> records.Shapes:
     """Return the scene's kinds as the kernel's arrays, clearance added at the upper sides."""
     gap = scene.problem.clearance
     variants = [variant for kind in scene.kinds for variant in kind]
-    return kernel.Shapes(
+    return records.Shapes(
         kind=scene.kind,
         first_variant=_starts([len(kind) for kind in scene.kinds]),
         first_box=_starts([len(variant.lo) for variant in variants]),
         variants=np.array([[*(variant.size + gap), *variant.home] for variant in variants]).reshape(-1, 6),
-        boxes=np.array([[*lo, *(hi + gap)] for v in variants for lo, hi in zip(v.lo, v.hi, strict=True)]).reshape(-1, 6),
+        boxes=np.array(
+            [[*lo, *(hi + gap)] for v in variants for lo, hi in zip(v.lo, v.hi, strict=True)]
+        ).reshape(-1, 6),
     )
 
 
-def _starts(lengths: list[int]) -> Ints:
+def _starts(lengths: list[int]) -> records.Indices:
     return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
 
 
 def _room(scene: Scene) -> Floats:
-    """Return the kernel's room: items are longer by the clearance, so the upper walls are further by it too."""
+    """Return the kernel's room: items are longer by the clearance, so the upper walls are further by it."""
     space, gap = scene.space, scene.problem.clearance
-    return np.array([*space.lo, *(space.hi + gap), *space.axis, space.radius, gap, space.slack, float(space.flat)])
+    return np.array(
+        [*space.lo, *(space.hi + gap), *space.axis, space.radius, gap, space.slack, float(space.flat)]
+    )
 
 
 def _obstacles(scene: Scene) -> Floats:
@@ -194,11 +204,11 @@ def _obstacles(scene: Scene) -> Floats:
     return np.concatenate((zones, np.hstack((scene.standing_lo, scene.standing_hi + gap))))
 
 
-def _scratch(scene: Scene) -> kernel.Scratch:
+def _scratch(scene: Scene) -> records.Scratch:
     """Return work arrays for the fullest build there can be."""
     most = np.array([max(len(variant.lo) for variant in kind) for kind in scene.kinds], dtype=np.int64)
     boxes = len(scene.space.zone_lo) + len(scene.standing_lo) + int(most[scene.kind[scene.free]].sum())
-    return kernel.Scratch(
+    return records.Scratch(
         placed=np.zeros((boxes + 1, 6)),
         points=np.zeros((6 * boxes + 2, 6)),
         lines=np.zeros((2, 2 * boxes + 1)),

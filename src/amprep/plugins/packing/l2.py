@@ -1,4 +1,4 @@
-"""Martello, Pisinger and Vigo's lower bound L2 for three-dimensional bin packing, with clearance between boxes."""
+"""Martello, Pisinger and Vigo's lower bound L2 for bin packing in space, with clearance between boxes."""
 
 import numpy as np
 
@@ -9,8 +9,9 @@ def l2_bound(size: Floats, room: Floats, gap: float) -> int:
     """Return a lower bound on the number of rooms that boxes of fixed orientation need.
 
     After *The three-dimensional bin packing problem*, Operations Research 48 (2000), bounds L1 and L2,
-    doi:10.1287/opre.48.2.256.12386. Two boxes that together are wider and deeper than the room stand `gap` apart along
-    the third axis, so lengths count with the gap there, and volumes are those of boxes grown by a ball of half the gap.
+    doi:10.1287/opre.48.2.256.12386. Two boxes that together are wider and deeper than the room stand
+    `gap` apart along the third axis, so lengths count with the gap there, and volumes are those of boxes
+    grown by a ball of half the gap.
 
     Parameters
     ----------
@@ -54,14 +55,12 @@ def _grown_volume(size: Floats, radius: float) -> Floats:
 
 def _one_dimensional(length: Floats, whole: float) -> int:
     """Return the bound L1: how many bins of length `whole` pieces need that can only be lined up."""
-    large = length > whole / 2.0
-    best = 0
-    for p in np.unique(np.append(length[~large], 0.0)).tolist():
-        beside = length[large & (length <= whole - p)]
-        small = length[~large & (length >= p)]
-        by_length = (small.sum() - (len(beside) * whole - beside.sum())) / whole
-        best = max(best, int(np.ceil(by_length - 1e-9)))
-        if p > 0.0:
-            room_beside = np.floor((whole - beside) / p).sum()
-            best = max(best, int(np.ceil((len(small) - room_beside) / np.floor(whole / p) - 1e-9)))
-    return int(large.sum()) + best
+    large, small = length[length > whole / 2.0], length[length <= whole / 2.0]
+    if not len(small):
+        return len(large)
+    p = np.unique(small)[:, None]
+    counted, beside = small >= p, large <= whole - p
+    by_length = (counted @ small - beside.sum(axis=1) * whole + beside @ large) / whole
+    room_beside = (np.floor((whole - large) / np.maximum(p, 1e-12)) * beside).sum(axis=1)
+    by_count = (counted.sum(axis=1) - room_beside) / np.floor(whole / np.maximum(p[:, 0], 1e-12))
+    return len(large) + max(0, int(np.ceil(max(by_length.max(), by_count.max()) - 1e-9)))

@@ -15,19 +15,19 @@ class ExtremePointsParams:
         Further passes over randomly disturbed copies of the best order.
     disturbance
         How far a restart moves an item in the order: share of the number of items.
-    tries
-        Millions of candidate places after which no further pass is begun.
+    work
+        Millions of comparisons of boxes and points after which no further pass is begun; some 200 a second.
     """
 
     sortings: int = 0
     restarts: int = 0
     disturbance: float = 0.1
-    tries: float = 100.0
+    work: float = 200.0
 
     def __post_init__(self) -> None:
         _at_least("sortings", self.sortings, 0)
         _at_least("restarts", self.restarts, 0)
-        _at_least("tries", self.tries, 0)
+        _at_least("work", self.work, 0)
         if not 0.0 < self.disturbance <= 1.0:
             raise ValueError(f"disturbance must be above 0 and at most 1, got {self.disturbance}")
 

@@ -7,14 +7,15 @@ import numpy as np
 
 from amprep.errors import AmprepError
 from amprep.geometry.packing_space import Space, find_home, rotated_boxes
-from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.kernels.box_places import Indices
+from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.model.packing import Item, PackingProblem, Placement
 from amprep.model.volume import BoundingVolume, Boxes
 
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A volume in one orientation: boxes ``(k, 3)`` relative to their enclosing box's least corner, no clearance.
+    """A volume in one orientation: boxes ``(k, 3)`` relative to their least corner, without clearance.
 
     Attributes
     ----------
@@ -56,7 +57,7 @@ class Scene:
 
     problem: PackingProblem
     space: Space
-    kind: Ints
+    kind: Indices
     kinds: tuple[tuple[Variant, ...], ...]
     free: Bools
     too_large: Bools
@@ -89,7 +90,9 @@ def boxes_of(volume: BoundingVolume) -> Boxes:
     """
     if isinstance(volume, Boxes):
         return volume
-    raise AmprepError(f"this packer packs boxes, got {type(volume).__name__}; choose the volume maker 'box' or 'boxes'")
+    raise AmprepError(
+        f"this packer packs boxes, got {type(volume).__name__}; choose the volume maker 'box' or 'boxes'"
+    )
 
 
 def prepare(problem: PackingProblem) -> Scene:
@@ -141,7 +144,9 @@ def _standing(problem: PackingProblem) -> tuple[Floats, Floats]:
     return np.concatenate(corners[0]), np.concatenate(corners[1])
 
 
-def placements(scene: Scene, items: Sequence[int], variant: Sequence[int], place: Floats) -> tuple[Placement, ...]:
+def placements(
+    scene: Scene, items: Sequence[int], variant: Sequence[int], place: Floats
+) -> tuple[Placement, ...]:
     """Return the placements of `items`, whose variants' least corners lie at `place` ``(n, 3)``."""
     chosen = [scene.kinds[scene.kind[item]][v] for item, v in zip(items, variant, strict=True)]
     return tuple(

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.kernels.extreme_points import CENTRE, LOW, RESIDUAL, TOUCHING
-from amprep.model.arrays import Floats, Ints
+from amprep.kernels.box_places import CENTRE, LOW, RESIDUAL, TOUCHING, Indices
+from amprep.model.arrays import Floats
 from amprep.plugins.packing.scene import Scene
 
 BANDS = (0.1, 0.2, 0.3, 0.5)
@@ -16,14 +16,14 @@ BANDS = (0.1, 0.2, 0.3, 0.5)
 class Pass(NamedTuple):
     """One order of items (indices) and one way to place them."""
 
-    order: Ints
+    order: Indices
     style: Floats
 
 
 def passes(scene: Scene) -> list[Pass]:
     """Return every order under every style, in an order in which the best come early."""
-    orders = list(_orders(scene))
-    return [Pass(order, style) for style in _styles(scene) for order in orders]
+    styles = list(_styles(scene))
+    return [Pass(order, style) for order in _orders(scene) for style in styles]
 
 
 def _styles(scene: Scene) -> Iterator[Floats]:
@@ -57,20 +57,20 @@ GRID = 1024
 """Crossings of lines tried besides the extreme points, at most."""
 
 
-def _orders(scene: Scene) -> Iterator[Ints]:
+def _orders(scene: Scene) -> Iterator[Indices]:
     """Yield orders of the free items, each once."""
     free = np.flatnonzero(scene.free)
     seen: set[bytes] = set()
     for keys in _keys(scene, free):
         # ties keep copies of a part together: rows of identical parts
-        columns = [-np.asarray(key) for key in keys][::-1]
-        order = free[np.lexsort((free, scene.kind[free], *columns))].astype(np.int64)
+        columns = np.array([free, scene.kind[free], *(-key for key in reversed(keys))], dtype=np.float64)
+        order = free[np.lexsort(columns)]
         if order.tobytes() not in seen:
             seen.add(order.tobytes())
             yield order
 
 
-def _keys(scene: Scene, free: Ints) -> Iterator[tuple[Floats, ...]]:
+def _keys(scene: Scene, free: Indices) -> Iterator[tuple[Floats, ...]]:
     """Yield sort keys, greatest first; the first key of a tuple rules."""
     size = np.array([variants[0].size for variants in scene.kinds])[scene.kind[free]]
     room = scene.space.hi - scene.space.lo
@@ -89,7 +89,9 @@ def _keys(scene: Scene, free: Ints) -> Iterator[tuple[Floats, ...]]:
     yield from _clustered(size, room, (0, 1) if scene.space.flat else (2, 1, 0), flat=scene.space.flat)
 
 
-def _clustered(size: Floats, room: Floats, axes: tuple[int, ...], *, flat: bool) -> Iterator[tuple[Floats, ...]]:
+def _clustered(
+    size: Floats, room: Floats, axes: tuple[int, ...], *, flat: bool
+) -> Iterator[tuple[Floats, ...]]:
     """Yield the clustered area-height and height-area sortings along each axis, band by band."""
     for band in BANDS:
         for axis in axes:

@@ -24,13 +24,15 @@ def given_boxes(part: Part) -> Boxes:
     """
     if part.boxes is None or not np.size(part.boxes):
         raise JobError(
-            f"part {part.name!r}: the volume maker 'boxes' needs boxes = [[x0, y0, z0, x1, y1, z1], ...] in the job's "
-            "[[part]], got none; add them or choose the volume maker 'box'"
+            f"part {part.name!r}: the volume maker 'boxes' needs boxes = [[x0, y0, z0, x1, y1, z1], ...] in "
+            "the job's [[part]], got none; add them or choose the volume maker 'box'"
         )
     corners = np.asarray(part.boxes, dtype=np.float64).reshape(-1, 6)
     for number, corner in enumerate(corners.tolist(), start=1):
         if not (np.isfinite(corner).all() and all(corner[i] < corner[i + 3] for i in range(3))):
-            raise JobError(f"part {part.name!r}: box {number} must be x0 < x1, y0 < y1, z0 < z1 in mm, got {corner}")
+            raise JobError(
+                f"part {part.name!r}: box {number} must be x0 < x1, y0 < y1, z0 < z1 in mm, got {corner}"
+            )
     boxes = Boxes(corners[:, :3], corners[:, 3:])
     violations = check_volume(part, boxes)
     if violations:
