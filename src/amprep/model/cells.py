@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 
 from amprep.model.arrays import Bytes, Floats, Ints, frozen
 from amprep.model.mesh import Mesh
-from amprep.model.supports import GridFrame
+from amprep.model.supports import DIRECTIONS, GridFrame
 
 
 class Role(IntEnum):
@@ -61,6 +62,19 @@ class CellRequest:
             object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
         for name in ("direction", "role"):
             object.__setattr__(self, name, frozen(getattr(self, name), np.uint8))
+
+    @cached_property
+    def matrices(self) -> Floats:
+        """``(n, 3, 4)`` unit cube to build coordinates: the upright or sheared prism of each edge (thesis 3.5)."""
+        frame = self.frame
+        dy, dx = np.array(DIRECTIONS, np.float64)[self.direction].T
+        matrices = np.zeros((len(self.plane), 3, 4))
+        matrices[:, 0, 0] = matrices[:, 1, 1] = frame.pitch
+        matrices[:, 2, 2] = frame.step
+        matrices[:, 0, 2], matrices[:, 1, 2] = -dx * frame.pitch, -dy * frame.pitch
+        lower = np.column_stack([self.x + dx, self.y + dy, self.plane - 1.0])
+        matrices[:, :, 3] = frame.origin + lower * (frame.pitch, frame.pitch, frame.step)
+        return frozen(matrices, np.float64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,122 @@
+"""Part closed meshes along edges where solids merely touch, so that no edge has more than two triangles."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.merging import compact
+from amprep.geometry.welding import kept, label_equal_rows
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_SAME_ANGLE = 1e-3
+"""Radians; what rounding to a build file's precision turns the faces of an edge at most."""
+
+
+def separate_edges(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Copy vertices so that no edge of a closed mesh has more than two triangles.
+
+    Of the triangles around an edge, each pairs with the next one across the solid. Where both ends of an
+    edge hang together all the same, the edge is split in the middle, once for each pair: manifold3d would
+    part it as well, but loses a corner of the solid now and then.
+
+    Parameters
+    ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``, closed and without overlaps; an open mesh comes back as it is.
+    """
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    ends = np.column_stack([np.minimum(start, end), np.maximum(start, end), np.zeros_like(start)])
+    edge, count = label_equal_rows(ends)
+    balance = np.bincount(edge, np.where(start < end, 1, -1), count)
+    crowded = np.bincount(edge, minlength=count) > 2
+    if not crowded.any() or balance.any():
+        return points, triangles
+    touched = np.zeros(len(points), np.bool_)
+    touched[ends[crowded[edge], :2]] = True
+    halves = np.flatnonzero(touched[start] | touched[end])
+    first, second = _paired(points, triangles, halves, ends, edge)
+    points, triangles = _split(points, triangles, touched, first, second)
+    return compact(*_halve_doubled(points, triangles, first, second))
+
+
+def _paired(points: Floats, triangles: Ints, halves: Ints, ends: Ints, edge: Ints) -> tuple[Ints, Ints]:
+    """Pair half-edges (3 triangle + corner) across the solid: each that runs back with the next one forth.
+
+    Seen along the edge from its lower vertex, the solid lies clockwise of a triangle that runs forth and
+    counter-clockwise of one that runs back.
+    """
+    forth = triangles.ravel()[halves] == ends[halves, 0]
+    opposite = np.roll(triangles, -2, axis=1).ravel()[halves]
+    low, high = points[ends[halves, 0]], points[ends[halves, 1]]
+    axis = high - low
+    ray = points[opposite] - low
+    right = np.cross(axis, np.eye(3)[np.abs(axis).argmin(axis=1)])
+    up = np.cross(axis, right) / np.linalg.norm(axis, axis=1)[:, None]
+    angle = np.arctan2(np.einsum("ij,ij->i", ray, up), np.einsum("ij,ij->i", ray, right))
+    order = np.lexsort((angle, forth, edge[halves]))
+    begins = np.flatnonzero(np.diff(edge[halves[order]], prepend=-1))
+    pairs = np.diff(np.append(begins, len(order))) // 2
+    # faces that coincide end one solid and begin the next: then the one that runs forth comes first
+    turned = angle[order[begins + pairs]] < angle[order[begins]] + _SAME_ANGLE
+    begin, count, turn = (np.repeat(each, pairs) for each in (begins, pairs, turned.astype(np.int64)))
+    rank = np.arange(len(begin)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    return halves[order[begin + rank]], halves[order[begin + count + (rank + turn) % count]]
+
+
+def _split(points: Floats, triangles: Ints, touched: Bools, first: Ints, second: Ints) -> tuple[Floats, Ints]:
+    """Give each fan of triangles around a touched vertex its own copy of it."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    corner = triangles.ravel()
+    near = np.concatenate([first, _following(first)])
+    far = np.concatenate([_following(second), second])
+    at_touched = np.flatnonzero(touched[corner])
+    number = np.full(len(corner), -1)
+    number[at_touched] = np.arange(len(at_touched))
+    joins = touched[corner[near]]
+    rows, columns = number[near[joins]], number[far[joins]]
+    graph = coo_array((np.ones(len(rows), np.int8), (rows, columns)), shape=(len(at_touched),) * 2)
+    _, fan = connected_components(graph, directed=False)
+    _, first_corner = np.unique(fan, return_index=True)
+    split = corner.copy()
+    split[at_touched] = len(points) + fan
+    return np.vstack([points, points[corner[at_touched[first_corner]]]]), split.reshape(-1, 3)
+
+
+def _halve_doubled(points: Floats, triangles: Ints, first: Ints, second: Ints) -> tuple[Floats, Ints]:
+    """Put a vertex of its own into the middle of each pair's edge where two pairs share both vertices."""
+    corner = triangles.ravel()
+    start, end = corner[first], corner[_following(first)]
+    ends = np.column_stack([np.minimum(start, end), np.maximum(start, end), np.zeros_like(start)])
+    edge, count = label_equal_rows(ends)
+    doubled = np.flatnonzero(np.bincount(edge, minlength=count)[edge] > 1)
+    middle = np.full(len(corner), -1)
+    middle[first[doubled]] = middle[second[doubled]] = len(points) + np.arange(len(doubled))
+    points = np.vstack([points, kept((points[start[doubled]] + points[end[doubled]]) / 2)])
+    return points, _halved(triangles, middle.reshape(-1, 3))
+
+
+def _halved(triangles: Ints, middle: Ints) -> Ints:
+    """Split triangles at the vertices `middle` ``(m, 3)`` on their sides (-1 for none), a side at a time."""
+    done = [triangles[(middle < 0).all(axis=1)]]
+    open_ = (middle >= 0).any(axis=1)
+    triangles, middle = triangles[open_], middle[open_]
+    while len(triangles):
+        turn = ((middle >= 0).argmax(axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(triangles, turn, axis=1).T
+        m, on_bc, on_ca = np.take_along_axis(middle, turn, axis=1).T
+        none = np.full(len(m), -1)
+        triangles = np.concatenate([np.column_stack([a, m, c]), np.column_stack([m, b, c])])
+        middle = np.concatenate([np.column_stack([none, none, on_ca]), np.column_stack([none, on_bc, none])])
+        open_ = (middle >= 0).any(axis=1)
+        done.append(triangles[~open_])
+        triangles, middle = triangles[open_], middle[open_]
+    return np.concatenate(done)
+
+
+def _following(half: Ints) -> Ints:
+    """Return the next half-edge of the same triangle."""
+    return half - half % 3 + (half + 1) % 3
