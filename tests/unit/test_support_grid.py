@@ -4,7 +4,7 @@ import manifold3d
 import numpy as np
 import pytest
 
-from amprep.errors import PluginError
+from amprep.errors import JobError, PluginError
 from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
 from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, Cube
 from amprep.pipeline.supports import choose_pitch, plan_supports
@@ -279,6 +279,11 @@ def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
     assert pitch((4, 4, 4)) == 0.4
     assert pitch((700, 700, 700), BuildVolume([800, 800, 800])) > 1.5
     assert choose_pitch([], SPACE) == 1.0
+
+
+def test_a_pitch_far_too_fine_is_refused():
+    with pytest.raises(JobError, match="choose a larger pitch"):
+        layout(placed(TABLE), pitch=0.02)
 
 
 def test_a_router_that_breaks_its_promise_is_refused():

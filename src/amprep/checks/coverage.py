@@ -75,10 +75,10 @@ def check_coverage(build: Build) -> list[Violation]:
         for region in np.unique(each.samples.region[~covered]):
             bare = ~covered & (each.samples.region == region)
             x, y, z = each.samples.points[bare][0]
+            where = f"{_name(int(region), build.parts[part].label)} ({each.regions[region].kind})"
             message = (
-                f"{_name(int(region), build.parts[part].label)} ({each.regions[region].kind}) has {bare.sum()} "
-                f"sample points over {build.settings.reach:g} mm from any contact and is not listed, "
-                f"first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
+                f"{where} has {bare.sum()} sample points over {build.settings.reach:g} mm from any contact "
+                f"and is not listed, first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
             )
             found.append(Violation(PROMISE, build.parts[part].label, message))
     return found
@@ -91,33 +91,39 @@ def _coverage(
     reach: float,
     grant_deg: float = 0.0,
 ) -> list[_Covered]:
-    """Sample every part's needs, find all contacts, and see which samples have one within reach."""
-    angle = settings.overhang_angle_deg
-    spacing = settings.reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(min(angle, 85.0)))))
-    meshes = [placed.mesh for placed in parts]
-    samples, regions = [], []
-    for placed, mesh in zip(parts, meshes, strict=True):
+    """Sample every part's needs, and see which samples have a contact on the same part within reach."""
+    covered = []
+    for placed in parts:
+        mesh = placed.mesh
         needs = needs_of(
             placed,
             mesh,
-            overhang_angle_deg=angle - grant_deg,
+            overhang_angle_deg=settings.overhang_angle_deg,
             least_area=settings.least_area,
             least_length=settings.least_length,
+            grant_deg=grant_deg,
         )
-        samples.append(sample_overhangs(mesh.vertices, mesh.triangles, needs, spacing))
-        regions.append(needs.regions)
-    points = np.concatenate([np.empty((0, 3)), *(each.points for each in samples)])
-    touched = _touched(points, bodies)
-    covered = touched | _nearest(points[touched], points, reach)
-    if not covered.all():
-        bare = np.flatnonzero(~covered)
-        contacts = _embedded(points[bare], bodies, meshes, spacing, reach)
-        covered[bare] = _nearest(contacts, points[bare], reach)
-    first = np.concatenate([[0], np.cumsum([len(each.points) for each in samples])]).astype(int)
-    return [
-        _Covered(own, names, covered[a:b])
-        for own, names, a, b in zip(samples, regions, first[:-1], first[1:], strict=True)
-    ]
+        own = placed.part.overrides.overhang_angle_deg
+        angle = min(settings.overhang_angle_deg if own is None else own, 85.0)
+        spacing = settings.reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
+        samples = sample_overhangs(mesh.vertices, mesh.triangles, needs, spacing)
+        covered.append(_Covered(samples, needs.regions, _held(samples.points, mesh, bodies, spacing, reach)))
+    return covered
+
+
+def _held(points: Floats, mesh: Mesh, bodies: Sequence[SupportBody], spacing: float, reach: float) -> Bools:
+    """Tell which points of a part have a contact of a support with that part within reach."""
+    near = [body for body in bodies if len(points) and _touch(body.mesh.bounds, mesh.bounds, reach)]
+    touched = _touched(points, near)
+    held = touched | _nearest(points[touched], points, reach)
+    if not held.all():
+        bare = np.flatnonzero(~held)
+        held[bare] = _nearest(_embedded(points[bare], mesh, near, spacing, reach), points[bare], reach)
+    return held
+
+
+def _touch(one: tuple[Floats, Floats], other: tuple[Floats, Floats], margin: float) -> bool:
+    return bool((one[0] <= other[1] + margin).all() and (other[0] <= one[1] + margin).all())
 
 
 def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
@@ -126,28 +132,24 @@ def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
     lower = points - (0.0, 0.0, _NUDGE)
     for body in bodies:
         if not body.surface:
-            lo, hi = body.mesh.bounds
-            near = np.flatnonzero(~touched & _between(lower, lo, hi))
+            near = np.flatnonzero(~touched & _between(lower, *body.mesh.bounds))
             touched[near] = inside(lower[near], body.mesh.vertices, body.mesh.triangles)
     return touched
 
 
 def _embedded(
-    points: Floats, bodies: Sequence[SupportBody], meshes: Sequence[Mesh], spacing: float, reach: float
+    points: Floats, mesh: Mesh, bodies: Sequence[SupportBody], spacing: float, reach: float
 ) -> Floats:
-    """Return points on the edges of supports that lie in or on a part they hold, near `points`."""
+    """Return points on the edges of supports that lie in or on the part, near `points`."""
     found = [np.empty((0, 3))]
     for body in bodies:
         lo, hi = body.mesh.bounds
         near = points[_between(points, lo - reach, hi + reach)]
-        if not len(near):
-            continue
-        on_edges = _edge_points(body.mesh, near.min(axis=0) - reach, near.max(axis=0) + reach, spacing)
-        on_edges = on_edges[_nearest(near, on_edges, reach)]
-        upper = np.add(on_edges, (0.0, 0.0, _NUDGE))
-        for part in body.parts:
-            held = inside(upper, meshes[part].vertices, meshes[part].triangles)
-            found.append(on_edges[held])
+        if len(near):
+            on_edges = _edge_points(body.mesh, near.min(axis=0) - reach, near.max(axis=0) + reach, spacing)
+            on_edges = on_edges[_nearest(near, on_edges, reach)]
+            upper = np.add(on_edges, (0.0, 0.0, _NUDGE))
+            found.append(on_edges[inside(upper, mesh.vertices, mesh.triangles)])
     return np.concatenate(found)
 
 

@@ -13,12 +13,19 @@ from amprep.model.part import Part, Region
 
 
 def needs_of(
-    placed: PlacedPart, mesh: Mesh, *, overhang_angle_deg: float, least_area: float, least_length: float
+    placed: PlacedPart,
+    mesh: Mesh,
+    *,
+    overhang_angle_deg: float,
+    least_area: float,
+    least_length: float,
+    grant_deg: float = 0.0,
 ) -> Overhangs:
     """Return what needs support of a part that stands in the build as `mesh`.
 
     The part's own overhang angle comes before the job's; a part with supports switched off needs none. A
-    region marks its triangles, or the triangles whose centre and the vertices that lie inside its mesh.
+    region marks its triangles, or the triangles whose centre and the vertices that lie inside its mesh. Both
+    angles are lowered by `grant_deg`.
     """
     own = placed.part.overrides
     if own.supports is False:
@@ -26,7 +33,8 @@ def needs_of(
     return find_overhangs(
         mesh.vertices,
         mesh.triangles,
-        angle_deg=overhang_angle_deg if own.overhang_angle_deg is None else own.overhang_angle_deg,
+        angle_deg=(overhang_angle_deg if own.overhang_angle_deg is None else own.overhang_angle_deg)
+        - grant_deg,
         least_area=least_area,
         least_length=least_length,
         marks=_marks(placed.part) if own.supports is not False else None,

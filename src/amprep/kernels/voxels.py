@@ -97,7 +97,9 @@ def mark_elements(
             bottom, top = iy * pitch - grow, (iy + 1) * pitch + grow
             if y_low >= bottom and y_high <= top:
                 count = 3
-                band[:3] = whole
+                for i in range(3):
+                    for c in range(3):
+                        band[i, c] = whole[i, c]
             else:
                 count = _clip(whole, 3, 1, bottom, 1.0, spare)
                 count = _clip(spare, count, 1, top, -1.0, band)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.errors import JobError
 from amprep.geometry.overhangs import Overhangs
 from amprep.geometry.voxels import UNMARKED, Grid, Window, holding_cubes, met_cubes, near_cubes
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Bytes, Floats, Ints
@@ -18,6 +19,7 @@ FINEST_PITCH, USUAL_PITCH = 0.4, 1.0
 
 _SQUARES_PER_PART = 25
 _MOST_CUBES = 48_000_000
+_TOO_MANY_MILLIONS = 400
 
 
 def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_deg: float = 45.0) -> float:
@@ -61,6 +63,11 @@ def frame_of(
     It is as much wider than the parts as paths from the highest plane can stray. No cube sticks out of the
     box; when the pitch does not divide the box and a part stands in the last, partial square, the grid is
     shifted to end at that wall.
+
+    Raises
+    ------
+    JobError
+        When that takes more than 400 million cubes.
     """
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))
     top = min(_whole(highest_need(meshes, overhangs) / step) + 1, _whole(space.size[2] / step))
@@ -74,6 +81,12 @@ def frame_of(
         last = min(int(np.ceil((hi[axis] - shift) / pitch)) + top, whole)
         origin[axis] = shift + first * pitch
         count[2 - axis] = max(last - first, 1)
+    millions = count[0] * count[1] * count[2] / 1e6
+    if millions > _TOO_MANY_MILLIONS:
+        raise JobError(
+            f"the support grid must have at most {_TOO_MANY_MILLIONS} million cubes, got {millions:.0f} million "
+            f"of {pitch:g} x {pitch:g} x {step:.3g} mm: choose a larger pitch"
+        )
     return GridFrame(origin, pitch, step, (count[0], count[1], count[2]))
 
 
