@@ -1,18 +1,46 @@
 """Shells of a mesh: which are inside out, and the volume where the winding number is positive."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amprep.geometry.manifolds import as_manifold
 from amprep.geometry.merging import Bools, Floats, Ints
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+MOST_UNITED = 20_000
+"""Where more shells overlap, overlaps count as often as they occur; uniting them would take minutes."""
+
+_MOST_PAIRS = 50_000_000
+
+
+class Shells(NamedTuple):
+    """The shells of a mesh: triangles joined by edges.
+
+    Attributes
+    ----------
+    label
+        ``(m,)`` the shell of each triangle, 0 to k - 1.
+    volume
+        ``(k,)`` signed, mm3; rounding counts as zero.
+    lo, hi
+        ``(k, 3)`` corners of their boxes.
+    crowded
+        ``(k,)`` whether a shell may overlap another, or itself, so that volumes do not just add up.
+    """
+
+    label: Ints
+    volume: Floats
+    lo: Floats
+    hi: Floats
+    crowded: Bools
+
 
 def label_shells(triangles: Ints, vertex_count: int) -> tuple[int, Ints]:
-    """Return how many shells (triangles joined by vertices) there are, and each triangle's, ``(m,)``."""
+    """Return how many pieces (triangles joined by vertices) there are, and each triangle's, ``(m,)``."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -23,7 +51,16 @@ def label_shells(triangles: Ints, vertex_count: int) -> tuple[int, Ints]:
     return len(shells), of_triangle.astype(np.int64)
 
 
-def find_inside_out(vertices: Floats, triangles: Ints) -> tuple[Bools, int, int]:
+def measure_shells(vertices: Floats, triangles: Ints) -> Shells:
+    """Find and measure the shells of a mesh whose edges match."""
+    count, label, simple = _join_by_edges(triangles)
+    corners = vertices[triangles]
+    lo, hi = _boxes(corners, label, count)
+    crowded = ~simple | _overlapping(lo, hi)
+    return Shells(label, _volumes(corners, label, count), lo, hi, crowded)
+
+
+def find_inside_out(shells: Shells) -> tuple[Bools, int]:
     """Find shells that lie in no other shell and have negative volume, with all the shells inside them.
 
     Lying inside is judged by the boxes. A cavity is a shell of negative volume inside another: it stays.
@@ -31,33 +68,91 @@ def find_inside_out(vertices: Floats, triangles: Ints) -> tuple[Bools, int, int]
     Returns
     -------
     turn
-        ``(m,)`` whether a triangle has to be turned over.
-    turned, shells
-        How many outer shells that concerns, and how many shells there are.
+        ``(k,)`` whether a shell has to be turned over.
+    outer
+        How many of these lie in no other.
     """
-    count, shell = label_shells(triangles, len(vertices))
-    corners = vertices[triangles]
-    volume = _volumes(corners, shell, count)
-    if (volume >= 0.0).all():
-        return np.zeros(len(triangles), np.bool_), 0, count
-    outer = _outermost(*_boxes(corners, shell, count))
-    inside_out = volume[outer] < 0.0
-    outermost = outer == np.arange(count)
-    return inside_out[shell], int((inside_out & outermost).sum()), count
+    if (shells.volume >= 0.0).all():
+        return np.zeros(len(shells.volume), np.bool_), 0
+    outer = _outermost(shells.lo, shells.hi)
+    turn = shells.volume[outer] < 0.0
+    return turn, int((turn & (outer == np.arange(len(outer)))).sum())
 
 
-def solid_volume(solid: "Manifold") -> float:
+def solid_volume(vertices: Floats, triangles: Ints, shells: Shells) -> float:
     """Volume where the winding number is positive: shells that overlap count once, cavities are hollow.
 
     Of one self-intersecting shell the volume is the signed one.
     """
-    shells = [shell for shell in solid.decompose() if not shell.is_empty()]
-    cavities = [shell for shell in shells if shell.volume() < 0.0]
-    if len(shells) < 2:
-        return float(solid.volume())
+    crowded = shells.crowded
+    alone = float(shells.volume[~crowded].clip(min=0.0).sum())
+    if not crowded.any():
+        return alone
+    if crowded.sum() > MOST_UNITED:
+        return alone + max(0.0, float(shells.volume[crowded].sum()))
+    pieces = [
+        piece
+        for shell in _split(triangles[crowded[shells.label]], shells.label[crowded[shells.label]])
+        for piece in _manifold_of(vertices, shell).decompose()
+    ]
+    outward = [piece for piece in pieces if piece.volume() > 0.0]
+    cavities = [piece for piece in pieces if piece.volume() < 0.0]
     if not cavities:
-        return float(_union(shells).volume())
-    return _volume_with_cavities([shell for shell in shells if shell.volume() >= 0.0], cavities)
+        return alone + float(_union(outward).volume())
+    return alone + _volume_with_cavities(outward, cavities)
+
+
+def _manifold_of(vertices: Floats, triangles: Ints) -> "Manifold":
+    used, corners = np.unique(triangles, return_inverse=True)
+    return as_manifold(vertices[used], corners.reshape(-1, 3))
+
+
+def _join_by_edges(triangles: Ints) -> tuple[int, Ints, Bools]:
+    """Return the number of shells, each triangle's, and which have two triangles at every edge."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    keys = np.minimum(start, end) * (int(triangles.max()) + 1) + np.maximum(start, end)
+    order = np.argsort(keys, kind="stable")
+    same = keys[order[1:]] == keys[order[:-1]]
+    owner = order // 3
+    one, other = owner[:-1][same], owner[1:][same]
+    graph = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(len(triangles),) * 2)
+    count, label = connected_components(graph, directed=False)
+    simple = np.ones(count, np.bool_)
+    simple[label[owner[1:-1][same[1:] & same[:-1]]]] = False
+    return count, label.astype(np.int64), simple
+
+
+def _split(triangles: Ints, label: Ints) -> list[Ints]:
+    """Return the triangles of each label, ascending."""
+    order = np.argsort(label, kind="stable")
+    return np.split(triangles[order], np.flatnonzero(np.diff(label[order])) + 1)
+
+
+def _overlapping(lo: Floats, hi: Floats) -> Bools:
+    """Tell which boxes meet another one; all of them where there are too many pairs to look at."""
+    if len(lo) == 1:
+        return np.zeros(1, np.bool_)
+    sweeps = [_sweep(lo, hi, axis) for axis in range(3)]
+    order, last = min(sweeps, key=lambda sweep: int(sweep[1].sum()))
+    ahead = last - np.arange(len(last)) - 1
+    if ahead.sum() > _MOST_PAIRS:
+        return np.ones(len(lo), np.bool_)
+    first = np.repeat(np.arange(len(last)), ahead)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(ahead) - ahead, ahead)
+    one, other = order[first], order[second]
+    meet = ((lo[one] <= hi[other]) & (lo[other] <= hi[one])).all(axis=1)
+    result = np.zeros(len(lo), np.bool_)
+    result[one[meet]] = result[other[meet]] = True
+    return result
+
+
+def _sweep(lo: Floats, hi: Floats, axis: int) -> tuple[Ints, Ints]:
+    """Order boxes along an axis; return the order, and for each place the end of the boxes it reaches."""
+    order = np.argsort(lo[:, axis], kind="stable")
+    return order, np.searchsorted(lo[order, axis], hi[order, axis], side="right")
 
 
 def _volume_with_cavities(outward: Sequence["Manifold"], cavities: Sequence["Manifold"]) -> float:
@@ -99,11 +194,8 @@ def _union(solids: Sequence["Manifold"]) -> "Manifold":
 
 def _turned(solid: "Manifold") -> "Manifold":
     """Return the solid with every triangle turned over."""
-    from manifold3d import Manifold, Mesh64
-
     mesh = solid.to_mesh64()
-    points = np.array(mesh.vert_properties[:, :3], order="C")
-    return Manifold(Mesh64(points, np.array(mesh.tri_verts[:, ::-1], dtype=np.uint64, order="C")))
+    return as_manifold(mesh.vert_properties[:, :3], mesh.tri_verts[:, ::-1])
 
 
 def _volumes(corners: Floats, shell: Ints, count: int) -> Floats:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from amprep.geometry.manifolds import accepted, as_manifold
 from amprep.geometry.merging import (
     Bools,
     Floats,
@@ -13,16 +14,17 @@ from amprep.geometry.merging import (
     compact,
     count_edges,
     degenerate,
-    edges_match,
     first_of_equal_rows,
     join_near,
     open_vertices,
     repeated,
 )
-from amprep.geometry.shells import find_inside_out, solid_volume
+from amprep.geometry.shells import find_inside_out, measure_shells, solid_volume
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
+
+__all__ = ["SEAM_TOLERANCE", "Settled", "as_manifold", "find_defect", "settle"]
 
 SEAM_TOLERANCE = 1e-3
 """mm; open edges closer than this may be sewn together, the distance at which the product counts contact."""
@@ -99,31 +101,15 @@ def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
     if defect:
         whole = np.arange(len(corners))
         return Settled(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
-    accepted: list[Settled] = []
+    found: list[Settled] = []
     for candidate in _candidates(points, corners):
         solid = as_manifold(candidate.vertices, candidate.triangles)
-        if solid is not None:
-            accepted.append(_oriented(candidate, solid))
-            if not accepted[-1].problem and _faithful(solid, candidate):
-                return accepted[-1]
-    solids = [settled for settled in accepted if not settled.problem]
-    return (solids or accepted or [_refused(_tidied(points, corners))])[0]
-
-
-def as_manifold(vertices: ArrayLike, triangles: ArrayLike) -> "Manifold | None":
-    """Return the mesh as manifold3d takes it, or None where manifold3d refuses it.
-
-    Indices have to be in range. Edges are matched here first: manifold3d 3.5 would say "not manifold" where
-    they do not match, but on some such meshes it crashes.
-    """
-    from manifold3d import Error, Manifold, Mesh64
-
-    corners = np.array(triangles, np.int64, order="C")
-    if len(corners) == 0 or not edges_match(corners):
-        return None
-    points = np.array(vertices, np.float64, order="C")  # a copy: manifold3d takes no read-only arrays
-    solid = Manifold(Mesh64(points, corners.astype(np.uint64)))
-    return solid if solid.status() == Error.NoError else None
+        if accepted(solid):
+            found.append(_oriented(candidate))
+            if not found[-1].problem and _faithful(solid, candidate):
+                return found[-1]
+    solids = [settled for settled in found if not settled.problem]
+    return (solids or found or [_refused(_tidied(points, corners))])[0]
 
 
 def _candidates(vertices: Floats, triangles: Ints) -> Iterator[_Candidate]:
@@ -135,18 +121,14 @@ def _candidates(vertices: Floats, triangles: Ints) -> Iterator[_Candidate]:
     yield merged
     yield _Candidate(vertices, triangles, np.arange(len(triangles)), ())
     yield unique
-    float32_step = float(np.abs(vertices).max()) * _FLOAT32_STEP
-    for tolerance in sorted({min(float32_step, SEAM_TOLERANCE), SEAM_TOLERANCE / 10, SEAM_TOLERANCE}):
-        yield _sewn(unique, tolerance)
+    yield from _sewn(unique)
 
 
 def _same_solid(one: _Candidate, other: _Candidate) -> bool:
     """Tell whether both fill the same: whole shells that come twice do, single triangles do not."""
-    first = as_manifold(one.vertices, one.triangles)
-    second = as_manifold(other.vertices, other.triangles)
-    if first is None or second is None:
+    if not all(accepted(as_manifold(mesh.vertices, mesh.triangles)) for mesh in (one, other)):
         return False
-    return bool(np.isclose(_oriented(one, first).volume, _oriented(other, second).volume, rtol=1e-9))
+    return bool(np.isclose(_oriented(one).volume, _oriented(other).volume, rtol=1e-9))
 
 
 def _tidied(vertices: Floats, triangles: Ints) -> _Candidate:
@@ -169,13 +151,18 @@ def _without(mesh: _Candidate, dropped: Bools, what: str) -> _Candidate:
     return _Candidate(vertices, triangles, mesh.kept[~dropped], notes)
 
 
-def _sewn(mesh: _Candidate, tolerance: float) -> _Candidate:
-    """Join vertices of open edges that lie within `tolerance` mm of one another."""
-    source = join_near(mesh.vertices, open_vertices(mesh.triangles), tolerance)
-    joined = _count(int((source != np.arange(len(source))).sum()), "vertex", "vertices")
-    note = f"joined {joined} along open seams up to {tolerance:.2g} mm wide"
-    whole = mesh._replace(triangles=source[mesh.triangles], notes=(*mesh.notes, note))
-    return _without(whole, degenerate(whole.triangles), "degenerate triangle")
+def _sewn(mesh: _Candidate) -> Iterator[_Candidate]:
+    """Join vertices of open edges that lie close together, ever less close."""
+    float32_step = min(float(np.abs(mesh.vertices).max(initial=0.0)) * _FLOAT32_STEP, SEAM_TOLERANCE)
+    loose = open_vertices(mesh.triangles)
+    for tolerance in sorted({float32_step, SEAM_TOLERANCE / 10, SEAM_TOLERANCE}):
+        source = join_near(mesh.vertices, loose, tolerance)
+        joined = int((source != np.arange(len(source))).sum())
+        if joined:
+            number = _count(joined, "vertex", "vertices")
+            note = f"joined {number} along open seams up to {tolerance:.2g} mm wide"
+            whole = mesh._replace(triangles=source[mesh.triangles], notes=(*mesh.notes, note))
+            yield _without(whole, degenerate(whole.triangles), "degenerate triangle")
 
 
 def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
@@ -189,17 +176,19 @@ def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
     return bool(abs(solid.volume() - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
 
 
-def _oriented(mesh: _Candidate, solid: "Manifold") -> Settled:
+def _oriented(mesh: _Candidate) -> Settled:
     """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
-    turned, count, shells = find_inside_out(mesh.vertices, mesh.triangles)
-    if count:
+    shells = measure_shells(mesh.vertices, mesh.triangles)
+    turn, outer = find_inside_out(shells)
+    if outer:
+        turned = turn[shells.label]
         triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-        over = as_manifold(mesh.vertices, triangles)
-        volume = 0.0 if over is None else solid_volume(over)
+        right = shells._replace(volume=np.where(turn, -shells.volume, shells.volume))
+        volume = solid_volume(mesh.vertices, triangles, right)
         if volume > _least_volume(mesh):
-            note = _turning_note(bool(turned.all()), count, shells)
+            note = _turning_note(bool(turn.all()), outer, len(turn))
             return _settled(mesh._replace(triangles=triangles, notes=(*mesh.notes, note)), volume, "", turned)
-    volume = solid_volume(solid)
+    volume = solid_volume(mesh.vertices, mesh.triangles, shells)
     problem = "" if volume > _least_volume(mesh) else "its volume is zero: it encloses nothing"
     return _settled(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
 
