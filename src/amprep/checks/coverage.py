@@ -114,8 +114,9 @@ def _coverage(
 def _held(points: Floats, mesh: Mesh, bodies: Sequence[SupportBody], spacing: float, reach: float) -> Bools:
     """Tell which points of a part have a contact of a support with that part within reach."""
     near = [body for body in bodies if len(points) and _touch(body.mesh.bounds, mesh.bounds, reach)]
-    touched = _touched(points, near)
-    held = touched | _nearest(points[touched], points, reach)
+    held = _touched(points, near)
+    contacts, bare = points[held], np.flatnonzero(~held)
+    held[bare] = _nearest(contacts, points[bare], reach)
     if not held.all():
         bare = np.flatnonzero(~held)
         held[bare] = _nearest(_embedded(points[bare], mesh, near, spacing, reach), points[bare], reach)

@@ -84,8 +84,8 @@ def frame_of(
     millions = count[0] * count[1] * count[2] / 1e6
     if millions > _TOO_MANY_MILLIONS:
         raise JobError(
-            f"the support grid must have at most {_TOO_MANY_MILLIONS} million cubes, got {millions:.0f} million "
-            f"of {pitch:g} x {pitch:g} x {step:.3g} mm: choose a larger pitch"
+            f"the support grid must have at most {_TOO_MANY_MILLIONS} million cubes, got {millions:.0f} "
+            f"million of {pitch:g} x {pitch:g} x {step:.3g} mm: choose a larger pitch"
         )
     return GridFrame(origin, pitch, step, (count[0], count[1], count[2]))
 
