@@ -8,6 +8,8 @@ from manifold3d import Manifold, Mesh64
 
 from amprep.checks.meshes import check_part
 from amprep.errors import MeshError
+from amprep.geometry import shells as shells_module
+from amprep.geometry import solids as solids_module
 from amprep.geometry.solids import settle
 from amprep.model import Appearance, Mesh, Part, Region
 from amprep.pipeline.reading import settle_part
@@ -139,6 +141,22 @@ def test_solids_that_touch_are_accepted_whatever_an_edge_count_says(shift):
     settled = settle(*together(CUBE, scaled(CUBE, 1.0, shift)))
     assert settled.problem == ""
     assert settled.volume == pytest.approx(2.0)
+
+
+def test_many_shells_are_measured_in_short_time_and_overlaps_still_count_once():
+    corners = np.random.default_rng(2).integers(0, 60, (3000, 3)).astype(float)
+    cells = np.zeros((61, 61, 61), bool)
+    cells[tuple(corners.astype(int).T)] = True
+    settled = settle(*together(*(scaled(CUBE, 1.0, corner) for corner in corners)))
+    assert settled.volume == pytest.approx(cells.sum())
+
+
+def test_where_too_many_shells_overlap_that_is_said(monkeypatch):
+    for module in (shells_module, solids_module):
+        monkeypatch.setattr(module, "MOST_UNITED", 1)
+    settled = settle(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
+    assert settled.volume == pytest.approx(2.0)
+    assert "counts overlaps repeatedly" in settled.notes[0]
 
 
 def test_a_seam_narrower_than_the_tolerance_is_sewn_and_that_is_said():

@@ -19,7 +19,7 @@ from amprep.geometry.merging import (
     open_vertices,
     repeated,
 )
-from amprep.geometry.shells import find_inside_out, measure_shells, solid_volume
+from amprep.geometry.shells import MOST_UNITED, find_inside_out, measure_shells, solid_volume
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -134,7 +134,9 @@ def _same_solid(one: _Candidate, other: _Candidate) -> bool:
 def _tidied(vertices: Floats, triangles: Ints) -> _Candidate:
     """Merge equal vertices and drop degenerate triangles."""
     first = first_of_equal_rows(vertices)
-    merged = int((first != np.arange(len(vertices)))[np.unique(triangles)].sum())
+    used = np.zeros(len(vertices), np.bool_)
+    used[triangles] = True
+    merged = int((used & (first != np.arange(len(vertices)))).sum())
     notes = (
         (f"merged {_count(merged, 'vertex', 'vertices')} with others at the same place",) if merged else ()
     )
@@ -179,6 +181,9 @@ def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
 def _oriented(mesh: _Candidate) -> Settled:
     """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
     shells = measure_shells(mesh.vertices, mesh.triangles)
+    if shells.crowded.sum() > MOST_UNITED:
+        note = f"more than {MOST_UNITED} shells that may overlap: its volume counts overlaps repeatedly"
+        mesh = mesh._replace(notes=(*mesh.notes, note))
     turn, outer = find_inside_out(shells)
     if outer:
         turned = turn[shells.label]
