@@ -7,12 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.geometry.solids import as_manifold
+from amprep.geometry.welding import kept
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+FILE_STEP = 3e-5
+"""mm; what rounding to float32 moves a vertex at most, up to 500 mm from the origin."""
 
 _SAME_VOLUME = 1e-9
 """Share; folds that matter change far more, rounding far less."""
@@ -60,3 +64,20 @@ def _orders(count: int) -> list[list[int]]:
     """Return some orders of `count` things: turned, and turned backwards."""
     turned = [[(start + i) % count for i in range(count)] for start in range(count)]
     return turned + [order[::-1] for order in turned]
+
+
+def is_solid(points: Floats, triangles: Ints) -> bool:
+    """Whether manifold3d accepts a mesh as a solid with positive volume."""
+    from manifold3d import Error
+
+    solid = as_manifold(points, triangles)
+    return bool(solid.status() == Error.NoError and solid.volume() > 0.0)
+
+
+def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Ints]:
+    """Unite solids to the arrays that a build file keeps: closed, no triangle without area."""
+    whole = union(solids)
+    points, triangles = arrays_of(whole)
+    again = as_manifold(kept(points), triangles).simplify(FILE_STEP)
+    points, triangles = arrays_of(again)
+    return kept(points), triangles

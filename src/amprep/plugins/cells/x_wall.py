@@ -25,7 +25,7 @@ class XWallParams:
 
     wall_mm: float = 0.3
     join_every: int = 3
-    gap_mm: float = 0.5
+    gap_mm: float = 0.3
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.wall_mm < np.inf:

@@ -1,0 +1,65 @@
+"""Columns above the red squares of a layout, and the pieces of the parts' surfaces in them."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.geometry.connectors import Columns, Patches, clip_into, held_corners, join_patches
+from amprep.model import Mesh
+from amprep.model.arrays import Bools
+from amprep.pipeline.support_layout import SupportLayout
+
+WIDEST_BAND = 1.0
+"""mm; how wide the level band below a knife edge and the square below a tip may get."""
+
+
+class Ways(NamedTuple):
+    """What connectors have to go by.
+
+    Attributes
+    ----------
+    columns
+        One per red square of the layout.
+    held, surface
+        What is to be held, and all that looks down, in the columns of connected red squares.
+    own
+        ``(n,)`` whether each patch of `surface` belongs to the part that its column holds.
+    """
+
+    columns: Columns
+    held: Patches
+    surface: Patches
+    own: Bools
+
+
+def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
+    """Cut the overhangs and all surfaces of the parts to the columns above connected red squares."""
+    columns = _columns(layout)
+    width = min(layout.frame.pitch, WIDEST_BAND)
+    held, surface, own = [], [], []
+    first = 0
+    for part, (mesh, needs) in enumerate(zip(meshes, layout.overhangs, strict=True)):
+        corners = held_corners(mesh.vertices, mesh.triangles, needs.faces, needs.edges, needs.tips, width=width)
+        added = -1 - np.arange(len(corners) - len(needs.faces))
+        mine = layout.red_part == part
+        number = np.concatenate([first + needs.faces, added]).astype(np.int64)
+        held.append(clip_into(columns, corners, number, layout.connected & mine))
+        number = first + np.arange(len(mesh.triangles))
+        surface.append(clip_into(columns, mesh.vertices[mesh.triangles], number, layout.connected))
+        first += len(mesh.triangles)
+    count = len(layout.red)
+    all_surface = join_patches(surface, count)
+    ends = np.cumsum([len(mesh.triangles) for mesh in meshes])
+    own = layout.red_part[all_surface.owner[:, 0]] == np.searchsorted(ends, all_surface.owner[:, 1], side="right")
+    return Ways(columns, join_patches(held, count), all_surface, own)
+
+
+def _columns(layout: SupportLayout) -> Columns:
+    frame = layout.frame
+    plane, y, x = layout.red.T.astype(np.int64)
+    size = (frame.pitch, frame.pitch, frame.step)
+    low = frame.origin + np.column_stack([x, y, plane]) * size
+    high = frame.origin + np.column_stack([x + 1, y + 1, plane + layout.red_rise]) * size
+    grid = np.array([frame.origin[0], frame.origin[1], frame.pitch])
+    return Columns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])

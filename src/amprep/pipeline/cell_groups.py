@@ -1,0 +1,196 @@
+"""The cells, seats and connectors of one support group, united to one solid, or put together as sheets."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from amprep.geometry.cell_junctions import Grid, Sections, join_sections
+from amprep.geometry.cell_sheets import join_sheets, plan_segments, raise_sheets
+from amprep.geometry.cell_solids import finish, is_solid, union
+from amprep.geometry.cell_tiling import Arrays, expand, fills_unit_cube
+from amprep.geometry.connectors import connect, square_patches, prisms
+from amprep.geometry.solids import as_manifold
+from amprep.model import DIRECTIONS, CellRequest, Cells, Mesh, Role, Template
+from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.pipeline.cell_connectors import Ways
+from amprep.pipeline.support_layout import SupportLayout
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+SEAT = 0.2
+"""mm; connectors begin this far below their red square, inside what stands there (at most a quarter step)."""
+
+
+class Emitted(NamedTuple):
+    """What the emitter answered, instance by instance.
+
+    Attributes
+    ----------
+    templates
+        As arrays.
+    tiles
+        ``(n,)`` whether an instance is a sound solid in its edge's prism, the only one there.
+    sheet, connector
+        ``(n,)`` whether it is a surface; whether its edge is a connector.
+    """
+
+    request: CellRequest
+    cells: Cells
+    templates: tuple[Arrays, ...]
+    tiles: Bools
+    sheet: Bools
+    connector: Bools
+
+    def of(self, group: int) -> Bools:
+        """Which instances belong to the group."""
+        return np.asarray(self.request.group[self.cells.edge] == group)
+
+
+def sort_out(request: CellRequest, cells: Cells) -> Emitted:
+    """Tell what kind of instance each is."""
+    templates = tuple(_arrays(template.mesh) for template in cells.templates)
+    surface = np.array([template.surface for template in cells.templates], np.bool_)
+    sound = np.array([_is_tile(template) for template in cells.templates], np.bool_)
+    own = np.abs(cells.matrix - request.matrices[cells.edge]).max(axis=(1, 2), initial=0.0) < 1e-6
+    sheet = surface[cells.template]
+    alone = np.bincount(cells.edge[~sheet], minlength=len(request.plane))[cells.edge] == 1
+    connector = request.role[cells.edge] == Role.CONNECTOR
+    return Emitted(request, cells, templates, sound[cells.template] & own & alone, sheet, connector)
+
+
+def _is_tile(template: Template) -> bool:
+    return not template.surface and fills_unit_cube(template.mesh.vertices) and is_solid(*_arrays(template.mesh))
+
+
+def _arrays(mesh: Mesh) -> Arrays:
+    return mesh.vertices, mesh.triangles.astype(np.int64)
+
+
+def solid_of(
+    group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float, extend: bool
+) -> Mesh | None:
+    """Return the closed solid of a support group: cells, connectors and seats; None when it has none."""
+    mine = emitted.of(group) & ~emitted.sheet
+    solids = [as_manifold(*mesh) for mesh in _trunks(emitted, mine & ~emitted.connector)]
+    if not mine.any() and emitted.sheet.any():
+        solids += _extras(emitted, group)
+        return Mesh(*finish(solids)) if solids else None
+    red = layout.connected & (layout.red_group == group)
+    seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
+    base = ways.columns.lo[:, 2] - seat
+    held = ways.held.chosen(red[ways.held.owner[:, 0]])
+    ups = connect(
+        ways.columns, held, ways.surface, base=base, overlap=max(overlap, CONTACT_TOLERANCE), own=ways.own
+    )
+    connectors = [as_manifold(*mesh) for mesh in ups]
+    if extend:
+        ends = [as_manifold(*mesh) for mesh in _ends(emitted, mine & emitted.connector, seat, layout)]
+        connectors = [union(connectors) ^ union(ends)] if connectors and ends else []
+    else:
+        bare = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout)
+        if bare.any():
+            patches = square_patches(ways.columns, np.flatnonzero(bare))
+            connectors.append(as_manifold(*prisms(patches, base[bare], 0.0)))
+    solids += connectors + _extras(emitted, group)
+    return Mesh(*finish(solids)) if solids else None
+
+
+def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
+    extras = [extra for extra in emitted.cells.extra if extra.group == group and not extra.surface]
+    return [as_manifold(*_arrays(extra.mesh)) for extra in extras]
+
+
+def _trunks(emitted: Emitted, chosen: Bools) -> Iterator[Arrays]:
+    """Yield closed meshes of the chosen instances: one for all that tile, one for each other."""
+    cells, request = emitted.cells, emitted.request
+    tiles, frame = chosen & emitted.tiles, request.frame
+    if tiles.any():
+        edge = cells.edge[tiles]
+        square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 1]).astype(np.int64)
+        shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
+        sections = Sections(cells.template[tiles].astype(np.int64), square, shift)
+        grid = Grid(frame.origin, np.array([frame.pitch, frame.pitch, frame.step]))
+        yield join_sections(emitted.templates, sections, grid)
+    for index in np.flatnonzero(chosen & ~emitted.tiles):
+        one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
+        points, triangles, _ = expand(emitted.templates, *one)
+        yield points, triangles
+
+
+def _ends(emitted: Emitted, chosen: Bools, seat: Floats, layout: SupportLayout) -> Iterator[Arrays]:
+    """Yield closed meshes of cells that run on above red squares, and of one more below each."""
+    yield from _trunks(emitted, chosen)
+    lowest = chosen & _on_red(emitted, layout, seat > 0.0)
+    cells = emitted.cells
+    matrix = cells.matrix[lowest].copy()
+    matrix[:, 2, 3] -= emitted.request.frame.step
+    for template, each in zip(cells.template[lowest], matrix, strict=True):
+        points, triangles, _ = expand(emitted.templates, np.array([template]), each[None])
+        yield points, triangles
+
+
+def _squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
+    """Number grid squares."""
+    _, ny, nx = layout.frame.shape
+    return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
+
+
+def _on_red(emitted: Emitted, layout: SupportLayout, chosen: Bools) -> Bools:
+    """Which instances stand on one of the chosen red squares."""
+    request, edge = emitted.request, emitted.cells.edge
+    lower = _squares(layout, request.plane - 1, request.y, request.x)[edge]
+    return np.isin(lower, _squares(layout, *layout.red[chosen].T))
+
+
+def _stands_on_full_square(emitted: Emitted, layout: SupportLayout) -> Bools:
+    """Which red squares have a cell below them whose top is the whole square."""
+    whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in emitted.templates], np.bool_)
+    edge = emitted.cells.edge[emitted.tiles & whole[emitted.cells.template]]
+    request = emitted.request
+    full = _squares(layout, request.plane[edge], request.y[edge], request.x[edge])
+    return np.isin(_squares(layout, *layout.red.T), full)
+
+
+def _top_area(points: Floats, triangles: Ints) -> float:
+    """Area of a template's top, as a share of the square."""
+    corners = points[triangles[(points[triangles, 2] > 1.0 - 1e-9).all(axis=1)]]
+    sides = corners[:, 1:] - corners[:, :1]
+    return float(np.cross(sides[:, 0], sides[:, 1])[:, 2].sum() / 2)
+
+
+def sheet_of(group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float) -> Mesh | None:
+    """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
+    mine = emitted.of(group) & emitted.sheet
+    cells, request = emitted.cells, emitted.request
+    sheets = [_arrays(extra.mesh) for extra in cells.extra if extra.group == group and extra.surface]
+    trunk = mine & ~emitted.connector
+    if trunk.any():
+        sheets.append(expand(emitted.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2])
+    red = np.flatnonzero(layout.connected & (layout.red_group == group))
+    ends = np.flatnonzero(mine & emitted.connector & _on_red(emitted, layout, layout.connected))
+    columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]
+    square = _squares(layout, *layout.red[red].T)
+    order = np.argsort(square, kind="stable")
+    for index in ends:
+        edge = cells.edge[index]
+        number = _squares(layout, request.plane[edge : edge + 1] - 1, request.y[edge], request.x[edge])
+        plan = plan_segments(*emitted.templates[cells.template[index]])
+        matrix = cells.matrix[index]
+        begin, end = (int(np.searchsorted(square[order], number, side=side)[0]) for side in ("left", "right"))
+        for column in red[order[begin:end]]:
+            columns.append(np.full(len(plan), column))
+            segments.append(plan @ matrix[:2, :2].T + matrix[:2, 3])
+    if len(columns) > 1:
+        sheets.append(
+            raise_sheets(
+                ways.columns,
+                np.concatenate(columns),
+                np.concatenate(segments),
+                ways.held,
+                ways.surface,
+                overlap=max(overlap, CONTACT_TOLERANCE),
+            )
+        )
+    return Mesh(*join_sheets(sheets)) if sheets else None
