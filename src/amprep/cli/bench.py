@@ -1,0 +1,61 @@
+"""``amprep bench``: rerun published benchmarks; every answer is judged anew."""
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from amprep import cli
+
+if TYPE_CHECKING:
+    from amprep.pipeline.bench_packing import Result
+
+app = typer.Typer(
+    no_args_is_help=True, help="Benchmarks: rerun published instances; every answer is judged anew."
+)
+
+TimeLimit = Annotated[float, typer.Option("--time-limit", metavar="S", min=0.0, help="Seconds an instance.")]
+PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to run.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the packer's random numbers.")]
+First = Annotated[int, typer.Option("--first", min=1, help="First instance, from 1.")]
+Count = Annotated[int, typer.Option("--count", min=1, help="Number of instances.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.command("mpv")
+def mpv(
+    class_: Annotated[int, typer.Option("--class", metavar="C", min=1, max=8, help="Class, 1 to 8.")],
+    n: Annotated[int, typer.Option("--n", metavar="N", min=1, help="Boxes, usually 50, 100, 150 or 200.")],
+    time_limit: TimeLimit = 10.0,
+    packer: PackerName = "extreme-points",
+    first: First = 1,
+    count: Count = 10,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Pack the instances of Martello, Pisinger and Vigo (2000) into as few builds as possible."""
+    from amprep.pipeline.bench_instances import mpv_instance
+    from amprep.pipeline.bench_packing import run_instances
+
+    instances = [mpv_instance(class_, n, index) for index in range(first, first + count)]
+    results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
+    record = {"benchmark": "mpv", "class": class_, "n": n, "packer": packer, "time_limit_s": time_limit}
+    _print(record, results, as_json=as_json)
+
+
+def _tell(as_json: bool) -> "Callable[[Result], None]":
+    """Return what prints a result as soon as it is there."""
+    return (lambda _: None) if as_json else (lambda result: typer.echo(result.line))
+
+
+def _print(record: dict[str, Any], results: "list[Result]", *, as_json: bool) -> None:
+    """Print the means, or all as JSON; exit code 1 when an answer does not stand up to the judge."""
+    from amprep.pipeline.bench_packing import means
+
+    record |= {"mean": means(results), "instances": [result.record for result in results]}
+    if as_json:
+        typer.echo(json.dumps(record, indent=2))
+    else:
+        typer.echo("mean " + ", ".join(f"{name} {value:.6g}" for name, value in record["mean"].items()))
+    raise typer.Exit(cli.DONE if all(result.validated for result in results) else cli.INCOMPLETE)

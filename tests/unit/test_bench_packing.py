@@ -1,0 +1,45 @@
+"""The benchmarks' instances are the published ones, and the runner reports what the judge finds."""
+
+import hashlib
+import json
+
+import numpy as np
+from typer.testing import CliRunner
+
+from amprep.cli.app import app
+from amprep.pipeline.bench_instances import MPV_SIDE, mpv_instance
+
+PUBLISHED = "0e6d9f5cd1e8d8f5b0897c27c654c1f3d976713423f5c756511f64ec22eb9419"
+
+
+def sizes(class_, n, index):
+    items = mpv_instance(class_, n, index).problem.items
+    return np.array([item.volume.hi[0] for item in items]).astype(int).tolist()
+
+
+def test_the_first_boxes_of_class_1_are_as_published():
+    assert sizes(1, 50, 1)[:3] == [[39, 85, 72], [11, 84, 96], [36, 10, 34]]
+
+
+def test_the_320_instances_have_the_digest_of_the_published_set():
+    # one text per instance: "n W H D", then "w h d" per box, as in OR-Datasets' Martello2000
+    sha = hashlib.sha256()
+    for class_, side in MPV_SIDE.items():
+        for n in (50, 100, 150, 200):
+            for index in range(1, 11):
+                rows = [[n, side, side, side], *sizes(class_, n, index)]
+                sha.update("".join(" ".join(map(str, row)) + "\n" for row in rows).encode())
+    assert sha.hexdigest() == PUBLISHED
+
+
+def test_mpv_prints_judged_instances_as_json():
+    result = CliRunner().invoke(
+        app, ["bench", "mpv", "--class", "1", "--n", "10", "--count", "2", "--time-limit", "2", "--json"]
+    )
+    record = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert [instance["name"] for instance in record["instances"]] == ["mpv_1_010_01", "mpv_1_010_02"]
+    for instance in record["instances"]:
+        assert instance["validated"] and instance["bins"] >= instance["bound"]
+        assert instance["status"] in {"optimal", "feasible"}
+        assert 0 <= instance["seconds"] < 5
