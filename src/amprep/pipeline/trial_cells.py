@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from amprep.checks.cells import check_bodies
+from amprep.checks.coverage import check_coverage
 from amprep.checks.templates import check_cells
 from amprep.checks.violation import Violation
 from amprep.hookspecs import CellEmitter
@@ -34,14 +35,13 @@ PITCH = 2.0
 
 
 def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
-    """Yield the cases of one cell: the templates by themselves, and supports made of them."""
+    """Yield the cases of one cell: supports for two shapes, in each of the two ways they may end."""
     emit = _emitter(host, listed)
-    for name, part in (("a table top", _slab(20.0, 12.0)), ("two storeys", _two_slabs())):
+    for name, part in (("a table top", _slab(10.0, 12.0)), ("two storeys", _two_slabs())):
         layout = _layout(host, part)
-        for surfaces in (True, False):
-            words = f"{name}, {'walls without thickness allowed' if surfaces else 'solids only'}"
-            run, judge = _building(layout, part, emit, surfaces)
-            yield Case(words, run, judge, timed=False)
+        for connector in ("full", "extend"):
+            run, judge = _building(layout, part, emit, connector)
+            yield Case(f"{name}, connectors {connector}", run, judge, timed=False)
 
 
 def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
@@ -50,7 +50,7 @@ def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, 
 
 
 def _building(
-    layout: SupportLayout, part: PlacedPart, emit: Callable[[CellRequest, Stop], Cells], surfaces: bool
+    layout: SupportLayout, part: PlacedPart, emit: Callable[[CellRequest, Stop], Cells], connector: str
 ) -> tuple[Callable[[Stop], Any], Callable[[Any], Sequence[Violation]]]:
     """Return how to build the supports of `part`, and how to judge what was emitted and what was built."""
 
@@ -67,8 +67,8 @@ def _building(
             (part,),
             recorded,
             overlap=0.1,
-            connector="full",
-            allow_surface=surfaces,
+            connector=connector,
+            allow_surface=True,
             stop=stop,
             report=silent,
         )
@@ -80,12 +80,13 @@ def _building(
         if not bodies:
             found.append(Violation("supports", part.label, "expected supports, got none"))
         settings = BuildSettings("trial", _SPACE, reach=1.5 * PITCH)
-        return [*found, *check_bodies(Build(settings, (part,), bodies), Stop())]
+        build = Build(settings, (part,), bodies)
+        return [*found, *check_bodies(build, Stop()), *check_coverage(build)]
 
     return run, judge
 
 
-_SPACE = BuildVolume(np.array([40.0, 40.0, 40.0]))
+_SPACE = BuildVolume(np.array([30.0, 30.0, 30.0]))
 
 
 def _layout(host: Host, part: PlacedPart) -> SupportLayout:
@@ -105,8 +106,8 @@ def _slab(side: float, height: float) -> PlacedPart:
 
 def _two_slabs() -> PlacedPart:
     """Return a slab above a smaller one: the supports of the upper one have to go around the lower one."""
-    lower = box_mesh(np.array([14.0, 14, 8]), np.array([22.0, 22, 10]))
-    upper = box_mesh(np.array([10.0, 10, 24]), np.array([26.0, 26, 26]))
+    lower = box_mesh(np.array([12.0, 12, 4]), np.array([16.0, 16, 6]))
+    upper = box_mesh(np.array([10.0, 10, 16]), np.array([18.0, 18, 18]))
     vertices = np.concatenate([lower.vertices, upper.vertices])
     return _placed("slabs", Mesh(vertices, np.concatenate([lower.triangles, upper.triangles + 8])))
 
