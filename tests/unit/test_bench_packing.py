@@ -4,10 +4,13 @@ import hashlib
 import json
 
 import numpy as np
+import pytest
 from typer.testing import CliRunner
 
 from amprep.cli.app import app
+from amprep.errors import InputError
 from amprep.pipeline.bench_instances import MPV_SIDE, mpv_instance
+from amprep.pipeline.bench_loading import read_loading
 
 PUBLISHED = "0e6d9f5cd1e8d8f5b0897c27c654c1f3d976713423f5c756511f64ec22eb9419"
 
@@ -40,6 +43,45 @@ def test_mpv_prints_judged_instances_as_json():
     assert result.exit_code == 0
     assert [instance["name"] for instance in record["instances"]] == ["mpv_1_010_01", "mpv_1_010_02"]
     for instance in record["instances"]:
-        assert instance["validated"] and instance["bins"] >= instance["bound"]
+        assert instance["validated"]
+        assert instance["bins"] >= instance["bound"]
         assert instance["status"] in {"optimal", "feasible"}
         assert 0 <= instance["seconds"] < 5
+
+
+FLAGS = {"ROTATION_XYZ": "1", "ROTATION_ZXY": "1"}
+
+
+def loading(tmp_path, **changes):
+    box = {"X": "3", "Y": "2", "Z": "1", "COPIES": "2", **FLAGS, **changes}
+    file = tmp_path / "two.json"
+    file.write_text(
+        json.dumps({"instances": [{"container": {"X": "3", "Y": "2", "Z": "2"}, "items": [box]}]})
+    )
+    return file
+
+
+def test_flags_say_which_side_lies_along_which_axis(tmp_path):
+    (instance,) = read_loading(loading(tmp_path))
+    turned = [np.abs(matrix) @ [3, 2, 1] for matrix in instance.problem.items[0].orientations.matrices]
+    assert [side.tolist() for side in turned] == [[3, 2, 1], [1, 3, 2]]
+
+
+def test_two_boxes_that_just_fill_a_container_are_packed(tmp_path):
+    result = CliRunner().invoke(app, ["bench", "container-loading", str(loading(tmp_path)), "--json"])
+    record = json.loads(result.stdout)
+    assert record["instances"][0]["value"] == 12
+    assert record["instances"][0]["status"] == "optimal"
+
+
+@pytest.mark.parametrize("change", [{"X": "nan"}, {"X": "-3"}, {"COPIES": "1e9"}, {"COPIES": "100001"}])
+def test_impossible_boxes_are_refused_in_a_line(tmp_path, change):
+    with pytest.raises(InputError, match="container-loading"):
+        read_loading(loading(tmp_path, **change))
+
+
+def test_other_files_are_refused_in_a_line(tmp_path):
+    for text in ("", "[]", "{}", '{"instances": 3}', '{"instances": [{"items": []}]}'):
+        (tmp_path / "other.json").write_text(text)
+        with pytest.raises(InputError, match="expected"):
+            read_loading(tmp_path / "other.json")

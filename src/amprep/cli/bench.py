@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -41,6 +42,31 @@ def mpv(
     instances = [mpv_instance(class_, n, index) for index in range(first, first + count)]
     results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
     record = {"benchmark": "mpv", "class": class_, "n": n, "packer": packer, "time_limit_s": time_limit}
+    _print(record, results, as_json=as_json)
+
+
+@app.command("container-loading")
+def container_loading(
+    file: Annotated[Path, typer.Argument(help="JSON file of instances: container, boxes, rotation flags.")],
+    time_limit: TimeLimit = 30.0,
+    packer: PackerName = "extreme-points",
+    first: First = 1,
+    count: Annotated[int, typer.Option("--count", min=0, help="Number of instances; 0: all.")] = 0,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Fill one container as full as possible, instance by instance."""
+    from amprep.pipeline.bench_loading import read_loading
+    from amprep.pipeline.bench_packing import run_instances
+
+    instances = read_loading(file)[first - 1 : first - 1 + count if count else None]
+    results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
+    record = {
+        "benchmark": "container-loading",
+        "file": file.name,
+        "packer": packer,
+        "time_limit_s": time_limit,
+    }
     _print(record, results, as_json=as_json)
 
 
