@@ -20,7 +20,7 @@ from amprep.model.volume import Boxes, ConvexPieces
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-TOLERANCE = CONTACT_TOLERANCE * (1.0 + 1e-6)
+TOLERANCE = CONTACT_TOLERANCE * (1.0 + 1e-5)
 
 _CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
 

@@ -32,7 +32,7 @@ def check_volume(part: Part, volume: BoundingVolume) -> list[Violation]:
     if not isinstance(volume, Boxes) and thickness(outside) <= CONTACT_TOLERANCE:
         return []
     box = outside.bounding_box()
-    return [_violation(part, f"{outside.volume():.4g} mm3 of it", np.array(box[:3]), np.array(box[3:]))]
+    return [_violation(part, f"{outside.volume():.3g} mm3 of it", np.array(box[:3]), np.array(box[3:]))]
 
 
 def _in_one_box(part: Part, volume: Boxes) -> list[Violation]:

@@ -41,7 +41,7 @@ from amprep.kernels.box_places import (
 )
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _shorten(p, points, box, placed):
     """Shorten the residual space of a point in place by a box; say whether the box covers the point."""
     x, y, z = points[p, 0] + PAIR_SLACK, points[p, 1] + PAIR_SLACK, points[p, 2] + PAIR_SLACK
@@ -57,7 +57,7 @@ def _shorten(p, points, box, placed):
     return in_x and in_y and in_z
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _fall(x, y, z, axis, room, placed, count):
     """Return where a point comes to rest that moves down `axis`: on a box or the wall."""
     rest = room[axis]
@@ -199,10 +199,14 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer
                 found, first, last = 0, first_box[v], first_box[v + 1]
                 # a single box that is longer than a point's residual space cannot lie there
                 least = -slack if last - first == 1 else -np.inf
-                cursor[WORK] += cursor[POINTS]
-                for p in range(cursor[POINTS]):
-                    over_x, over_y = points[p, 3] - variants[v, 0], points[p, 4] - variants[v, 1]
-                    over_z = points[p, 5] - variants[v, 2]
+                count, size_x, size_y, size_z = cursor[POINTS], variants[v, 0], variants[v, 1], variants[v, 2]
+                cursor[WORK] += count
+                for p in range(count):
+                    over_x, over_y, over_z = (
+                        points[p, 3] - size_x,
+                        points[p, 4] - size_y,
+                        points[p, 5] - size_z,
+                    )
                     if over_x >= least and over_y >= least and over_z >= least:
                         for k in range(first, last):
                             candidates[found, 0] = points[p, 0] - boxes[k, 0]

@@ -91,7 +91,8 @@ def _corners(triangles, i):
 def least_gap(triangles, others, widest, limit):
     """Return the least distance of two sets of triangles ``(n, 3, 3)``, at most `limit`.
 
-    When they cross, it is less the depth.     `others` are sorted by their least x; `widest` is the greatest extent of one of them in x.
+    When they cross, it is less the depth. `others` are sorted by their least x; `widest` is the greatest
+    extent of one of them in x.
     """
     least = limit
     starts = np.empty(others.shape[0])

@@ -76,7 +76,7 @@ def empty_space(problem: PackingProblem) -> Space:
         zone_lo=problem.space.zone_lo,
         zone_hi=problem.space.zone_hi,
         flat=not problem.stacking,
-        slack=CONTACT_TOLERANCE,
+        slack=CONTACT_TOLERANCE + 1e-9,  # rounding does not decide what just fits
     )
 
 
@@ -96,7 +96,16 @@ def boxes_of(volume: BoundingVolume) -> Boxes:
 
 
 def prepare(problem: PackingProblem) -> Scene:
-    """Return the problem as arrays."""
+    """Return the problem as arrays.
+
+    Raises
+    ------
+    AmprepError
+        If a volume is not of boxes, or a value is negative.
+    """
+    for item in problem.items:
+        if not item.value >= 0.0:
+            raise AmprepError(f"part {item.part}: its value must be at least 0, got {item.value:g}")
     space = empty_space(problem)
     known: dict[tuple[bytes, ...], int] = {}
     kinds: list[tuple[Variant, ...]] = []

@@ -28,7 +28,7 @@ def passes(scene: Scene) -> list[Pass]:
 
 def _styles(scene: Scene) -> Iterator[Floats]:
     """Yield the ways to choose places that suit the room."""
-    x, y, z = (scene.space.hi - scene.space.lo).tolist()
+    x, y, z = np.maximum(scene.space.hi - scene.space.lo, 1e-9).tolist()
     rows = [1.0 / x, 1e3 / y, 1e6 / z]
     columns = [1e3 / x, 1.0 / y, 1e6 / z]
     if scene.space.radius:
@@ -72,8 +72,8 @@ def _orders(scene: Scene) -> Iterator[Indices]:
 
 def _keys(scene: Scene, free: Indices) -> Iterator[tuple[Floats, ...]]:
     """Yield sort keys, greatest first; the first key of a tuple rules."""
-    size = np.array([variants[0].size for variants in scene.kinds])[scene.kind[free]]
-    room = scene.space.hi - scene.space.lo
+    size = np.array([variants[0].size for variants in scene.kinds]).reshape(-1, 3)[scene.kind[free]]
+    room = np.maximum(scene.space.hi - scene.space.lo, 1e-9)
     volume, area = size.prod(axis=1), size[:, 0] * size[:, 1]
     measure = area if scene.space.flat else volume
     if scene.problem.objective == "fill":

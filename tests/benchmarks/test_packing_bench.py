@@ -1,0 +1,103 @@
+"""Packing benchmarks: builds and time on instances of Martello, Pisinger and Vigo, and on one plate.
+
+Run with ``pytest tests/benchmarks/test_packing_bench.py``; rivals take part when they can be imported.
+"""
+
+import importlib
+
+import numpy as np
+import pytest
+
+from amprep.checks.packing import check_packing
+from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
+from amprep.plugins.packing.extreme_points import pack_extreme_points
+from amprep.plugins.packing.params import ExtremePointsParams
+
+SIDE = {1: 100, 4: 100, 5: 100, 6: 10, 7: 40, 8: 100}
+
+
+def instance(kind, n, index):
+    """Sizes ``(n, 3)`` by the authors' generator (Operations Research 48, 2000)."""
+    state, side = ((index + n) << 16) + 0x330E, SIDE[kind]
+
+    def draw(first, last):
+        nonlocal state
+        state = (0x5DEECE66D * state + 0xB) % 2**48
+        return first + (state >> 17) % (last - first + 1)
+
+    short, long = (1, side // 2), (2 * side // 3, side)
+    ranges = {1: (short, long, long), 2: (long, short, long), 3: (long, long, short), 5: (short,) * 3}
+    ranges |= {4: ((side // 2, side),) * 3, 6: ((1, 10),) * 3, 7: ((1, 35),) * 3, 8: ((1, 100),) * 3}
+    sizes = []
+    for _ in range(n):
+        other = draw(1, 10) if kind <= 5 else kind
+        sizes.append([draw(*r) for r in ranges[other if other <= 5 else kind]])
+    return sizes
+
+
+def problem(sizes, side, **rules):
+    items = [Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), 1.0) for i, s in enumerate(sizes)]
+    return PackingProblem(tuple(items), BuildVolume(np.full(3, float(side))), **rules)
+
+
+def pack(task):
+    rng = np.random.default_rng(0)
+    return pack_extreme_points(task, params=ExtremePointsParams(), rng=rng, stop=Stop(), report=silent)
+
+
+@pytest.mark.parametrize("kind", sorted(SIDE))
+@pytest.mark.parametrize("n", [50, 100, 200])
+def test_mean_builds_of_ten_instances(benchmark, kind, n):
+    tasks = [problem(instance(kind, n, index), SIDE[kind]) for index in range(1, 11)]
+    pack(tasks[0])
+    packings = benchmark.pedantic(lambda: [pack(task) for task in tasks], rounds=1)
+    assert all(check_packing(task, packing) == [] for task, packing in zip(tasks, packings, strict=True))
+    benchmark.extra_info["builds"] = float(np.mean([len(packing.builds) for packing in packings]))
+    benchmark.extra_info["bound"] = float(np.mean([packing.bound for packing in packings]))
+
+
+def test_three_thousand_small_boxes_on_plates(benchmark):
+    sizes = np.random.default_rng(1).integers(3, 15, (3000, 3)).tolist()
+    task = problem(sizes, 250, clearance=1.0, stacking=False)
+    packing = benchmark.pedantic(lambda: pack(task), rounds=1, warmup_rounds=1)
+    assert check_packing(task, packing) == []
+    benchmark.extra_info["builds"], benchmark.extra_info["bound"] = len(packing.builds), packing.bound
+
+
+def py3dbp_builds(sizes, side):
+    """Builds of `py3dbp`, which is kept from turning boxes by leaving it one rotation."""
+    py3dbp = pytest.importorskip("py3dbp")
+    importlib.import_module("py3dbp.constants").RotationType.ALL[:] = [0]
+    left, builds = [py3dbp.Item(str(i), *size, 1) for i, size in enumerate(sizes)], 0
+    while left:
+        packer = py3dbp.Packer()
+        packer.add_bin(py3dbp.Bin("bin", side, side, side, 1e9))
+        for item in left:
+            packer.add_item(item)
+        packer.pack(bigger_first=True)
+        fitted = {item.name for item in packer.bins[0].items}
+        left, builds = [item for item in left if item.name not in fitted], builds + 1
+    return builds
+
+
+def packvium_builds(sizes, side):
+    """Builds of `packvium` with its balanced settings and one rotation."""
+    packvium = pytest.importorskip("packvium")
+    as_given = importlib.import_module("packvium.geometry").Rotation.all()[:1]
+    dimensions = [packvium.Dimensions.mm(*map(str, size)) for size in [*sizes, (side,) * 3]]
+    items = [
+        packvium.Item.create(str(i), d, allowed_rotations=as_given) for i, d in enumerate(dimensions[:-1])
+    ]
+    containers = [packvium.Container.create("bin", dimensions[-1])]
+    packer = packvium.Packer(packvium.PackingConfig.balanced())
+    return len(packer.pack(items=items, containers=containers).containers)
+
+
+@pytest.mark.parametrize("rival", [py3dbp_builds, packvium_builds])
+@pytest.mark.parametrize("kind", [1, 5])
+def test_no_rival_needs_fewer_builds(benchmark, rival, kind):
+    tasks = [instance(kind, 50, index) for index in range(1, 11)]
+    theirs = benchmark.pedantic(lambda: [rival(sizes, SIDE[kind]) for sizes in tasks], rounds=1)
+    ours = [len(pack(problem(sizes, SIDE[kind])).builds) for sizes in tasks]
+    benchmark.extra_info["builds"] = float(np.mean(theirs))
+    assert np.mean(ours) <= np.mean(theirs)
