@@ -181,6 +181,16 @@ def test_supports_are_shared_only_where_there_is_no_other_way():
     assert apart.group_parts == ((1,), (2,))
 
 
+def test_two_parts_may_need_the_same_square():
+    """Two boxes with 0.2 mm between them, in the middle of a row of cubes, share the squares below it."""
+    pair = placed(box((4.4, 3, 2), (10, 10, 20)), box((4.4, 3, 2), (14.6, 10, 20)))
+    plan = layout(pair)
+    assert plan.connected.all()
+    _, count = np.unique(plan.red, axis=0, return_counts=True)
+    assert (count == 2).sum() == 3
+    assert plan.group_parts == ((0, 1),)
+
+
 def test_one_network_may_be_asked_for():
     plan = layout(two_balls(), share_between_parts="allow")
     assert plan.connected.all()

@@ -19,6 +19,8 @@ PROMISE = "coverage"
 _NUDGE = 0.01
 """mm; a contact is looked for this far below a face, and a face this far above a support."""
 
+_MOST_CELLS = 4_000_000
+
 _JUDGE_ANGLE_DEG = 0.02
 """What the judge grants at the threshold, so that rounding in a file breaks no promise."""
 
@@ -141,26 +143,48 @@ def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
 def _embedded(
     points: Floats, mesh: Mesh, bodies: Sequence[SupportBody], spacing: float, reach: float
 ) -> Floats:
-    """Return points on the edges of supports that lie in or on the part, near `points`."""
+    """Return points on the edges of supports that lie in or on the part, about `reach` from `points`."""
     found = [np.empty((0, 3))]
     for body in bodies:
         lo, hi = body.mesh.bounds
         near = points[_between(points, lo - reach, hi + reach)]
         if len(near):
-            on_edges = _edge_points(body.mesh, near.min(axis=0) - reach, near.max(axis=0) + reach, spacing)
-            on_edges = on_edges[_nearest(near, on_edges, reach)]
+            low = np.maximum(near.min(axis=0) - reach, mesh.bounds[0] - _NUDGE)
+            high = np.minimum(near.max(axis=0) + reach, mesh.bounds[1] + _NUDGE)
+            on_edges = _edge_points(body, low, high, spacing)
+            on_edges = on_edges[_about(near, on_edges, reach)]
             upper = np.add(on_edges, (0.0, 0.0, _NUDGE))
             found.append(on_edges[inside(upper, mesh.vertices, mesh.triangles)])
     return np.concatenate(found)
 
 
-def _edge_points(mesh: Mesh, lo: Floats, hi: Floats, spacing: float) -> Floats:
-    """Return points along the mesh's edges that can meet the box from `lo` to `hi`."""
-    triangles = mesh.triangles[_boxes_meet(mesh, lo, hi)]
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
-    key = np.unique(ends.min(axis=1) * len(mesh.vertices) + ends.max(axis=1))
-    start, end = (mesh.vertices[index] for index in np.divmod(key, len(mesh.vertices)))
-    points, _ = sample_segments(start, end, spacing)
+def _about(targets: Floats, points: Floats, reach: float) -> Bools:
+    """Tell which points are in a cell of a coarse grid with one of `targets` in it or beside it."""
+    from scipy.ndimage import binary_dilation
+
+    corner = targets.min(axis=0) - reach
+    extent = targets.max(axis=0) + reach - corner
+    cell = max(reach, float(np.cbrt(np.prod(extent) / _MOST_CELLS)))
+    shape = tuple((extent // cell).astype(int) + 1)
+    taken = np.zeros(shape, np.bool_)
+    taken[tuple(((targets - corner) // cell).astype(int).T)] = True
+    taken = binary_dilation(taken, np.ones((3, 3, 3), np.bool_))
+    within = np.flatnonzero(_between(points, corner, corner + extent))
+    about = np.zeros(len(points), np.bool_)
+    about[within] = taken[tuple(((points[within] - corner) // cell).astype(int).T)]
+    return about
+
+
+def _edge_points(body: SupportBody, lo: Floats, hi: Floats, spacing: float) -> Floats:
+    """Return points along the edges that can meet the box from `lo` to `hi`.
+
+    A closed surface has every edge in both directions and only one of them is taken.
+    """
+    triangles = body.mesh.triangles[_boxes_meet(body.mesh, lo, hi)]
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    once = np.ones(len(start), np.bool_) if body.surface else start < end
+    vertices = body.mesh.vertices
+    points, _ = sample_segments(vertices[start[once]], vertices[end[once]], spacing)
     return points[_between(points, lo, hi)]
 
 

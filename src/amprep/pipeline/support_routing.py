@@ -62,6 +62,10 @@ class Network:
         Notes the reasons of those that stay unconnected, and returns the edges. The router sees only the
         block of cubes that paths can reach: one from plane p strays at most p squares.
         """
+        shut = np.isin(_keys(_below(self.red.square[reds])), _keys(closed))
+        for red in reds[shut]:
+            self.reasons[red] = ENCLOSED
+        reds = reds[~shut]
         _, first, number = np.unique(_keys(self.red.square[reds]), return_index=True, return_inverse=True)
         square = self.red.square[reds[first]]
         if not len(square):
@@ -122,7 +126,7 @@ def route_apart(network: Network, report: Report) -> Routed:
 
     Parts come by the height of their highest red square, lowest first: the less height, the less room to
     give way. Cubes right below the red squares of other parts are kept free for these. Red squares that stay
-    unconnected are then routed once more with the cubes of other supports open, so they share where they must.
+    unconnected are then routed once more with the cubes of other supports open: they share where they must.
     """
     red = network.red
     above = red.square[:, 0] > 0
