@@ -31,7 +31,7 @@ def builds_bound(scene: Scene) -> int:
     if not len(counted):
         return 0
     bound = 1
-    for amounts in _amounts(scene):
+    for amounts in amounts_of(scene):
         bound = max(bound, int(np.ceil(amounts.taken[counted].sum() / amounts.room - 1e-9)))
     size, room, gap = _core_sizes(scene), _core_room(scene), scene.problem.clearance
     return max(bound, l2_bound(size[counted], room, gap))
@@ -43,7 +43,7 @@ def fill_bound(scene: Scene) -> float:
     value = np.array([max(item.value, 0.0) for item in items])
     inside = ~scene.too_large
     bound = float(value[inside].sum())
-    for taken, room in _amounts(scene):
+    for taken, room in amounts_of(scene):
         weight = taken[scene.kind]
         order = np.flatnonzero(inside)[
             np.argsort(-value[inside] / np.maximum(weight[inside], 1e-12), kind="stable")
@@ -54,7 +54,7 @@ def fill_bound(scene: Scene) -> float:
     return bound
 
 
-def _amounts(scene: Scene) -> list[Amounts]:
+def amounts_of(scene: Scene) -> list[Amounts]:
     """Return the volumes, and without stacking the plate areas."""
     dimensions = (3, 2) if scene.space.flat else (3,)
     return [Amounts(_taken(scene, d), _available(scene, d)) for d in dimensions]

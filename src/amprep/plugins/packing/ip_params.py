@@ -1,0 +1,51 @@
+"""Parameters of the packers that solve integer programs."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class IpParams:
+    """Parameters of `ip`.
+
+    Attributes
+    ----------
+    solver
+        pulp's name of the solver. Only HiGHS heeds `effort`, `threads` and `seed`, takes the heuristic's
+        packing as a start and tells its bound; any other one ends at the time limit alone.
+    effort
+        Millions of branch-and-bound nodes times direction variables after which the solver is stopped.
+    directions
+        A model with more direction variables is not built; the heuristic's packing is the answer then.
+    sharing
+        The alternative copies of an item, one per orientation, share one position and one set of directions;
+        off: each copy has its own (thesis 2.1).
+    symmetry
+        Equal items, builds and mirror images are put in one order.
+    tighten
+        Each big-M is the least one for its pair, directions without room are left out, no two opposite
+        directions hold, and what is in a build does not exceed its volume; off: as in the thesis.
+    threads
+        Of the solver; with more than one the answer may differ from run to run.
+    seed
+        Of the solver.
+    """
+
+    solver: str = "HiGHS"
+    effort: float = 0.5
+    directions: int = 20_000
+    sharing: bool = True
+    symmetry: bool = True
+    tighten: bool = True
+    threads: int = 1
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        _at_least("effort", self.effort, 0)
+        _at_least("directions", self.directions, 0)
+        _at_least("threads", self.threads, 1)
+        _at_least("seed", self.seed, 0)
+
+
+def _at_least(name: str, value: float, least: float) -> None:
+    if not value >= least:
+        raise ValueError(f"{name} must be at least {least}, got {value}")
