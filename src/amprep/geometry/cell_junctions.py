@@ -30,11 +30,14 @@ class Sections(NamedTuple):
         ``(n, 3)`` int64 (x, y, layer): the section's upper square, and the layer it lies in.
     shift
         ``(n, 2)`` int64 (dx, dy) from the upper to the lower square, each -1, 0 or 1.
+    kind
+        ``(n,)`` int64, 0 for cells, 1 for what stands in the same place as a cell.
     """
 
     template: Ints
     square: Ints
     shift: Ints
+    kind: Ints
 
 
 class Grid(NamedTuple):
@@ -61,10 +64,10 @@ def join_sections(templates: Sequence[Arrays], sections: Sections, grid: Grid) -
     points, triangles
         mm, as a build file keeps them.
     """
-    cluster = connected(len(sections.template), find_overlaps(sections.square, sections.shift))
+    cluster = connected(len(sections.template), find_overlaps(sections.square, sections.shift, sections.kind))
     known: dict[Pattern, Arrays] = {}
     for tries in range(MOST_ROUNDS):
-        patterns, pattern, corner = find_patterns(sections.template, sections.square, sections.shift, cluster)
+        patterns, pattern, corner = find_patterns(*sections, cluster)
         for each in patterns:
             if each not in known:
                 known[each] = unite(templates, each)

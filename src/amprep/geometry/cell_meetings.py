@@ -18,7 +18,7 @@ _PLANES = (
 """The planes in which prisms meet: normals, in units of cubes, and the two axes that place a point in the plane."""
 
 
-def find_overlaps(square: Ints, shift: Ints) -> Ints:
+def find_overlaps(square: Ints, shift: Ints, kind: Ints) -> Ints:
     """Find pairs of sections whose prisms overlap, ``(k, 2)``.
 
     At height w above its lower square a section's cross-section has moved by (1 - w) of its shift: two of a
@@ -28,20 +28,22 @@ def find_overlaps(square: Ints, shift: Ints) -> Ints:
     ----------
     square, shift
         ``(n, 3)`` x, y, layer of the upper square and ``(n, 2)`` dx, dy to the lower one.
+    kind
+        ``(n,)`` 0 or 1: two sections in the same place overlap when they are of different kinds.
     """
     if len(square) == 0:
         return np.empty((0, 2), np.int64)
     place = square - square.min(axis=0) + (2, 2, 0)
     extent = place.max(axis=0) + 3
-    direction = (shift[:, 0] + 1) * 3 + shift[:, 1] + 1
-    key = _packed(place, extent) * 9 + direction
+    direction = kind * 9 + (shift[:, 0] + 1) * 3 + shift[:, 1] + 1
+    key = _packed(place, extent) * 18 + direction
     order = np.argsort(key)
     pairs = [np.empty((0, 2), np.int64)]
     directions = np.unique(direction).tolist()
     for this, other in ((a, b) for a in directions for b in directions):
         mine = np.flatnonzero(direction == this)
         for x, y in _overlapping_offsets(this, other):
-            sought = _packed(place[mine] + (x, y, 0), extent) * 9 + other
+            sought = _packed(place[mine] + (x, y, 0), extent) * 18 + other
             at = np.minimum(np.searchsorted(key, sought, sorter=order), len(key) - 1)
             hit = key[order[at]] == sought
             pairs.append(np.column_stack([mine[hit], order[at[hit]]]))
@@ -54,7 +56,7 @@ def _packed(place: Ints, extent: Ints) -> Ints:
 
 def _overlapping_offsets(this: int, other: int) -> list[tuple[int, int]]:
     """Offsets (x, y) at which a section of direction `other` overlaps one of direction `this`."""
-    drift = np.array(divmod(other, 3)) - divmod(this, 3)
+    drift = np.array(divmod(other % 9, 3)) - divmod(this % 9, 3)
     moved = np.linspace(0.001, 0.999, 9)[:, None] * drift
     reach = range(-2, 3)
     found = [(x, y) for x in reach for y in reach if (np.abs(moved + (x, y)) < 1.0).all(axis=1).any()]

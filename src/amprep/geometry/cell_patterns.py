@@ -20,14 +20,14 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 Pattern = tuple[tuple[int, ...], ...]
-"""Rows (template, x, y, layer, dx, dy), sorted, counted from the pattern's corner."""
+"""Rows (template, x, y, layer, dx, dy, kind), sorted, counted from the pattern's corner."""
 
 _LEVEL = 1e-7
 """Share of a cube: closer than this is the same place."""
 
 
 def find_patterns(
-    template: Ints, square: Ints, shift: Ints, cluster: Ints
+    template: Ints, square: Ints, shift: Ints, kind: Ints, cluster: Ints
 ) -> tuple[list[Pattern], Ints, Ints]:
     """Find equal clusters.
 
@@ -38,7 +38,7 @@ def find_patterns(
     pattern, corner
         ``(k,)`` of each cluster, and its least x, y and layer ``(k, 3)``.
     """
-    rows = np.column_stack([template, square, shift])
+    rows = np.column_stack([template, square, shift, kind])
     order = np.lexsort((*rows.T, cluster))
     rows, cluster = rows[order], cluster[order]
     begins = np.flatnonzero(np.diff(cluster, prepend=-1))
@@ -63,7 +63,7 @@ def unite(templates: Sequence[Arrays], pattern: Pattern) -> Arrays:
     what stands on them.
     """
     rows = np.array(pattern, np.int64)
-    template, square, shift = rows[:, 0], rows[:, 1:4], rows[:, 4:]
+    template, square, shift = rows[:, 0], rows[:, 1:4], rows[:, 4:6]
     matrix = np.zeros((len(rows), 3, 4))
     matrix[:, [0, 1, 2], [0, 1, 2]] = 1.0
     matrix[:, :2, 2] = -shift
@@ -75,8 +75,8 @@ def unite(templates: Sequence[Arrays], pattern: Pattern) -> Arrays:
     place = square.copy()
     place[:, :2] += shift * square[:, 2:]
     solids: list[Manifold] = []
-    for each in np.unique(shift, axis=0):
-        same = (shift == each).all(axis=1)
+    for each in np.unique(rows[:, 4:], axis=0):
+        same = (rows[:, 4:] == each).all(axis=1)
         tiles = Tiles(template[same], place[same], matrix[same])
         solids += [as_manifold(*mesh) for mesh in tile(templates, tiles)]
     whole = stable_union(solids, _LEVEL)
@@ -90,9 +90,16 @@ def _moved(mesh: Arrays, matrix: Floats) -> Arrays:
 
 
 def _with_own_ends(whole: Arrays, cells: Sequence[Arrays]) -> Arrays:
-    """Replace the triangles at the top and bottom by those of the cells, unless that leaves gaps."""
-    parts = [(whole[0], whole[1][~_ends(whole)])]
-    parts += [(points, triangles[_ends((points, triangles))]) for points, triangles in cells]
+    """Replace the triangles at the bottom, and those at the top, by those of the cells where that closes."""
+    for height in (0.0, 1.0):
+        parts = [(whole[0], whole[1][~_at(whole, height)])]
+        parts += [(points, triangles[_at((points, triangles), height)]) for points, triangles in cells]
+        whole = _put_together(parts) or whole
+    return whole
+
+
+def _put_together(parts: Sequence[Arrays]) -> Arrays | None:
+    """Return the parts as one mesh, or None if that is not closed."""
     offsets = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
     points = np.vstack([points for points, _ in parts])
     triangles = np.vstack([each + offset for (_, each), offset in zip(parts, offsets, strict=True)])
@@ -100,16 +107,15 @@ def _with_own_ends(whole: Arrays, cells: Sequence[Arrays]) -> Arrays:
     stays = cancel_opposite(corners)
     corners = corners[stays]
     if not _is_closed(corners):
-        return whole
+        return None
     place = np.empty((int(corners.max()) + 1, 3))
     place[corners] = points[triangles[stays]]
     return compact(place, corners)
 
 
-def _ends(mesh: Arrays) -> Bools:
-    """Which triangles lie in the bottom or in the top of the layer."""
-    height = mesh[0][mesh[1], 2]
-    return np.asarray((height < _LEVEL).all(axis=1) | (height > 1.0 - _LEVEL).all(axis=1))
+def _at(mesh: Arrays, height: float) -> Bools:
+    """Which triangles lie in one end of the layer."""
+    return np.asarray((np.abs(mesh[0][mesh[1], 2] - height) < _LEVEL).all(axis=1))
 
 
 def _is_closed(triangles: Ints) -> bool:

@@ -62,7 +62,7 @@ def stable_union(solids: Sequence["Manifold"], tolerance: float) -> tuple[Floats
 
 def _orders(count: int) -> list[list[int]]:
     """Return some orders of `count` things: turned, and turned backwards."""
-    turned = [[(start + i) % count for i in range(count)] for start in range(count)]
+    turned = [[(start + i) % count for i in range(count)] for start in range(min(count, 4))]
     return turned + [order[::-1] for order in turned]
 
 

@@ -14,6 +14,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Arrays = tuple[Floats, Ints]
 
+_RIM = 0.01
+"""Share of the unit cube that a plate keeps away from its sides."""
+
 _FLUSH = 1e-9
 """Share of the unit cube: a corner this close to a side lies on it."""
 
@@ -40,6 +43,27 @@ class Tiles(NamedTuple):
 def fills_unit_cube(points: Floats) -> bool:
     """Whether all points lie in the unit cube."""
     return bool((points > -_FLUSH).all() and (points < 1.0 + _FLUSH).all())
+
+
+def plate(thickness: float) -> Arrays:
+    """Return a plate under the top of the unit cube.
+
+    It keeps a little away from the cube's sides: plates side by side do not touch, nor do they end in the planes
+    in which other cells do.
+
+    Parameters
+    ----------
+    thickness
+        Share of the cube's height.
+    """
+    corners = [
+        [x, y, z] for z in (1.0 - thickness, 1.0) for y in (_RIM, 1.0 - _RIM) for x in (_RIM, 1.0 - _RIM)
+    ]
+    triangles = [
+        [0, 2, 3], [0, 3, 1], [4, 7, 6], [4, 5, 7], [0, 1, 5], [0, 5, 4],
+        [2, 7, 3], [2, 6, 7], [0, 4, 6], [0, 6, 2], [1, 7, 5], [1, 3, 7],
+    ]  # fmt: skip
+    return np.array(corners), np.array(triangles, np.int64)
 
 
 def expand(templates: Sequence[Arrays], template: Ints, matrix: Floats) -> tuple[Floats, Ints, Ints]:

@@ -1,7 +1,7 @@
 """Connectors: from red squares straight up to the true surface that they hold, and a little into it."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from amprep.geometry.solids import as_manifold
 from amprep.geometry.welding import kept, weld
 from amprep.kernels import cells as kernels
 
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -19,6 +22,9 @@ Arrays = tuple[Floats, Ints]
 
 RUN_SLACK = 1e-6
 """mm; faces this little outside a column's run of cubes still count as in it."""
+
+_LOWEST = 1e-4
+"""mm; walls are not cut closer than this to their upper ends."""
 
 
 class Columns(NamedTuple):
@@ -72,11 +78,10 @@ class Patches(NamedTuple):
         return Patches(self.points[np.repeat(keep, sizes)], start, owner, of_column)
 
 
-    def alone(self, index: int) -> "Patches":
-        """Return one patch."""
-        begin, end = self.start[index], self.start[index + 1]
-        one = np.array([0, end - begin])
-        return Patches(self.points[begin:end], one, self.owner[index : index + 1], one[:1])
+    def corners_in(self, column: int) -> Iterator[Floats]:
+        """Yield the corners ``(k, 3)`` of each patch in a column."""
+        for index in range(self.of_column[column], self.of_column[column + 1]):
+            yield self.points[self.start[index] : self.start[index + 1]]
 
 
 def clip_into(columns: Columns, corners: Floats, number: Ints, allowed: Bools) -> Patches:
@@ -161,15 +166,6 @@ def _quads(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
-def square_patches(columns: Columns, chosen: Ints) -> Patches:
-    """Return the bottoms of some columns as patches."""
-    lo, hi = columns.lo[chosen], columns.hi[chosen]
-    corners = [np.column_stack([x[:, 0], y[:, 1], lo[:, 2]]) for x, y in ((lo, lo), (hi, lo), (hi, hi), (lo, hi))]
-    owner = np.column_stack([chosen, chosen])
-    of_column = np.searchsorted(chosen, np.arange(len(columns.lo) + 1))
-    return Patches(np.stack(corners, axis=1).reshape(-1, 3), 4 * np.arange(len(chosen) + 1), owner, of_column)
-
-
 def find_covered(held: Patches, surface: Patches) -> Bools:
     """Tell in which columns something held has another face of the parts below it, ``(m,)``."""
     covered = np.zeros(len(held.of_column) - 1, np.bool_)
@@ -181,18 +177,18 @@ def find_covered(held: Patches, surface: Patches) -> Bools:
 
 
 def connect(
-    columns: Columns, held: Patches, surface: Patches, *, base: Floats, overlap: float, own: Bools
+    held: Patches, surface: Patches, *, base: Floats, lid: Floats, overlap: float, own: Bools
 ) -> list[Arrays]:
-    """Fill the columns from the red squares up to the held faces, `overlap` mm into them.
+    """Fill columns from the red squares up to the held faces, `overlap` mm into them.
 
     Where another face lies below a held one it comes first: nothing passes it.
 
     Parameters
     ----------
-    columns, held, surface
-        `surface` is all that looks down, of any part, held or not.
-    base
-        ``(m,)`` mm, where the connectors of each column begin.
+    held, surface
+        Pieces in the columns; `surface` is all that looks down, of any part, held or not.
+    base, lid
+        ``(m,)`` mm, where the connectors of each column begin, and a height that none of them reaches.
     overlap
         mm, more than `RUN_SLACK`.
     own
@@ -202,81 +198,107 @@ def connect(
     Returns
     -------
     meshes
-        Closed ones that may touch one another: two of all columns where nothing is in the way, such that
-        within one no two columns lie side by side; and one for each other column.
+        Closed ones that may touch one another: one of all columns where nothing is in the way, and one for
+        each other column.
     """
     covered = find_covered(held, surface)
-    free = ~covered[held.owner[:, 0]]
-    colour = columns.square.sum(axis=1)[held.owner[:, 0]] % 2
-    meshes = []
-    for chosen in (free & (colour == 0), free & (colour == 1)):
-        if chosen.any():
-            part = held.chosen(chosen)
-            meshes.append(separate_edges(*prisms(part, base[part.owner[:, 0]], overlap)))
-    return meshes + list(_covered_ways(columns, held, surface, covered, base, overlap, own))
+    free = held.chosen(~covered[held.owner[:, 0]])
+    meshes = [separate_edges(*stand_on(free, base[free.owner[:, 0]], overlap))] if len(free.owner) else []
+    for column in np.flatnonzero(covered):
+        way = union([_between(corners, base[column], overlap) for corners in held.corners_in(column)])
+        first, last = surface.of_column[column : column + 2]
+        for corners, mine in zip(surface.corners_in(column), own[first:last], strict=True):
+            way -= _between(corners, lid[column], overlap if mine else -overlap)
+        if not way.is_empty():
+            meshes.append(arrays_of(way))
+    return meshes
 
 
-def prisms(patches: Patches, level: Floats, rise: float | Floats) -> Arrays:
-    """Return the prisms between the patches, raised by `rise`, and the levels below or above them.
+def _between(corners: Floats, level: float, rise: float) -> "Manifold":
+    """Return the prism between a patch, raised by `rise`, and a level below or above it."""
+    sloped, flat = kept(corners + (0.0, 0.0, rise)), kept(corners)
+    flat[:, 2] = kept(np.array([level]))[0]
+    low, high = (flat, sloped) if level < corners[0, 2] + rise else (sloped, flat)
+    count = len(corners)
+    here = np.arange(count)
+    following = np.roll(here, -1)
+    fan = np.column_stack([np.zeros(count - 2, np.int64), here[1:-1], here[2:]])
+    walls = [[here, following, following + count], [here, following + count, here + count]]
+    triangles = [fan[:, ::-1], fan + count] + [np.column_stack(wall) for wall in walls]
+    return as_manifold(np.vstack([low, high]), np.vstack(triangles))
 
-    Neighbouring prisms share no walls: what both have cancels.
+
+def stand_on(patches: Patches, base: Floats, rise: float) -> Arrays:
+    """Return the union of the prisms from the patches, raised by `rise`, down to `base`, as one closed mesh.
+
+    No two patches lie above one another. Neighbours share no walls: what both have cancels, because all
+    walls are cut at all the heights at which some prism begins.
 
     Parameters
     ----------
-    level
-        ``(n,)`` mm, the height of each prism's flat end.
-    rise
-        mm, one for all or ``(n,)``.
+    base
+        ``(n,)`` mm, where each prism begins.
     """
     sizes = np.diff(patches.start)
     count = len(patches.points)
-    sloped, flat = patches.points.copy(), patches.points.copy()
-    sloped[:, 2] += np.repeat(np.broadcast_to(rise, sizes.shape), sizes)
-    flat[:, 2] = np.repeat(level, sizes)
-    top, bottom = (0, count) if sloped[:, 2].sum() >= flat[:, 2].sum() else (count, 0)
+    top = kept(patches.points + (0.0, 0.0, rise))
+    levels = np.unique(kept(base))
+    begins = np.repeat(np.searchsorted(levels, kept(base)), sizes)
     first = np.repeat(patches.start[:-1], sizes)
     here = np.arange(count)
     following = np.where(here + 1 == np.repeat(patches.start[1:], sizes), first, here + 1)
     inner = (here != first) & (following != first)
-    fans = np.column_stack([first, here, following])[inner]
-    points = kept(np.vstack([sloped, flat]))
-    # a wall is cut along the same diagonal from both sides
-    forth = _lexicographic_less(points[here], points[following])
-    wall_a = np.where(forth[:, None], np.column_stack([here + bottom, following + bottom, following + top]),
-                      np.column_stack([here + bottom, following + bottom, here + top]))  # fmt: skip
-    wall_b = np.where(forth[:, None], np.column_stack([here + bottom, following + top, here + top]),
-                      np.column_stack([following + bottom, following + top, here + top]))  # fmt: skip
-    triangles = np.concatenate([fans + top, fans[:, ::-1] + bottom, wall_a, wall_b])
-    return weld(points, triangles, lattice=0.0)
+    fans = top[np.column_stack([first, here, following])[inner]]
+    floors = fans[:, ::-1].copy()
+    floors[:, :, 2] = levels[begins[inner], None]
+    soup = np.concatenate([fans, floors, *_walls(top, top[following], levels, begins)])
+    return weld(soup.reshape(-1, 3), np.arange(3 * len(soup)).reshape(-1, 3), lattice=0.0)
 
 
-def _lexicographic_less(a: Floats, b: Floats) -> Bools:
-    """Whether a comes before b by x, then by y, ``(n,)``."""
-    return np.asarray((a[:, 0] < b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] < b[:, 1])))
+def _walls(left: Floats, right: Floats, levels: Floats, begins: Ints) -> Iterator[Floats]:
+    """Yield the triangles of walls under edges, seen from outside; cut at the levels that both ends pass.
+
+    Parameters
+    ----------
+    left, right
+        ``(n, 3)`` the upper ends of each wall.
+    levels, begins
+        Heights in ascending order, and ``(n,)`` at which of them each wall begins.
+    """
+    forth = (left[:, 0] < right[:, 0]) | ((left[:, 0] == right[:, 0]) & (left[:, 1] < right[:, 1]))
+    last = [np.maximum(np.searchsorted(levels, each[:, 2] - _LOWEST) - 1, begins) for each in (left, right)]
+    shared = np.minimum(*last)
+
+    def at(ends: Floats, chosen: Bools, level: Ints) -> Floats:
+        return np.column_stack([ends[chosen, :2], levels[level[chosen]]])
+
+    for up in range(int((shared - begins).max(initial=0))):
+        chosen, low = begins + up < shared, begins + up
+        high = np.minimum(low + 1, len(levels) - 1)
+        yield from _quads_cut(
+            at(left, chosen, low), at(right, chosen, low), at(right, chosen, high), at(left, chosen, high),
+            forth[chosen],
+        )  # fmt: skip
+    level = (last[0] == last[1]) & (shared == last[0])
+    yield from _quads_cut(at(left, level, shared), at(right, level, shared), right[level], left[level], forth[level])
+    for ends, other, mine, is_left in ((left, right, last[0], True), (right, left, last[1], False)):
+        taller = mine > shared
+        apex = other[taller]
+        bottom = at(left, taller, shared), at(right, taller, shared)
+        yield np.stack([*bottom, apex], axis=1)
+        for up in range(int((mine - shared).max(initial=0))):
+            chosen, low = taller & (shared + up < mine), shared + up
+            lower, upper = at(ends, chosen, low), at(ends, chosen, np.minimum(low + 1, len(levels) - 1))
+            yield _turned(lower, other[chosen], upper, turn=not is_left)
+        yield _turned(at(ends, taller, mine), apex, ends[taller], turn=not is_left)
 
 
-def _covered_ways(
-    columns: Columns,
-    held: Patches,
-    surface: Patches,
-    covered: Bools,
-    base: Floats,
-    overlap: float,
-    own: Bools,
-) -> Iterator[Arrays]:
-    """Yield what is left of each covered column below the first face met."""
-    lid = columns.hi[:, 2] + 2.0 * overlap
-    for column in np.flatnonzero(covered):
-        wanted = _each(held, column, base, overlap)
-        blocked = _each(surface, column, lid, np.where(own, overlap, -overlap))
-        way = union([as_manifold(*mesh) for mesh in wanted])
-        way = way - union([as_manifold(*mesh) for mesh in blocked])
-        if not way.is_empty():
-            yield arrays_of(way)
+def _turned(a: Floats, b: Floats, c: Floats, *, turn: bool) -> Floats:
+    return np.stack([a, c, b] if turn else [a, b, c], axis=1)
 
 
-def _each(patches: Patches, column: int, level: Floats, rise: float | Floats) -> Iterator[Arrays]:
-    """Yield the prism of every patch of a column."""
-    rises = np.broadcast_to(rise, (len(patches.owner),))
-    for index in range(patches.of_column[column], patches.of_column[column + 1]):
-        yield prisms(patches.alone(index), level[column : column + 1], rises[index])
+def _quads_cut(a: Floats, b: Floats, c: Floats, d: Floats, forth: Bools) -> Iterator[Floats]:
+    """Yield the halves of quadrangles, cut from a to c where `forth`, else from b to d."""
+    across = forth[:, None]
+    yield np.stack([a, b, np.where(across, c, d)], axis=1)
+    yield np.stack([np.where(across, a, b), c, d], axis=1)

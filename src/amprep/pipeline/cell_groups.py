@@ -1,15 +1,16 @@
 """The cells, seats and connectors of one support group, united to one solid, or put together as sheets."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.geometry.cell_junctions import Grid, Sections, join_sections
+from amprep.geometry.cell_prisms import join_prisms
 from amprep.geometry.cell_sheets import join_sheets, plan_segments, raise_sheets
 from amprep.geometry.cell_solids import finish, is_solid, union
-from amprep.geometry.cell_tiling import Arrays, expand, fills_unit_cube
-from amprep.geometry.connectors import connect, square_patches, prisms
+from amprep.geometry.cell_tiling import Arrays, expand, fills_unit_cube, plate
+from amprep.geometry.connectors import connect
 from amprep.geometry.solids import as_manifold
 from amprep.model import DIRECTIONS, CellRequest, Cells, Mesh, Role, Template
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
@@ -34,6 +35,8 @@ class Emitted(NamedTuple):
         ``(n,)`` whether an instance is a sound solid in its edge's prism, the only one there.
     sheet, connector
         ``(n,)`` whether it is a surface; whether its edge is a connector.
+    whole
+        ``(k,)`` whether a template is the whole cube.
     """
 
     request: CellRequest
@@ -42,6 +45,7 @@ class Emitted(NamedTuple):
     tiles: Bools
     sheet: Bools
     connector: Bools
+    whole: Bools
 
     def of(self, group: int) -> Bools:
         """Which instances belong to the group."""
@@ -57,7 +61,9 @@ def sort_out(request: CellRequest, cells: Cells) -> Emitted:
     sheet = surface[cells.template]
     alone = np.bincount(cells.edge[~sheet], minlength=len(request.plane))[cells.edge] == 1
     connector = request.role[cells.edge] == Role.CONNECTOR
-    return Emitted(request, cells, templates, sound[cells.template] & own & alone, sheet, connector)
+    tiles = sound[cells.template] & own & alone
+    whole = np.array([template.mesh.signed_volume > 1.0 - 1e-9 for template in cells.templates], np.bool_)
+    return Emitted(request, cells, templates, tiles, sheet, connector, sound & whole)
 
 
 def _is_tile(template: Template) -> bool:
@@ -71,30 +77,30 @@ def _arrays(mesh: Mesh) -> Arrays:
 def solid_of(
     group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float, extend: bool
 ) -> Mesh | None:
-    """Return the closed solid of a support group: cells, connectors and seats; None when it has none."""
+    """Return the closed solid of a support group: cells, seats and connectors; None when it has none."""
     mine = emitted.of(group) & ~emitted.sheet
-    solids = [as_manifold(*mesh) for mesh in _trunks(emitted, mine & ~emitted.connector)]
-    if not mine.any() and emitted.sheet.any():
-        solids += _extras(emitted, group)
+    if emitted.sheet.any() and not mine.any():
+        solids = _extras(emitted, group)
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    base = ways.columns.lo[:, 2] - seat
-    held = ways.held.chosen(red[ways.held.owner[:, 0]])
-    ups = connect(
-        ways.columns, held, ways.surface, base=base, overlap=max(overlap, CONTACT_TOLERANCE), own=ways.own
-    )
-    connectors = [as_manifold(*mesh) for mesh in ups]
+    ups = [as_manifold(*mesh) for mesh in _connectors(red, seat, layout, ways, overlap)]
     if extend:
         ends = [as_manifold(*mesh) for mesh in _ends(emitted, mine & emitted.connector, seat, layout)]
-        connectors = [union(connectors) ^ union(ends)] if connectors and ends else []
-    else:
-        bare = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout)
-        if bare.any():
-            patches = square_patches(ways.columns, np.flatnonzero(bare))
-            connectors.append(as_manifold(*prisms(patches, base[bare], 0.0)))
-    solids += connectors + _extras(emitted, group)
+        ups = [union(ups) ^ union(ends)] if ups and ends else []
+    seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
+    trunks = _trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
+    solids = [as_manifold(*mesh) for mesh in trunks] + ups + _extras(emitted, group)
     return Mesh(*finish(solids)) if solids else None
+
+
+def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
+    """Return connectors over red squares; they begin in the middle of the seats."""
+    held = ways.held.chosen(red[ways.held.owner[:, 0]])
+    base = ways.columns.lo[:, 2] - seat / 2
+    lid = ways.columns.hi[:, 2] + layout.frame.step
+    overlap = max(overlap, CONTACT_TOLERANCE)
+    return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
 
 
 def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
@@ -102,17 +108,33 @@ def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
     return [as_manifold(*_arrays(extra.mesh)) for extra in extras]
 
 
-def _trunks(emitted: Emitted, chosen: Bools) -> Iterator[Arrays]:
-    """Yield closed meshes of the chosen instances: one for all that tile, one for each other."""
+def _trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0) -> Iterator[Arrays]:
+    """Yield closed meshes of the chosen instances: one for all that tile, one for each other.
+
+    Parameters
+    ----------
+    seats, seat
+        ``(k, 3)`` squares (plane, y, x) below which plates of `seat` mm go with the cells that tile.
+    """
     cells, request = emitted.cells, emitted.request
     tiles, frame = chosen & emitted.tiles, request.frame
-    if tiles.any():
-        edge = cells.edge[tiles]
-        square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 1]).astype(np.int64)
-        shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
-        sections = Sections(cells.template[tiles].astype(np.int64), square, shift)
-        grid = Grid(frame.origin, np.array([frame.pitch, frame.pitch, frame.step]))
-        yield join_sections(emitted.templates, sections, grid)
+    size = np.array([frame.pitch, frame.pitch, frame.step])
+    edge, template = cells.edge[tiles], cells.template[tiles].astype(np.int64)
+    square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 1]).astype(np.int64)
+    shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
+    if len(edge) and emitted.whole[template].all():
+        yield join_prisms(square, shift, frame.origin, size)
+    elif len(edge) or seats is not None and len(seats):
+        below = np.empty((0, 3), np.int64) if seats is None else seats[:, ::-1].astype(np.int64) - (0, 0, 1)
+        count = len(below)
+        sections = Sections(
+            np.concatenate([template, np.full(count, len(emitted.templates))]),
+            np.concatenate([square, below]),
+            np.concatenate([shift, np.zeros((count, 2), np.int64)]),
+            np.repeat([0, 1], [len(template), count]),
+        )
+        templates = (*emitted.templates, plate(seat / frame.step))
+        yield join_sections(templates, sections, Grid(frame.origin, size))
     for index in np.flatnonzero(chosen & ~emitted.tiles):
         one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
         points, triangles, _ = expand(emitted.templates, *one)
