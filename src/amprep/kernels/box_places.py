@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+helper = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Of functions that only kernels call: they compile faster without wrappers, and are cached inside `pack`."""
+
 PAIR_SLACK = 1e-6
 """mm; boxes that overlap by less touch."""
 
@@ -101,8 +104,8 @@ class Answer(NamedTuple):
     looks: Array
 
 
-@njit(cache=True)
-def _settle(first, last, x, y, z, highest, boxes, room, placed, count, standing):
+@helper
+def settle(first, last, x, y, z, highest, boxes, room, placed, count, standing):
     """Return the least height from z to `highest` at which the boxes fit; -1 for none."""
     slack = room[SLACK]
     k = first
@@ -135,8 +138,8 @@ def _settle(first, last, x, y, z, highest, boxes, room, placed, count, standing)
     return z
 
 
-@njit(cache=True)
-def _touching(first, last, x, y, z, boxes, room, placed, count):
+@helper
+def touching(first, last, x, y, z, boxes, room, placed, count):
     """Return the area with which the boxes touch walls and other boxes (Lodi, Martello, Vigo 2002)."""
     area, near = 0.0, room[SLACK]
     for k in range(first, last):
@@ -162,7 +165,7 @@ def _touching(first, last, x, y, z, boxes, room, placed, count):
     return area
 
 
-@njit(cache=True)
+@helper
 def _merit(variant, x, y, z, variants, room, style):
     """Return the merit of a place under `LOW` or `CENTRE`; never less at a greater z."""
     x1, y1, z1 = x + variants[variant, 0], y + variants[variant, 1], z + variants[variant, 2]
@@ -173,7 +176,7 @@ def _merit(variant, x, y, z, variants, room, style):
     return style[WEIGHT] * x1 + style[WEIGHT + 1] * y1 + style[WEIGHT + 2] * z1
 
 
-@njit(cache=True)
+@helper
 def choose(variant, known, found, shapes, room, style, placed, cursor, standing, candidates, best):
     """Keep the feasible candidate of least merit in `best` (in place); those from `known` on may rise."""
     count = cursor[PLACED]
@@ -189,12 +192,12 @@ def choose(variant, known, found, shapes, room, style, placed, cursor, standing,
             # no higher than where it would still be better than the best
             highest = z + (best[MERIT] - merit) / style[WEIGHT + 2] if simple else np.inf
         cursor[WORK] += count
-        height = _settle(first, last, x, y, z, highest, shapes.boxes, room, placed, count, standing)
+        height = settle(first, last, x, y, z, highest, shapes.boxes, room, placed, count, standing)
         if height < 0.0:
             continue
         if style[KIND] == TOUCHING:
             low = style[WEIGHT] * x + style[WEIGHT + 1] * y + style[WEIGHT + 2] * height
-            merit = 1e-9 * low - _touching(first, last, x, y, height, shapes.boxes, room, placed, count)
+            merit = 1e-9 * low - touching(first, last, x, y, height, shapes.boxes, room, placed, count)
         elif simple:
             merit = _merit(variant, x, y, height, shapes.variants, room, style)
         if merit < best[MERIT]:
@@ -202,7 +205,7 @@ def choose(variant, known, found, shapes, room, style, placed, cursor, standing,
             best[PLACE], best[PLACE + 1], best[PLACE + 2] = x, y, height
 
 
-@njit(cache=True)
+@helper
 def _wall(axis, start, length, across, room, candidates, found):
     """Add the places at both ends of the round wall for a box with its low side across `axis` at `start`."""
     far = max(room[AXIS_X + axis] - start, start + length - room[AXIS_X + axis])
@@ -217,7 +220,7 @@ def _wall(axis, start, length, across, room, candidates, found):
     return found
 
 
-@njit(cache=True)
+@helper
 def round_places(variant, variants, room, style, lines, cursor, candidates, found):
     """Add places for a round plate: when empty the middle, or rows from the wall on; else slid to the wall.
 
@@ -246,7 +249,7 @@ def round_places(variant, variants, room, style, lines, cursor, candidates, foun
     return found
 
 
-@njit(cache=True)
+@helper
 def crossings(first, last, boxes, room, lines, cursor, candidates, found):
     """Add all crossings of lines; on a round plate boxes may lie on either side of a line."""
     sides = 2 if room[RADIUS] > 0.0 else 1

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from amprep.hookspecs import Packer
     from amprep.host import Listed
 
-UNLIMITED_WORK = 1e12
+UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9}
+"""Parameters that end a packer before its time."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,8 @@ def run_instances(
 ) -> list[Result]:
     """Run a packer on each instance for at most `seconds`; a budget counted in work is lifted.
 
-    A small instance is packed first, so that no time counts that goes into loading or compiling.
+    The first instance is packed for a second before, so that no time counts that goes into loading or
+    compiling.
 
     Raises
     ------
@@ -96,7 +98,7 @@ def run_instances(
     host = Host.load()
     listed = host.choose("packer", packer)
     for instance in instances[:1]:
-        _pack(host, listed, _small(instance.problem), 1.0, seed)
+        _pack(host, listed, instance.problem, min(seconds, 1.0), seed)
     results = []
     for instance in instances:
         results.append(run_instance(host, listed, instance, seconds=seconds, seed=seed))
@@ -131,14 +133,9 @@ def _pack(
     host: Host, listed: "Listed[Packer]", problem: PackingProblem, seconds: float, seed: int
 ) -> Packing:
     known = {field.name for field in fields(listed.offer.params)}
-    params = host.params(listed, {"work": UNLIMITED_WORK} if "work" in known else {})
+    params = host.params(listed, {name: most for name, most in UNLIMITED.items() if name in known})
     rng, stop = np.random.default_rng(seed), Stop.after(seconds)
     return host.call(listed, problem, params=params, rng=rng, stop=stop, report=silent)
-
-
-def _small(problem: PackingProblem) -> PackingProblem:
-    """Return a problem with the first few of the items."""
-    return replace(problem, items=problem.items[:8])
 
 
 def _result(instance: Instance, packing: Packing, seconds: float) -> Result:

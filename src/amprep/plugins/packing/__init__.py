@@ -7,7 +7,8 @@ import numpy as np
 from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packing.params import ExtremePointsParams
+from amprep.plugins.packing.ip_params import IpParams
+from amprep.plugins.packing.params import ExtremePointsParams, TabuParams
 
 amprep_api = 1
 
@@ -23,6 +24,22 @@ def _extreme_points(
     from amprep.plugins.packing.extreme_points import pack_extreme_points
 
     return pack_extreme_points(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _tabu(
+    problem: PackingProblem, *, params: TabuParams, rng: np.random.Generator, stop: Stop, report: Report
+) -> Packing:
+    from amprep.plugins.packing.tabu import pack_tabu
+
+    return pack_tabu(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _ip(
+    problem: PackingProblem, *, params: IpParams, rng: np.random.Generator, stop: Stop, report: Report
+) -> Packing:
+    from amprep.plugins.packing.ip import pack_ip
+
+    return pack_ip(problem, params=params, rng=rng, stop=stop, report=report)
 
 
 @hookimpl
@@ -41,4 +58,29 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=ExtremePointsParams,
+    )
+    yield Packer(
+        name="tabu",
+        summary="Tabu search that empties one build after another (Lodi, Martello, Vigo; thesis 2.4).",
+        run=_tabu,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"builds"}),
+            orientations=frozenset({"fixed", "axis", "list"}),
+            zones=True,
+        ),
+        params=TabuParams,
+    )
+    yield Packer(
+        name="ip",
+        summary="The thesis's integer program, by HiGHS or any solver of pulp, after extreme points.",
+        run=_ip,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"builds", "fill"}),
+            orientations=frozenset({"fixed", "axis"}),
+            zones=True,
+            fixed=True,
+        ),
+        params=IpParams,
     )

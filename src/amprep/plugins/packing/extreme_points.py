@@ -58,13 +58,13 @@ def pack_extreme_points(
     best = runner.run(plans[0], None, stop)
     for number in range(1, len(plans) + params.restarts):
         if stop():
-            return _packing(scene, best, stop.reason)
+            return as_packing(scene, best, stop.reason)
         if runner.work > params.work * 1e6:
-            return _packing(scene, best, "work used up")
+            return as_packing(scene, best, "work used up")
         report(number / (len(plans) + params.restarts), "trying orders")
         plan = plans[number] if number < len(plans) else _disturbed(best.plan, params.disturbance, rng)
         best = min(best, runner.run(plan, best, stop), key=lambda solution: solution.rank)
-    return _packing(scene, best, stop.reason if stop() else "finished")
+    return as_packing(scene, best, stop.reason if stop() else "finished")
 
 
 def _disturbed(plan: Pass, disturbance: float, rng: np.random.Generator) -> Pass:
@@ -129,7 +129,7 @@ def _value(scene: Scene, build: records.Indices) -> float:
     return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
 
 
-def _packing(scene: Scene, best: Solution, stop_reason: str) -> Packing:
+def as_packing(scene: Scene, best: Solution, stop_reason: str) -> Packing:
     """Return the solution as a packing, with what is known about its quality."""
     filling = scene.problem.objective == "fill"
     builds = _builds(scene, best)

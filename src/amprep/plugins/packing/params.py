@@ -35,3 +35,46 @@ class ExtremePointsParams:
 def _at_least(name: str, value: float, least: float) -> None:
     if not value >= least:
         raise ValueError(f"{name} must be at least {least}, got {value}")
+
+
+@dataclass(frozen=True)
+class TabuParams:
+    """Parameters of `tabu`; the budget counts work, so that the same job gives the same packing.
+
+    Attributes
+    ----------
+    start
+        ``separate``: every item in a build of its own, as in the thesis; ``heuristic``: as the sub-heuristic
+        packs them all.
+    most_tuple
+        Builds repacked at once, at most (the thesis's k_max).
+    most_diversify
+        Diversifications before a strong one (the thesis's d_max).
+    tenure
+        How many of the last penalties are tabu, for each size of tuple.
+    count_weight
+        Weight of the share of items in the filling function, which is the share of volume less this much of
+        the share of items; 0 as in the thesis, where it only breaks ties.
+    patience
+        Strong diversifications without a better packing after which the search ends.
+    work
+        Millions of comparisons of boxes after which the search ends; some 200 a second.
+    """
+
+    start: str = "separate"
+    most_tuple: int = 3
+    most_diversify: int = 3
+    tenure: int = 3
+    count_weight: float = 0.0
+    patience: int = 3
+    work: float = 100.0
+
+    def __post_init__(self) -> None:
+        if self.start not in {"separate", "heuristic"}:
+            raise ValueError(f"start must be separate or heuristic, got {self.start!r}")
+        _at_least("most_tuple", self.most_tuple, 1)
+        _at_least("most_diversify", self.most_diversify, 0)
+        _at_least("tenure", self.tenure, 0)
+        _at_least("count_weight", self.count_weight, 0)
+        _at_least("patience", self.patience, 0)
+        _at_least("work", self.work, 0)
