@@ -37,11 +37,12 @@ from amprep.kernels.box_places import (
     WORK,
     choose,
     crossings,
+    helper,
     round_places,
 )
 
 
-@njit(cache=True, inline="always")
+@helper
 def _shorten(p, points, box, placed):
     """Shorten the residual space of a point in place by a box; say whether the box covers the point."""
     x, y, z = points[p, 0] + PAIR_SLACK, points[p, 1] + PAIR_SLACK, points[p, 2] + PAIR_SLACK
@@ -57,7 +58,7 @@ def _shorten(p, points, box, placed):
     return in_x and in_y and in_z
 
 
-@njit(cache=True, inline="always")
+@helper
 def _fall(x, y, z, axis, room, placed, count):
     """Return where a point comes to rest that moves down `axis`: on a box or the wall."""
     rest = room[axis]
@@ -72,7 +73,7 @@ def _fall(x, y, z, axis, room, placed, count):
     return rest
 
 
-@njit(cache=True)
+@helper
 def _add_point(x, y, z, room, placed, points, cursor):
     """Add a point and its residual space, unless it is covered or known (modified in place)."""
     known = cursor[POINTS]
@@ -89,7 +90,7 @@ def _add_point(x, y, z, room, placed, points, cursor):
     cursor[POINTS] = known + 1
 
 
-@njit(cache=True)
+@helper
 def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
     """Put box b, moved, into the build: prune points, add its projections and lines (modified in place)."""
     new = cursor[PLACED]
@@ -130,7 +131,7 @@ def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
                 cursor[LINES + axis] += 1
 
 
-@njit(cache=True)
+@helper
 def _open(standing, room, obstacles, placed, points, lines, cursor):
     """Start a build: the least corner as first point, the walls as first lines, then the obstacles."""
     cursor[PLACED], cursor[POINTS], cursor[MOVED] = 0, 0, 0
@@ -141,7 +142,7 @@ def _open(standing, room, obstacles, placed, points, lines, cursor):
         _add_box(j, obstacles, 0.0, 0.0, 0.0, room, placed, points, lines, cursor)
 
 
-@njit(cache=True)
+@helper
 def _look(zones, placed, count, build, looks):
     """Note a build's height and the area of the rectangle around its boxes (looks modified in place)."""
     x0 = y0 = np.inf
