@@ -33,7 +33,8 @@ def _subtitle(build: Build) -> str:
     box = f"{x:g} x {y:g} x {z:g} mm" if build.settings.space.shape == "box" else f"⌀ {x:g} x {z:g} mm"
     words = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
     if build.unsupported:
-        words.append(f"{len(build.unsupported)} regions unsupported (red)")
+        count = len(build.unsupported)
+        words.append(f"{count} region{'s' if count > 1 else ''} unsupported (red)")
     return "   ·   ".join(word for word in words if word)
 
 
