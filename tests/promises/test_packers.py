@@ -82,7 +82,7 @@ def run(packer, problem, stop=None):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=80)
 @given(data=st.data())
 def test_a_packing_keeps_its_promise(packer, data):
     problem = data.draw(problems(HOST.choose("packer", packer).offer.accepts))
@@ -90,7 +90,7 @@ def test_a_packing_keeps_its_promise(packer, data):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=30)
 @given(data=st.data())
 def test_what_stands_already_stays_and_is_avoided(packer, data):
     accepts = HOST.choose("packer", packer).offer.accepts
