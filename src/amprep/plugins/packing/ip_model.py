@@ -38,9 +38,9 @@ def make_program(
     `further` families narrow it, as a local search does. With clearance, pieces are that far apart along an
     axis, which is more than the judge asks for at corners.
     """
-    variables = make_variables(ground)
     sense = pulp.LpMaximize if ground.filling else pulp.LpMinimize
     problem = pulp.LpProblem("packing", sense)
+    variables = make_variables(problem, ground)
     problem.setObjective(_value(ground, variables) if ground.filling else pulp.lpSum(variables.opened))
     program = Program(ground, variables, params)
     for family in (*FAMILIES, *further):

@@ -31,7 +31,7 @@ class IpParams:
     """
 
     solver: str = "HiGHS"
-    effort: float = 0.5
+    effort: float = 0.05
     directions: int = 20_000
     sharing: bool = True
     symmetry: bool = True

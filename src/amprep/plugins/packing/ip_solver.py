@@ -93,6 +93,7 @@ def _solve_by_highs(
         gapAbs=TOLERANCE,
         timeLimit=None if stop.deadline is None else max(stop.remaining(), 0.0),
         random_seed=params.seed,
+        mip_allow_restart=False,  # a restart may take longer than all nodes of a small budget
         mip_max_nodes=nodes,
         mip_feasibility_tolerance=TOLERANCE / 100.0,
         callbackTuple=(look, None),

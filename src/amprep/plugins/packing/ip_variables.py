@@ -44,37 +44,39 @@ class Variables:
         return pulp.lpSum(self.inside[body])
 
 
-def make_variables(ground: Ground) -> Variables:
-    """Return the variables of a program over `ground`."""
+def make_variables(problem: pulp.LpProblem, ground: Ground) -> Variables:
+    """Return new variables of `problem`, over `ground`."""
     bodies = range(len(ground.bodies))
     return Variables(
-        inside=[[_binary(f"inside_{a}_{b}") for b in range(ground.builds)] for a in bodies],
+        inside=[[_binary(problem, f"inside_{a}_{b}") for b in range(ground.builds)] for a in bodies],
         turned=[
-            [_binary(f"turned_{a}_{v}") for v in range(len(body.variants))] if len(body.variants) > 1 else []
+            [_binary(problem, f"turned_{a}_{v}") for v in range(len(body.variants))]
+            if len(body.variants) > 1
+            else []
             for a, body in enumerate(ground.bodies)
         ],
         position=[
             [
-                pulp.LpVariable(f"{axis}_{a}", float(least), float(most))
+                problem.add_variable(f"{axis}_{a}", float(least), float(most))
                 for axis, least, most in zip("xyz", body.least, body.most, strict=True)
             ]
             for a, body in enumerate(ground.bodies)
         ],
-        direction=[_directions(number, pair) for number, pair in enumerate(ground.pairs)],
-        opened=[] if ground.filling else [_binary(f"opened_{b}") for b in range(ground.builds)],
+        direction=[_directions(problem, number, pair) for number, pair in enumerate(ground.pairs)],
+        opened=[] if ground.filling else [_binary(problem, f"opened_{b}") for b in range(ground.builds)],
     )
 
 
-def _directions(number: int, pair: Pair) -> list[Variable | None]:
+def _directions(problem: pulp.LpProblem, number: int, pair: Pair) -> list[Variable | None]:
     names = ("right", "left", "up", "down", "front", "back")
     return [
-        _binary(f"{name}_{number}") if possible else None
+        _binary(problem, f"{name}_{number}") if possible else None
         for name, possible in zip(names, pair.possible.tolist(), strict=True)
     ]
 
 
-def _binary(name: str) -> Variable:
-    return pulp.LpVariable(name, cat=pulp.LpBinary)
+def _binary(problem: pulp.LpProblem, name: str) -> Variable:
+    return problem.add_variable(name, cat=pulp.LpBinary)
 
 
 def corner(ground: Ground, variables: Variables, piece: Piece, axis: int, *, upper: bool) -> Expression:
