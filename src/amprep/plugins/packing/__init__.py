@@ -7,7 +7,7 @@ import numpy as np
 from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packing.ip_params import IpParams
+from amprep.plugins.packing.ip_params import IpLocalSearchParams, IpParams
 from amprep.plugins.packing.params import ExtremePointsParams, TabuParams
 
 amprep_api = 1
@@ -40,6 +40,19 @@ def _ip(
     from amprep.plugins.packing.ip import pack_ip
 
     return pack_ip(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _ip_local_search(
+    problem: PackingProblem,
+    *,
+    params: IpLocalSearchParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> Packing:
+    from amprep.plugins.packing.ip_local_search import pack_ip_local_search
+
+    return pack_ip_local_search(problem, params=params, rng=rng, stop=stop, report=report)
 
 
 @hookimpl
@@ -83,4 +96,17 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=IpParams,
+    )
+    yield Packer(
+        name="ip-local-search",
+        summary="Steps to the best build near the last one, by the integer program (thesis 2.2).",
+        run=_ip_local_search,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"fill"}),
+            orientations=frozenset({"fixed", "axis"}),
+            zones=True,
+            fixed=True,
+        ),
+        params=IpLocalSearchParams,
     )

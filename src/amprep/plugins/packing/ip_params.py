@@ -49,3 +49,35 @@ class IpParams:
 def _at_least(name: str, value: float, least: float) -> None:
     if not value >= least:
         raise ValueError(f"{name} must be at least {least}, got {value}")
+
+
+@dataclass(frozen=True)
+class IpLocalSearchParams(IpParams):
+    """Parameters of `ip-local-search`; those of `ip` hold for the programs of the neighbourhoods.
+
+    Symmetry is not broken by default: putting equal items in order would count as distance.
+
+    Attributes
+    ----------
+    used_distance
+        At most so many items enter or leave in one step (thesis 2.2, `used_d` of chapter 4).
+    direction_distance
+        At most so many directions between pairs that stay change in one step (`dir_d`).
+    growth
+        Where nothing better is found both distances grow by this factor, at 1 the search ends.
+    steps
+        At most so many programs are solved.
+    """
+
+    symmetry: bool = False
+    used_distance: int = 5
+    direction_distance: int = 20
+    growth: float = 1.5
+    steps: int = 20
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _at_least("used_distance", self.used_distance, 1)
+        _at_least("direction_distance", self.direction_distance, 0)
+        _at_least("growth", self.growth, 1)
+        _at_least("steps", self.steps, 1)

@@ -120,7 +120,7 @@ def _arrangement(ground: Ground, choices: dict[int, Choice], place: Floats) -> A
 
 def start_values(ground: Ground, variables: Variables, known: Arrangement) -> dict[Any, float]:
     """Return the values that mean a known packing, reflected and with equal items in the program's order."""
-    places = _places(ground, known)
+    places = places_of(ground, known)
     values: dict[Any, float] = {}
     for number, body in enumerate(ground.bodies):
         build, variant, place = places[body.item]
@@ -143,7 +143,7 @@ Place = tuple[int, int, Floats]
 """An item's build, variant and least corner."""
 
 
-def _places(ground: Ground, known: Arrangement) -> dict[int, Place]:
+def places_of(ground: Ground, known: Arrangement) -> dict[int, Place]:
     """Return each item's place, reflected and with equal items swapped as `ip_symmetry` asks for."""
     places = {
         body.item: (int(known.build[body.item]), int(known.variant[body.item]), known.place[body.item])
