@@ -76,7 +76,7 @@ function marks(region, index, geometries) {
   const group = new THREE.Group();
   const ball = new THREE.IcosahedronGeometry(1, 1);
   const pose = new THREE.Matrix4();
-  for (const [through, opacity] of [[true, 0.35], [false, 1]]) {
+  for (const [through, opacity] of [[true, 0.2], [false, 1]]) {
     const look = new THREE.MeshBasicMaterial({ color: MARK, transparent: through, opacity, depthTest: !through });
     const mesh = new THREE.InstancedMesh(ball, look, positions.count);
     for (let i = 0; i < positions.count; i++) {

@@ -101,6 +101,7 @@ class Viewer {
     const row = document.querySelector(`#lists [data-key="${kind}-${index}"]`);
     if (row) {
       row.setAttribute("aria-current", "true");
+      row.closest("details").open = true;
       row.scrollIntoView({ block: "nearest" });
     }
     if (kind !== "unsupported") this.shown[kind === "part" ? "parts" : "supports"][index].material.emissive.setHex(0x3a4c6c);
@@ -183,9 +184,13 @@ class Viewer {
       "li", { "data-key": `unsupported-${index}` },
       this.#rowButton("unsupported", index, region.name, swatch("#e5202b"), make("small", {}, region.reason)),
     ));
-    const heads = [make("h3", {}, `Parts (${rows.length})`), make("ul", {}, ...rows)];
-    if (missing.length) heads.unshift(make("h3", {}, `Unsupported (${missing.length})`), make("ul", {}, ...missing));
+    const heads = [this.#section("Parts", rows, true)];
+    if (missing.length) heads.unshift(this.#section("Unsupported", missing, missing.length <= 8));
     element("lists").replaceChildren(...heads);
+  }
+
+  #section(words, rows, open) {
+    return make("details", { open: open && "" }, make("summary", {}, `${words} (${rows.length})`), make("ul", {}, ...rows));
   }
 
   #rowButton(kind, index, words, mark, ...more) {
