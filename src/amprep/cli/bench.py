@@ -29,7 +29,7 @@ def mpv(
     class_: Annotated[int, typer.Option("--class", metavar="C", min=1, max=8, help="Class, 1 to 8.")],
     n: Annotated[int, typer.Option("--n", metavar="N", min=1, help="Boxes, usually 50, 100, 150 or 200.")],
     time_limit: TimeLimit = 10.0,
-    packer: PackerName = "extreme-points",
+    packer: PackerName = "auto",
     first: First = 1,
     count: Count = 10,
     seed: Seed = 0,
@@ -49,7 +49,7 @@ def mpv(
 def container_loading(
     file: Annotated[Path, typer.Argument(help="JSON file of instances: container, boxes, rotation flags.")],
     time_limit: TimeLimit = 30.0,
-    packer: PackerName = "extreme-points",
+    packer: PackerName = "auto",
     first: First = 1,
     count: Annotated[int, typer.Option("--count", min=0, help="Number of instances; 0: all.")] = 0,
     seed: Seed = 0,

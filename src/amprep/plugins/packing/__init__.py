@@ -7,8 +7,8 @@ import numpy as np
 from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packing.ip_params import IpLocalSearchParams, IpParams
-from amprep.plugins.packing.params import ExtremePointsParams, TabuParams
+from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpLocalSearchParams, IpParams
+from amprep.plugins.packing.params import AutoParams, ExtremePointsParams, TabuParams
 
 amprep_api = 1
 
@@ -24,6 +24,14 @@ def _extreme_points(
     from amprep.plugins.packing.extreme_points import pack_extreme_points
 
     return pack_extreme_points(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _auto(
+    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, report: Report
+) -> Packing:
+    from amprep.plugins.packing.auto import pack_auto
+
+    return pack_auto(problem, params=params, rng=rng, stop=stop, report=report)
 
 
 def _tabu(
@@ -55,6 +63,19 @@ def _ip_local_search(
     return pack_ip_local_search(problem, params=params, rng=rng, stop=stop, report=report)
 
 
+def _column_generation(
+    problem: PackingProblem,
+    *,
+    params: ColumnGenerationParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> Packing:
+    from amprep.plugins.packing.column_generation import pack_column_generation
+
+    return pack_column_generation(problem, params=params, rng=rng, stop=stop, report=report)
+
+
 @hookimpl
 def amprep_packers() -> Iterable[Packer]:
     """Yield the built-in packers."""
@@ -71,6 +92,20 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=ExtremePointsParams,
+    )
+    yield Packer(
+        name="auto",
+        summary="Extreme points at once, then a search that packs a few builds anew until one is saved.",
+        run=_auto,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"builds", "fill"}),
+            orientations=frozenset({"fixed", "axis", "list"}),
+            cylinder=True,
+            zones=True,
+            fixed=True,
+        ),
+        params=AutoParams,
     )
     yield Packer(
         name="tabu",
@@ -109,4 +144,16 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=IpLocalSearchParams,
+    )
+    yield Packer(
+        name="column-generation",
+        summary="Set covering over builds, priced by the fill problem; proves bounds (thesis 2.1).",
+        run=_column_generation,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"builds"}),
+            orientations=frozenset({"fixed", "axis"}),
+            zones=True,
+        ),
+        params=ColumnGenerationParams,
     )

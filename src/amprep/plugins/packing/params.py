@@ -78,3 +78,32 @@ class TabuParams:
         _at_least("count_weight", self.count_weight, 0)
         _at_least("patience", self.patience, 0)
         _at_least("work", self.work, 0)
+
+
+@dataclass(frozen=True)
+class AutoParams:
+    """Parameters of `auto`; the budgets count work, so that the same job gives the same packing.
+
+    Attributes
+    ----------
+    most_ruined
+        Builds that one step packs anew, at most.
+    heat
+        How much worse a step may be: mean of the excess, in items of mean volume.
+    patience
+        Steps for each item after which a smaller number of builds is given up; in a fill problem, so many
+        disturbed orders.
+    work
+        Millions of comparisons after which the search ends; some 40 a second.
+    """
+
+    most_ruined: int = 3
+    heat: float = 0.05
+    patience: int = 1000
+    work: float = 100.0
+
+    def __post_init__(self) -> None:
+        _at_least("most_ruined", self.most_ruined, 1)
+        _at_least("heat", self.heat, 0)
+        _at_least("patience", self.patience, 0)
+        _at_least("work", self.work, 0)

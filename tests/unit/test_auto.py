@@ -1,0 +1,115 @@
+"""The packer `auto` beats its own start, ends with the bound, and keeps what stands where it is."""
+
+import numpy as np
+import pytest
+
+from amprep.checks.packing import check_packing
+from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model.rotations import axis_rotations
+from amprep.plugins.packing.auto import pack_auto
+from amprep.plugins.packing.extreme_points import pack_extreme_points
+from amprep.plugins.packing.params import AutoParams, ExtremePointsParams
+
+
+def problem(sizes, room=(10, 10, 10), orientations=None, **rules):
+    allowed = orientations or Orientations()
+    items = tuple(
+        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), float(np.prod(s)), allowed)
+        for i, s in enumerate(sizes)
+    )
+    return PackingProblem(items, BuildVolume(np.array(room, float)), **rules)
+
+
+def run(task, stop=None, **params):
+    packing = pack_auto(
+        task, params=AutoParams(**params), rng=np.random.default_rng(0), stop=stop or Stop(), report=silent
+    )
+    assert check_packing(task, packing) == []
+    return packing
+
+
+def cut(rng, size, count):
+    """Boxes that fill a room: the greatest is cut in two until there are `count`."""
+    boxes = [list(size)]
+    while len(boxes) < count:
+        box = boxes.pop(int(np.argmax([np.prod(b) for b in boxes])))
+        axis = int(np.argmax(box))
+        at = int(rng.integers(1, box[axis]))
+        boxes += [[*box[:axis], at, *box[axis + 1 :]], [*box[:axis], box[axis] - at, *box[axis + 1 :]]]
+    return boxes
+
+
+def test_three_rooms_cut_up_without_waste_are_put_together_again():
+    rng = np.random.default_rng(1)
+    task = problem([box for _ in range(3) for box in cut(rng, (10, 10, 10), 6)])
+    packing = run(task)
+    assert len(packing.builds) == 3
+    assert (packing.status, packing.stop_reason) == ("optimal", "bound met")
+
+
+def test_the_search_saves_builds_that_the_sortings_do_not():
+    # class 1 of Martello, Pisinger, Vigo, n = 50, instances 2 and 3: sortings alone need one build more
+    from amprep.pipeline.bench_instances import mpv_instance
+
+    for index, builds in ((2, 14), (3, 14)):
+        task = mpv_instance(1, 50, index).problem
+        start = pack_extreme_points(
+            task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), report=silent
+        )
+        assert len(start.builds) == builds + 1
+        assert len(run(task, work=40.0).builds) == builds
+
+
+def test_boxes_may_be_turned_to_save_a_build():
+    sizes = [(10, 10, 5), (10, 5, 10), (5, 10, 10), (5, 10, 10)]
+    assert len(run(problem(sizes)).builds) == 3
+    assert len(run(problem(sizes, orientations=Orientations("list", axis_rotations()))).builds) == 2
+
+
+def test_what_is_fixed_stays_in_the_first_build_and_is_never_dissolved():
+    sizes = [(4, 4, 4), *np.random.default_rng(3).integers(2, 7, (25, 3)).tolist()]
+    fixed = (Placement(0, np.eye(3), np.array([3.0, 3.0, 0.0])),)
+    packing = run(problem(sizes, fixed=fixed), work=10.0)
+    assert packing.builds[0][0].item == 0
+
+
+@pytest.mark.parametrize("rules", [{"stacking": False}, {"clearance": 0.5}, {"lift": 1.0}])
+def test_the_rules_of_the_job_hold(rules):
+    run(problem(np.random.default_rng(4).integers(2, 6, (25, 3)).tolist(), **rules), work=10.0)
+
+
+def test_a_round_plate_holds_what_it_can():
+    items = problem(np.random.default_rng(5).integers(2, 6, (20, 3)).tolist()).items
+    run(PackingProblem(items, BuildVolume(np.full(3, 12.0), "cylinder")), work=10.0)
+
+
+def test_filling_ends_when_all_is_placed():
+    packing = run(problem([(5, 5, 5)] * 8, objective="fill"))
+    assert (packing.status, packing.stop_reason, packing.bound) == ("optimal", "bound met", 1000.0)
+
+
+def test_filling_is_never_worse_than_by_the_sortings():
+    task = problem(np.random.default_rng(6).integers(2, 7, (40, 3)).tolist(), objective="fill")
+    start = pack_extreme_points(
+        task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), report=silent
+    )
+    found = [sum(task.items[p.item].value for p in packing.builds[0]) for packing in (start, run(task))]
+    assert found[1] >= found[0]
+
+
+def test_the_budget_of_work_ends_the_search_at_the_same_place_every_time():
+    task = problem(np.random.default_rng(7).integers(2, 8, (40, 3)).tolist())
+    one, other = run(task, work=5.0), run(task, work=5.0)
+    assert [[p.item for p in b] for b in one.builds] == [[p.item for p in b] for b in other.builds]
+
+
+def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
+    packing = run(problem([(6, 6, 6)] * 5), Stop.after(0.0))
+    assert packing.stop_reason == "time limit"
+    assert run(problem([])).builds == ()
+
+
+def test_parameters_out_of_bounds_are_refused():
+    for params in ({"most_ruined": 0}, {"heat": -1.0}, {"patience": -1}, {"work": float("nan")}):
+        with pytest.raises(ValueError, match=next(iter(params))):
+            AutoParams(**params)
