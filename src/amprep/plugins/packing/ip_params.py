@@ -81,3 +81,28 @@ class IpLocalSearchParams(IpParams):
         _at_least("direction_distance", self.direction_distance, 0)
         _at_least("growth", self.growth, 1)
         _at_least("steps", self.steps, 1)
+
+
+@dataclass(frozen=True)
+class ColumnGenerationParams(IpParams):
+    """Parameters of `column-generation`; those of `ip` hold for each pricing program and for the cover.
+
+    Attributes
+    ----------
+    rounds
+        At most so many times the cover is solved and builds are priced.
+    restarts
+        Of the heuristic that prices before the program does: disturbed copies of its best order.
+    roundings
+        So many beginnings of the fractional cover are completed by the heuristic.
+    """
+
+    rounds: int = 60
+    restarts: int = 10
+    roundings: int = 8
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _at_least("rounds", self.rounds, 0)
+        _at_least("restarts", self.restarts, 0)
+        _at_least("roundings", self.roundings, 0)

@@ -157,8 +157,8 @@ def _solve_by_name(program: pulp.LpProblem, name: str, stop: Stop) -> Outcome:
     return Outcome("stopped", None, solved, "time limit")
 
 
-def installed_solver(name: str, time_limit: float | None = None) -> Any:
-    """Return pulp's solver of that name, silent.
+def installed_solver(name: str, time_limit: float | None = None, **options: Any) -> Any:
+    """Return pulp's solver of that name, silent; `options` are its own.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def installed_solver(name: str, time_limit: float | None = None) -> Any:
     """
     if name not in pulp.listSolvers():
         raise AmprepError(f"pulp knows no solver {name!r}{nearest_hint(name, pulp.listSolvers())}")
-    solver = pulp.getSolver(name, msg=False, timeLimit=time_limit)
+    solver = pulp.getSolver(name, msg=False, timeLimit=time_limit, **options)
     if not solver.available():
         known = ", ".join(pulp.listSolvers(onlyAvailable=True))
         raise AmprepError(f"the solver {name} is not installed; installed: {known}")
