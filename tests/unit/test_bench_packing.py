@@ -85,3 +85,15 @@ def test_other_files_are_refused_in_a_line(tmp_path):
         (tmp_path / "other.json").write_text(text)
         with pytest.raises(InputError, match="expected"):
             read_loading(tmp_path / "other.json")
+
+
+def test_the_thesis_tables_have_its_columns_beside_ours():
+    arguments = ["--packer", "extreme-points", "--most-boxes", "25", "--time-limit", "2", "--json"]
+    result = CliRunner().invoke(app, ["bench", "packing", *arguments])
+    builds, fill = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert (builds["boxes"], fill["boxes"]) == ([15], [20, 25])
+    assert builds["thesis"]["Tabu"] == ["0.04 s"]
+    for table in (builds, fill):
+        assert list(table["instances"]) == ["extreme-points"]
+        assert all(instance["validated"] for instance in table["instances"]["extreme-points"])

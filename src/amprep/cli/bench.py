@@ -11,6 +11,7 @@ from amprep import cli
 
 if TYPE_CHECKING:
     from amprep.pipeline.bench_packing import Result
+    from amprep.pipeline.bench_thesis import Table
 
 app = typer.Typer(
     no_args_is_help=True, help="Benchmarks: rerun published instances; every answer is judged anew."
@@ -68,6 +69,50 @@ def container_loading(
         "time_limit_s": time_limit,
     }
     _print(record, results, as_json=as_json)
+
+
+@app.command("packing")
+def packing(
+    time_limit: TimeLimit = 5.0,
+    packers: Annotated[
+        list[str] | None, typer.Option("--packer", metavar="NAME", help="Only this packer; repeatable.")
+    ] = None,
+    most_boxes: Annotated[int, typer.Option("--most-boxes", min=15, help="Leave larger columns out.")] = 120,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Rerun the thesis's two packing tables on instances of the same shape, its columns beside ours."""
+    from amprep.pipeline.bench_thesis import thesis_tables
+
+    report = (lambda _: None) if as_json else (lambda line: typer.echo(line, err=True))
+    tables = thesis_tables(packers or [], most_boxes, seconds=time_limit, seed=seed, report=report)
+    if as_json:
+        typer.echo(json.dumps([_table_record(table) for table in tables], indent=2))
+    else:
+        for table in tables:
+            _print_table(table)
+    valid = all(result.validated for table in tables for row in table.ours.values() for result in row)
+    raise typer.Exit(cli.DONE if valid else cli.INCOMPLETE)
+
+
+def _table_record(table: "Table") -> dict[str, Any]:
+    ours = {label: [result.record for result in row] for label, row in table.ours.items()}
+    return {"table": table.title, "boxes": table.boxes, "thesis": table.thesis, "instances": ours}
+
+
+def _print_table(table: "Table") -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table as Grid
+
+    from amprep.pipeline.bench_thesis import cell
+
+    grid = Grid("boxes", *map(str, table.boxes), box=box.SIMPLE, title=table.title)
+    for name, cells in table.thesis.items():
+        grid.add_row(f"thesis: {name}", *cells, style="dim")
+    for label, row in table.ours.items():
+        grid.add_row(label, *(cell(result) if result.validated else "INVALID" for result in row))
+    Console().print(grid)
 
 
 def _tell(as_json: bool) -> "Callable[[Result], None]":

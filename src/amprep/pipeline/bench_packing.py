@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from amprep.hookspecs import Packer
     from amprep.host import Listed
 
-UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9}
+UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12}
 """Parameters that end a packer before its time."""
 
 
@@ -101,17 +101,33 @@ def run_instances(
         _warm_up(host, listed, instance.problem, min(seconds, 1.0))
     results = []
     for instance in instances:
-        results.append(run_instance(host, listed, instance, seconds=seconds, seed=seed))
+        results.append(_run(host, listed, instance, {}, seconds=seconds, seed=seed))
         report(results[-1])
     return results
 
 
-def run_instance(
-    host: Host, listed: "Listed[Packer]", instance: Instance, *, seconds: float, seed: int
+def run_one(
+    host: Host, packer: str, instance: Instance, table: dict[str, Any], *, seconds: float, seed: int
 ) -> Result:
-    """Run a packer on one instance and let the judge look at the answer."""
+    """Run a packer with parameters of its own on one instance, warm."""
+    listed = host.choose("packer", packer)
+    _warm_up(host, listed, instance.problem, min(seconds, 1.0))
+    return _run(host, listed, instance, table, seconds=seconds, seed=seed)
+
+
+def _run(
+    host: Host,
+    listed: "Listed[Packer]",
+    instance: Instance,
+    table: dict[str, Any],
+    *,
+    seconds: float,
+    seed: int,
+) -> Result:
+    """Run a packer and let the judge look at the answer."""
+    host.refuse_mismatch(listed, instance.problem)
     start = time.monotonic()
-    packing = _pack(host, listed, instance.problem, seconds, seed)
+    packing = _pack(host, listed, instance.problem, table, seconds=seconds, seed=seed)
     took = time.monotonic() - start
     return _result(instance, packing, took)
 
@@ -133,16 +149,23 @@ def _warm_up(host: Host, listed: "Listed[Packer]", problem: PackingProblem, seco
     """Pack again and again until it takes no longer than it should: then all is loaded and compiled."""
     for _ in range(5):
         start = time.monotonic()
-        _pack(host, listed, problem, seconds, seed=0)
+        _pack(host, listed, problem, {}, seconds=seconds, seed=0)
         if time.monotonic() - start < seconds + 0.5:
             return
 
 
 def _pack(
-    host: Host, listed: "Listed[Packer]", problem: PackingProblem, seconds: float, seed: int
+    host: Host,
+    listed: "Listed[Packer]",
+    problem: PackingProblem,
+    table: dict[str, Any],
+    *,
+    seconds: float,
+    seed: int,
 ) -> Packing:
     known = {field.name for field in fields(listed.offer.params)}
-    params = host.params(listed, {name: most for name, most in UNLIMITED.items() if name in known})
+    lifted = {name: most for name, most in UNLIMITED.items() if name in known}
+    params = host.params(listed, lifted | table)
     rng, stop = np.random.default_rng(seed), Stop.after(seconds)
     return host.call(listed, problem, params=params, rng=rng, stop=stop, report=silent)
 

@@ -87,9 +87,9 @@ def _keys(scene: Scene) -> Floats:
     size = np.array([kind[0].size for kind in scene.kinds]).reshape(-1, 3)[scene.kind]
     x, y, z = size.T
     keys = np.array([x * y * z, size.max(axis=1, initial=0.0), x * y, y * z, x * z, x, y, z])
-    return np.maximum(keys, 1e-12)
+    return np.asarray(np.maximum(keys, 1e-12))
 
 
 def _styles(scene: Scene) -> Floats:
     """Return the ways to choose places that suit the room, ``(s, 6)``."""
-    return np.asarray(np.unique([plan.style for plan in passes(scene)], axis=0))
+    return np.unique([plan.style for plan in passes(scene)], axis=0)
