@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from amprep.hookspecs import SupportRouter, hookimpl
+from amprep.hookspecs import NoParams, SupportRouter, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.params import ShortestPathsParams
@@ -25,6 +25,32 @@ def _shortest_paths(
     return route_shortest_paths(problem, params=params, rng=rng, stop=stop, report=report)
 
 
+def _min_cost_flow(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,  # noqa: ARG001
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.supports.min_cost_flow import route_min_cost_flow
+
+    return route_min_cost_flow(problem, stop=stop, report=report)
+
+
+def _push_relabel(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,  # noqa: ARG001
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.supports.push_relabel import route_push_relabel
+
+    return route_push_relabel(problem, stop=stop, report=report)
+
+
 @hookimpl
 def amprep_support_routers() -> Iterable[SupportRouter]:
     """Yield the built-in support routers."""
@@ -33,4 +59,14 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
         summary="Iterated shortest paths that gather into trunks; fast on large grids (thesis 3.4).",
         run=_shortest_paths,
         params=ShortestPathsParams,
+    )
+    yield SupportRouter(
+        name="min-cost-flow",
+        summary="As many paths as the capacities allow at the least cost; exact (thesis 3.3).",
+        run=_min_cost_flow,
+    )
+    yield SupportRouter(
+        name="push-relabel",
+        summary="As many paths as the capacities allow, straight before sideways; the fastest (thesis 3.3).",
+        run=_push_relabel,
     )

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from amprep.kernels.flow_network import Carried
 from amprep.kernels.routing import FAR, UNBOUNDED, Flows, Limits, Longs, Network
 from amprep.model.arrays import Bools
 from amprep.model.supports import DIRECTIONS, Cube, SupportPlan, SupportProblem, Unconnected
@@ -60,7 +61,7 @@ def hard_limits(problem: SupportProblem) -> Limits:
 def plan_of(
     problem: SupportProblem,
     network: Network,
-    flows: Flows,
+    flows: Flows | Carried,
     reasons: Iterable[tuple[int, str]],
     *,
     stop_reason: str,

@@ -1,0 +1,71 @@
+"""What the exact routers share: the pruned network, nothing flowing yet, and the plan read back."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from amprep.kernels.flow_network import UNREACHED, Carried, Room, measure
+from amprep.kernels.routing import Ints, Longs, Network
+from amprep.model.arrays import Bools
+from amprep.model.supports import CAPACITY, ENCLOSED, Status, SupportPlan, SupportProblem
+from amprep.plugins.supports.network import network_of, plan_of
+
+
+class Task(NamedTuple):
+    """A problem ready for exact routing.
+
+    Attributes
+    ----------
+    network
+        Pruned: squares without a way to the plate let nothing in.
+    start
+        ``(m,)`` number of each red square in the network.
+    distance
+        ``(squares,)`` least cost of a way to the plate; `UNREACHED` where there is none.
+    open
+        ``(m,)`` bool, the red squares that have a way.
+    """
+
+    problem: SupportProblem
+    network: Network
+    start: Longs
+    distance: Ints
+    open: Bools
+    room: Room
+
+
+def task_of(problem: SupportProblem) -> Task:
+    """Return the network of a problem with all distances; a capacity of 0 becomes one that never binds."""
+    network, start = network_of(problem)
+    distance = np.full(network.via.size, UNREACHED, np.int32)
+    straight, oblique = problem.costs
+    measure(network, straight, oblique, distance)
+    ways = distance[start[:, None] - network.stride + network.offset] + [straight, *[oblique] * 4]
+    distance[start] = np.minimum(ways.min(axis=1, initial=UNREACHED), UNREACHED)
+    room = Room(problem.node_capacity or len(start), problem.edge_capacity or len(start))
+    return Task(problem, network, start, distance, distance[start] < UNREACHED, room)
+
+
+def nothing_carried(task: Task) -> Carried:
+    """Return flows of zero, in the narrower type when that many paths fit it."""
+    squares = task.network.via.size
+    kind: type[Any] = np.uint16 if len(task.start) <= np.iinfo(np.uint16).max else np.int32
+    flow, through = np.zeros((squares, 5), kind), np.zeros(squares, kind)
+    return Carried(flow, through)
+
+
+def exact_plan(
+    task: Task, carried: Carried, connected: Bools, *, status: Status, stop_reason: str, objective: float
+) -> SupportPlan:
+    """Read the plan from the flows; an optimal one proves its own objective."""
+    plan = plan_of(task.problem, task.network, carried, _reasons(task, connected), stop_reason=stop_reason)
+    bound = objective if status == "optimal" else None
+    return replace(plan, status=status, objective=objective, bound=bound)
+
+
+def _reasons(task: Task, connected: Bools) -> Iterable[tuple[int, str]]:
+    """Yield the red squares left and why: they had a way that others fill, or none at all."""
+    for red in np.flatnonzero(~connected):
+        yield int(red), CAPACITY if task.open[red] else ENCLOSED
