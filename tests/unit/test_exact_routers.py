@@ -143,7 +143,7 @@ def test_high_costs_need_no_more_than_larger_buckets():
     assert plan.objective == 4_000_000
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.integers(0, 100_000))
 def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
     task = random_problem(seed)
@@ -204,7 +204,7 @@ def test_a_stopped_run_is_a_legal_plan(monkeypatch):
     assert (plan.status, plan.stop_reason, plan.bound) == ("feasible", "interrupted", None)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.integers(0, 100_000), st.sampled_from([6, 0.05]))
 def test_as_many_are_connected_as_networkx_connects(seed, effort):
     task = random_problem(seed)

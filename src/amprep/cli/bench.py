@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
+from amprep.cli.bench_supports import supports
 
 if TYPE_CHECKING:
     from amprep.pipeline.bench_packing import Result
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True, help="Benchmarks: rerun published instances; every answer is judged anew."
 )
+app.command("supports")(supports)
 
 TimeLimit = Annotated[float, typer.Option("--time-limit", metavar="S", min=0.0, help="Seconds an instance.")]
 PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to run.")]
