@@ -107,11 +107,18 @@ def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
 
 
 def _standing(body: Body) -> list[Violation]:
-    """Judge that every connected piece reaches the plate; pieces that meet in a point are connected."""
+    """Judge that every connected piece reaches the plate; pieces that meet in a point are connected.
+
+    A shell of negative volume bounds a void inside a piece and is none itself.
+    """
     points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
     count, shell = label_shells(triangles, len(points))
     lowest = np.full(count, np.inf)
     np.minimum.at(lowest, shell, points[triangles, 2].min(axis=1))
+    if not body.support.surface:
+        a, b, c = (points[triangles[:, i]] - points[triangles[:, 0]].mean(axis=0) for i in range(3))
+        volume = np.bincount(shell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0, count)
+        lowest[volume <= NEGLIGIBLE_VOLUME] = 0.0
     floating = int((lowest > TOLERANCE).sum())
     if not floating:
         return []

@@ -5,14 +5,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.geometry.cell_junctions import Grid, Sections, join_sections
 from amprep.geometry.cell_prisms import join_prisms
 from amprep.geometry.cell_sheets import join_sheets, plan_segments, raise_sheets
-from amprep.geometry.cell_solids import finish, is_solid, union
-from amprep.geometry.cell_tiling import Arrays, expand, fills_unit_cube, plate
+from amprep.geometry.cell_solids import FILE_STEP, finish, is_solid, union
+from amprep.geometry.cell_tiling import Arrays, Tiles, expand, fills_unit_cube, plate, tile
 from amprep.geometry.connectors import connect
 from amprep.geometry.solids import as_manifold
-from amprep.model import DIRECTIONS, CellRequest, Cells, Mesh, Role, Template
+from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, Template
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
 from amprep.pipeline.cell_connectors import Ways
 from amprep.pipeline.support_layout import SupportLayout
@@ -84,7 +83,8 @@ def solid_of(
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    ups = [as_manifold(*mesh) for mesh in _connectors(red, seat, layout, ways, overlap)]
+    connectors = _connectors(red, seat, layout, ways, overlap)
+    ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
     if extend:
         ends = [as_manifold(*mesh) for mesh in _ends(emitted, mine & emitted.connector, seat, layout)]
         ups = [union(ups) ^ union(ends)] if ups and ends else []
@@ -109,12 +109,12 @@ def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
 
 
 def _trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0) -> Iterator[Arrays]:
-    """Yield closed meshes of the chosen instances: one for all that tile, one for each other.
+    """Yield closed meshes of the chosen instances: one or two a direction that tiles, one for each other.
 
     Parameters
     ----------
     seats, seat
-        ``(k, 3)`` squares (plane, y, x) below which plates of `seat` mm go with the cells that tile.
+        ``(k, 3)`` squares (plane, y, x) below which plates of `seat` mm go with the cells.
     """
     cells, request = emitted.cells, emitted.request
     tiles, frame = chosen & emitted.tiles, request.frame
@@ -124,17 +124,15 @@ def _trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: fl
     shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
     if len(edge) and emitted.whole[template].all():
         yield join_prisms(square, shift, frame.origin, size)
-    elif len(edge) or seats is not None and len(seats):
-        below = np.empty((0, 3), np.int64) if seats is None else seats[:, ::-1].astype(np.int64) - (0, 0, 1)
-        count = len(below)
-        sections = Sections(
-            np.concatenate([template, np.full(count, len(emitted.templates))]),
-            np.concatenate([square, below]),
-            np.concatenate([shift, np.zeros((count, 2), np.int64)]),
-            np.repeat([0, 1], [len(template), count]),
-        )
-        templates = (*emitted.templates, plate(seat / frame.step))
-        yield join_sections(templates, sections, Grid(frame.origin, size))
+    else:
+        for each in np.unique(shift, axis=0):
+            own = (shift == each).all(axis=1)
+            # a run of cells of one direction is a column of tiles, sheared with them
+            place = square[own] + np.outer(square[own, 2], (*each, 0))
+            yield from tile(emitted.templates, Tiles(template[own], place, cells.matrix[tiles][own]))
+    if seats is not None and len(seats):
+        below = seats[:, ::-1].astype(np.int64) - (0, 0, 1)
+        yield from tile([plate(seat / frame.step)], _upright(np.zeros(len(below), np.int64), below, frame))
     for index in np.flatnonzero(chosen & ~emitted.tiles):
         one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
         points, triangles, _ = expand(emitted.templates, *one)
@@ -144,13 +142,22 @@ def _trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: fl
 def _ends(emitted: Emitted, chosen: Bools, seat: Floats, layout: SupportLayout) -> Iterator[Arrays]:
     """Yield closed meshes of cells that run on above red squares, and of one more below each."""
     yield from _trunks(emitted, chosen)
-    lowest = chosen & _on_red(emitted, layout, seat > 0.0)
-    cells = emitted.cells
-    matrix = cells.matrix[lowest].copy()
-    matrix[:, 2, 3] -= emitted.request.frame.step
-    for template, each in zip(cells.template[lowest], matrix, strict=True):
-        points, triangles, _ = expand(emitted.templates, np.array([template]), each[None])
-        yield points, triangles
+    lowest = np.flatnonzero(chosen & _on_red(emitted, layout, seat > 0.0))
+    cells, request = emitted.cells, emitted.request
+    edge = cells.edge[lowest]
+    square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 2]).astype(np.int64)
+    square, first = np.unique(square, axis=0, return_index=True)
+    template = cells.template[lowest][first].astype(np.int64)
+    yield from tile(emitted.templates, _upright(template, square, request.frame))
+
+
+def _upright(template: Ints, cube: Ints, frame: GridFrame) -> Tiles:
+    """Return templates upright in the cubes ``(n, 3)`` x, y, layer."""
+    size = np.array([frame.pitch, frame.pitch, frame.step])
+    matrix = np.zeros((len(cube), 3, 4))
+    matrix[:, [0, 1, 2], [0, 1, 2]] = size
+    matrix[:, :, 3] = frame.origin + cube * size
+    return Tiles(template, cube, matrix)
 
 
 def _squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:

@@ -14,10 +14,10 @@ from amprep.model.mesh import Mesh
 from amprep.model.space import BuildVolume
 from amprep.model.supports import Cube, GridFrame
 
-FINEST_PITCH, USUAL_PITCH = 0.4, 1.0
+FINEST_PITCH, USUAL_PITCH = 0.8, 2.0
 """mm; the bounds of the automatic pitch, before memory."""
 
-_SQUARES_PER_PART = 25
+_SQUARES_PER_PART = 12
 _MOST_CUBES = 48_000_000
 _TOO_MANY_MILLIONS = 400
 
@@ -25,7 +25,7 @@ _TOO_MANY_MILLIONS = 400
 def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_deg: float = 45.0) -> float:
     """Return a pitch that suits the parts, in mm.
 
-    The median part gets 25 squares along the geometric mean of its three extents, within 0.4 to 1.0 mm. The
+    The median part gets 12 squares along the geometric mean of its three extents, within 0.8 to 2.0 mm. The
     pitch is then raised until the box around all parts, from the plate up, has at most 48 million cubes.
     """
     bounds = [placed.mesh.bounds for placed in parts]
