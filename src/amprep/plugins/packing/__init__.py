@@ -8,7 +8,7 @@ from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpLocalSearchParams, IpParams
-from amprep.plugins.packing.params import AutoParams, ExtremePointsParams, TabuParams
+from amprep.plugins.packing.params import AutoParams, ExtremePointsParams, SweepParams, TabuParams
 
 amprep_api = 1
 
@@ -32,6 +32,14 @@ def _auto(
     from amprep.plugins.packing.auto import pack_auto
 
     return pack_auto(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _sweep(
+    problem: PackingProblem, *, params: SweepParams, rng: np.random.Generator, stop: Stop, report: Report
+) -> Packing:
+    from amprep.plugins.packing.sweep import pack_sweep
+
+    return pack_sweep(problem, params=params, rng=rng, stop=stop, report=report)
 
 
 def _tabu(
@@ -106,6 +114,17 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=AutoParams,
+    )
+    yield Packer(
+        name="sweep",
+        summary="Builds sliced into layers and rows, rows packed along one axis (Sweep 2003).",
+        run=_sweep,
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes"}),
+            objectives=frozenset({"builds", "fill"}),
+            orientations=frozenset({"fixed", "axis", "list"}),
+        ),
+        params=SweepParams,
     )
     yield Packer(
         name="tabu",

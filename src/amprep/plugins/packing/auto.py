@@ -54,16 +54,16 @@ def _construct(
     budget = params.work * 1e6 * (1.0 if filling else 0.5)
     number = 1
     while number < len(plans) + (params.patience if filling else 0):
+        if best.complete and _met(best, bound, filling=filling):
+            return best, "bound met"
         if stop():
             return best, stop.reason
-        if _met(best, bound, filling=filling):
-            return best, "bound met"
         if runner.work > budget:
             return best, "work used up" if filling else ""
         plan = plans[number] if number < len(plans) else _disturbed(best.plan, plans, rng)
         best = min(best, runner.run(plan, best, stop), key=lambda solution: solution.rank)
         number += 1
-    if _met(best, bound, filling=filling):
+    if best.complete and _met(best, bound, filling=filling):
         return best, "bound met"
     return best, "no better one found" if filling else ""
 

@@ -107,3 +107,19 @@ class AutoParams:
         _at_least("heat", self.heat, 0)
         _at_least("patience", self.patience, 0)
         _at_least("work", self.work, 0)
+
+
+@dataclass(frozen=True)
+class SweepParams:
+    """Parameters of `sweep`.
+
+    Attributes
+    ----------
+    slicings
+        At most so many of the choices of axes and orders are tried (0: all).
+    """
+
+    slicings: int = 0
+
+    def __post_init__(self) -> None:
+        _at_least("slicings", self.slicings, 0)
