@@ -148,7 +148,13 @@ def _volume_deeper(body: Body, placed: PlacedPart, depth: float) -> float:
     common = body.solid ^ as_manifold(placed.mesh.vertices, placed.mesh.triangles)
     if common.is_empty() or common.volume() <= NEGLIGIBLE_VOLUME:
         return 0.0
-    return float((common ^ common.translate((0.0, 0.0, depth))).volume())
+    deep = common ^ common.translate((0.0, 0.0, depth))
+    return float(sum(piece.volume() for piece in deep.decompose() if _thickness(piece) > TOLERANCE))
+
+
+def _thickness(solid: "Manifold") -> float:
+    """Return the mean thickness of a flat piece, mm: along a steep wall contact is thin, though it runs deep."""
+    return float(2.0 * solid.volume() / max(solid.surface_area(), NEGLIGIBLE_VOLUME))
 
 
 def _sheet_enters(body: Body, placed: PlacedPart, depth: float) -> bool:

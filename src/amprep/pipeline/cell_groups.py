@@ -13,6 +13,7 @@ from amprep.geometry.connectors import connect
 from amprep.geometry.solids import as_manifold
 from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, Template
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.pipeline.cell_carving import Obstacles, standing_only
 from amprep.pipeline.cell_connectors import Ways
 from amprep.pipeline.support_layout import SupportLayout
 
@@ -66,7 +67,9 @@ def sort_out(request: CellRequest, cells: Cells) -> Emitted:
 
 
 def _is_tile(template: Template) -> bool:
-    return not template.surface and fills_unit_cube(template.mesh.vertices) and is_solid(*_arrays(template.mesh))
+    return (
+        not template.surface and fills_unit_cube(template.mesh.vertices) and is_solid(*_arrays(template.mesh))
+    )
 
 
 def _arrays(mesh: Mesh) -> Arrays:
@@ -74,7 +77,14 @@ def _arrays(mesh: Mesh) -> Arrays:
 
 
 def solid_of(
-    group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float, extend: bool
+    group: int,
+    emitted: Emitted,
+    layout: SupportLayout,
+    ways: Ways,
+    obstacles: Obstacles,
+    *,
+    overlap: float,
+    extend: bool,
 ) -> Mesh | None:
     """Return the closed solid of a support group: cells, seats and connectors; None when it has none."""
     mine = emitted.of(group) & ~emitted.sheet
@@ -88,10 +98,12 @@ def solid_of(
     if extend:
         ends = [as_manifold(*mesh) for mesh in _ends(emitted, mine & emitted.connector, seat, layout)]
         ups = [union(ups) ^ union(ends)] if ups and ends else []
+    if ups:
+        ups = [obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))]
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     trunks = _trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
     solids = [as_manifold(*mesh) for mesh in trunks] + ups + _extras(emitted, group)
-    return Mesh(*finish(solids)) if solids else None
+    return Mesh(*standing_only(*finish(solids))) if solids else None
 
 
 def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
@@ -108,7 +120,9 @@ def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
     return [as_manifold(*_arrays(extra.mesh)) for extra in extras]
 
 
-def _trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0) -> Iterator[Arrays]:
+def _trunks(
+    emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0
+) -> Iterator[Arrays]:
     """Yield closed meshes of the chosen instances: one or two a direction that tiles, one for each other.
 
     Parameters
@@ -189,14 +203,18 @@ def _top_area(points: Floats, triangles: Ints) -> float:
     return float(np.cross(sides[:, 0], sides[:, 1])[:, 2].sum() / 2)
 
 
-def sheet_of(group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float) -> Mesh | None:
+def sheet_of(
+    group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float
+) -> Mesh | None:
     """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
     mine = emitted.of(group) & emitted.sheet
     cells, request = emitted.cells, emitted.request
     sheets = [_arrays(extra.mesh) for extra in cells.extra if extra.group == group and extra.surface]
     trunk = mine & ~emitted.connector
     if trunk.any():
-        sheets.append(expand(emitted.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2])
+        sheets.append(
+            expand(emitted.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2]
+        )
     red = np.flatnonzero(layout.connected & (layout.red_group == group))
     ends = np.flatnonzero(mine & emitted.connector & _on_red(emitted, layout, layout.connected))
     columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]

@@ -1,6 +1,7 @@
 """From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
 
 from amprep.model import PlacedPart, Report, Stop, SupportBody
+from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_connectors import find_ways
 from amprep.pipeline.cell_groups import sheet_of, solid_of, sort_out
 from amprep.pipeline.cell_requests import Emit, checked, make_request
@@ -47,13 +48,15 @@ def build_supports(
         return ()
     report(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
-    request = make_request(layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=connector == "extend")
+    request = make_request(
+        layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=connector == "extend"
+    )
     cells = checked(request, emit(request))
     if connector != "extend" and any(template.surface for template in cells.templates):
         request = make_request(layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=True)
         cells = checked(request, emit(request))
     emitted = sort_out(request, cells)
-    ways = find_ways(layout, meshes)
+    ways, obstacles = find_ways(layout, meshes), Obstacles(parts)
     bodies: list[SupportBody] = []
     count = len(layout.group_parts)
     for group, held in enumerate(layout.group_parts):
@@ -61,11 +64,15 @@ def build_supports(
             break
         name = ", ".join(parts[part].label for part in held)
         report(group / count, f"uniting supports of {name}")
-        solid = solid_of(group, emitted, layout, ways, overlap=overlap, extend=connector == "extend")
+        solid = solid_of(
+            group, emitted, layout, ways, obstacles, overlap=overlap, extend=connector == "extend"
+        )
         sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
         if solid is not None and len(solid.triangles):
             bodies.append(SupportBody(f"supports of {name}", solid, held))
         if sheet is not None and len(sheet.triangles):
-            bodies.append(SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True))
+            bodies.append(
+                SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
+            )
     report(1.0, "supports finished")
     return tuple(bodies)

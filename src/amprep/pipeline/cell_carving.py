@@ -1,0 +1,59 @@
+"""Keeps connectors out of parts: deeper than the overlap nothing of them stays, nor what then hangs in the air."""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.geometry.merging import compact
+from amprep.geometry.shells import label_shells
+from amprep.geometry.solids import as_manifold
+from amprep.model import CONTACT_TOLERANCE, PlacedPart
+from amprep.model.arrays import Floats, Ints
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+
+class Obstacles:
+    """The solid parts of a build, ready to be cut out of connectors; each is made when first needed."""
+
+    def __init__(self, parts: Sequence[PlacedPart]) -> None:
+        self._parts = [(index, placed.mesh) for index, placed in enumerate(parts) if placed.part.is_solid]
+        self._solid = cache(lambda index: as_manifold(*self._arrays(index)))
+
+    def _arrays(self, index: int) -> tuple[Floats, Ints]:
+        mesh = dict(self._parts)[index]
+        return mesh.vertices, mesh.triangles.astype(np.int64)
+
+    def carve(self, connectors: "Manifold", held: tuple[int, ...], overlap: float) -> "Manifold":
+        """Return what of the connectors lies at most `overlap` mm deep in parts they hold, and in no other.
+
+        Depth is measured upwards: a point is too deep when the point `overlap` below it lies in the part too.
+        """
+        lo, hi = (np.array(corner) for corner in np.split(np.array(connectors.bounding_box()), 2))
+        for index, mesh in self._parts:
+            if (lo > mesh.bounds[1]).any() or (hi < mesh.bounds[0]).any():
+                continue
+            depth = overlap if index in held else 0.0
+            # half the tolerance apart, so that faces which should just meet do not cut each other
+            connectors -= self._solid(index).translate((0.0, 0.0, depth + CONTACT_TOLERANCE / 2))
+        return connectors
+
+
+def standing_only(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Return the pieces of a closed mesh that reach the plate, with the voids inside them."""
+    count, shell = label_shells(triangles, len(points))
+    corners = points[triangles]
+    lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(lo, shell, corners.min(axis=1))
+    np.maximum.at(hi, shell, corners.max(axis=1))
+    volume = np.bincount(
+        shell, np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])), count
+    )
+    stays = (lo[:, 2] <= CONTACT_TOLERANCE) | (volume < 0.0)
+    for void in np.flatnonzero(volume < 0.0):
+        around = (volume > 0.0) & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
+        stays[void] = (stays & around).any()
+    return compact(points, triangles[stays[shell]])
