@@ -98,7 +98,7 @@ def run_instances(
     host = Host.load()
     listed = host.choose("packer", packer)
     for instance in instances[:1]:
-        _warm_up(host, listed, instance.problem, min(seconds, 1.0))
+        _warm_up(host, listed, instance.problem, min(seconds, 2.0))
     results = []
     for instance in instances:
         results.append(_run(host, listed, instance, {}, seconds=seconds, seed=seed))
@@ -111,7 +111,7 @@ def run_one(
 ) -> Result:
     """Run a packer with parameters of its own on one instance, warm."""
     listed = host.choose("packer", packer)
-    _warm_up(host, listed, instance.problem, min(seconds, 1.0))
+    _warm_up(host, listed, instance.problem, min(seconds, 2.0))
     return _run(host, listed, instance, table, seconds=seconds, seed=seed)
 
 
