@@ -50,18 +50,25 @@ class Exits(NamedTuple):
 
 
 class Search(NamedTuple):
-    """Work arrays over all states; `stamp` starts at 0, each search has a number of its own."""
+    """Work arrays over all states.
 
-    stamp: Ints
-    label: Ints
+    Attributes
+    ----------
+    seen
+        ``(states,)`` number of the round of augmenting that last saw a state, 0 at first.
+    mark
+        ``(states, 4)``: number of the search that last saw a state (0 at first), label, and its neighbours
+        above and below in a bucket; side by side because they are needed together.
+    """
+
+    seen: Ints
+    mark: Ints
     stack: Ints
     arc: Bytes
     done: Ints
-    above: Ints
-    below: Ints
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _reduced(prices: Prices, potential: Ints, state: int, to: int, direction: int) -> int:
     """Return the reduced cost of an arc; flow taken back pays back."""
     gap: int = potential[to] - potential[state]
@@ -93,15 +100,15 @@ def augment(
     ends
         Set to the square where the path from each start ends, -1 for none.
     """
-    stamp, stack, arcs = work.stamp, work.stack, work.arc
+    seen, stack, arcs = work.seen, work.stack, work.arc
     found = 0
     for i in range(starts.size):
         ends[i] = -1
         length = 0
         stack[0] = 2 * starts[i]
-        if stamp[stack[0]] == number:
+        if seen[stack[0]] == number:
             continue
-        stamp[stack[0]] = number
+        seen[stack[0]] = number
         arcs[0] = 0
         while length >= 0:
             s = stack[length]
@@ -112,7 +119,7 @@ def augment(
             to = -1
             while k < last and to < 0:
                 t, space, direction = residual(network, carried, room, s, k)
-                if space > 0 and stamp[t] != number and _reduced(prices, potential, s, t, direction) == 0:
+                if space > 0 and seen[t] != number and _reduced(prices, potential, s, t, direction) == 0:
                     to = t
                 else:
                     k += 1
@@ -121,7 +128,7 @@ def augment(
                 length -= 1
             else:
                 length += 1
-                stack[length], arcs[length], stamp[to] = to, 0, number
+                stack[length], arcs[length], seen[to] = to, 0, number
         if length < 0:
             continue
         found += 1
@@ -131,30 +138,30 @@ def augment(
         for j in range(length):
             shift(network, carried, stack[j], arcs[j], 1)
         for j in range(length + 1):
-            stamp[stack[j]] = 0
+            seen[stack[j]] = 0
     return found
 
 
-@njit(cache=True)
-def _unlink(heads: Ints, work: Search, state: int) -> None:
+@njit(cache=True, inline="always")
+def _unlink(heads: Ints, mark: Ints, state: int) -> None:
     """Take a state out of its bucket."""
-    above, below = work.above[state], work.below[state]
+    above, below = mark[state, 2], mark[state, 3]
     if above >= 0:
-        work.below[above] = below
+        mark[above, 3] = below
     else:
-        heads[work.label[state]] = below
+        heads[mark[state, 1]] = below
     if below >= 0:
-        work.above[below] = above
+        mark[below, 2] = above
 
 
-@njit(cache=True)
-def _link(heads: Ints, work: Search, state: int, label: int) -> None:
+@njit(cache=True, inline="always")
+def _link(heads: Ints, mark: Ints, state: int, label: int) -> None:
     """Put a state on top of the bucket of its label."""
-    work.label[state] = label
-    work.above[state] = -1
-    work.below[state] = heads[label]
+    mark[state, 1] = label
+    mark[state, 2] = -1
+    mark[state, 3] = heads[label]
     if heads[label] >= 0:
-        work.above[heads[label]] = state
+        mark[heads[label], 2] = state
     heads[label] = state
 
 
@@ -182,22 +189,22 @@ def search(
     heads
         Work array: one entry for each distance that a bucket is wanted for.
     """
-    stamp, label, stack, done = work.stamp, work.label, work.stack, work.done
+    mark, stack, done = work.mark, work.stack, work.done
     heads[:] = -1
     highest, count, bucket, length = 0, 0, 0, 0
     best = _UNKNOWN
     for u in starts:
-        stamp[2 * u] = number
-        _link(heads, work, 2 * u, 0)
+        mark[2 * u, 0] = number
+        _link(heads, mark, 2 * u, 0)
     while bucket <= highest and bucket < best:
         if length == 0:
             s = heads[bucket]
             if s < 0:
                 bucket += 1
                 continue
-            _unlink(heads, work, s)
+            _unlink(heads, mark, s)
             stack[0], length = s, 1
-            stamp[s] = -number
+            mark[s, 0] = -number
         length -= 1
         s = stack[length]
         done[count] = s
@@ -208,25 +215,25 @@ def search(
                 break
         for k in range(0 if not s & 1 and carried.through[s >> 1] == 0 else 5, -1, -1):
             t, space, direction = residual(network, carried, room, s, k)
-            if space <= 0 or stamp[t] == -number:
+            if space <= 0 or mark[t, 0] == -number:
                 continue
             reach = bucket + _reduced(prices, potential, s, t, direction)
-            if reach >= best or (stamp[t] == number and label[t] <= reach):
+            if reach >= best or (mark[t, 0] == number and mark[t, 1] <= reach):
                 continue
             if reach >= heads.size:
                 return TOO_FAR
-            if stamp[t] == number:
-                _unlink(heads, work, t)
+            if mark[t, 0] == number:
+                _unlink(heads, mark, t)
             if reach == bucket:
-                stamp[t], label[t], stack[length] = -number, reach, t
+                mark[t, 0], mark[t, 1], stack[length] = -number, reach, t
                 length += 1
             else:
-                stamp[t] = number
-                _link(heads, work, t, reach)
+                mark[t, 0] = number
+                _link(heads, mark, t, reach)
                 highest = max(highest, reach)
     raised = best if best < _UNKNOWN else highest + lift
     for i in range(count):
         s = done[i]
-        if label[s] < raised:
-            potential[s] += raised - label[s]
+        if mark[s, 1] < raised:
+            potential[s] += raised - mark[s, 1]
     return best if best < _UNKNOWN else NO_EXIT

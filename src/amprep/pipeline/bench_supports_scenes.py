@@ -18,7 +18,7 @@ SCENES = (*BALLS, "plate")
 def scene(name: str, side: int, *, capacity: int = 0) -> SupportProblem:
     """Return a scene on a cube of `side` cubes; red are the squares under what is flatter than 45 degrees.
 
-    ``ball`` hangs in the air, ``two-balls`` hang one above the other, ``plate`` is a slab over 40 random balls.
+    ``ball`` hangs in the air, ``two-balls`` hang one above the other, ``plate`` is a slab over 40 balls.
 
     Raises
     ------

@@ -81,13 +81,11 @@ class _Routing:
         self.prices = Prices(*task.problem.costs)
         states = self.potential.size
         self.work = Search(
-            np.zeros(states, np.int32),
-            np.empty(states, np.int32),
-            np.empty(states, np.int32),
-            np.empty(states, np.uint8),
-            np.empty(states, np.int32),
-            np.empty(states, np.int32),
-            np.empty(states, np.int32),
+            seen=np.zeros(states, np.int32),
+            mark=np.zeros((states, 4), np.int32),
+            stack=np.empty(states, np.int32),
+            arc=np.empty(states, np.uint8),
+            done=np.empty(states, np.int32),
         )
         self.number = 0
         self.heads = np.empty(4 * task.network.box.shape[0] * max(task.problem.costs) + 16, np.int32)
