@@ -144,12 +144,12 @@ def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, hol
 
 
 def _volume_deeper(body: Body, placed: PlacedPart, depth: float) -> float:
-    """Return the volume of the points common to body and part with a common point `depth` below them."""
-    common = body.solid ^ as_manifold(placed.mesh.vertices, placed.mesh.triangles)
-    if common.is_empty() or common.volume() <= NEGLIGIBLE_VOLUME:
+    """Return the volume of the body's points in the part with the point `depth` below them in the part too."""
+    part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
+    below = body.solid ^ part.translate((0.0, 0.0, depth))
+    if below.is_empty() or below.volume() <= NEGLIGIBLE_VOLUME:
         return 0.0
-    deep = common ^ common.translate((0.0, 0.0, depth))
-    return float(sum(piece.volume() for piece in deep.decompose() if _thickness(piece) > TOLERANCE))
+    return float(sum(piece.volume() for piece in (below ^ part).decompose() if _thickness(piece) > TOLERANCE))
 
 
 def _thickness(solid: "Manifold") -> float:
