@@ -73,7 +73,7 @@ class IpLocalSearchParams(IpParams):
     used_distance: int = 5
     direction_distance: int = 20
     growth: float = 1.5
-    steps: int = 20
+    steps: int = 10
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -97,6 +97,7 @@ class ColumnGenerationParams(IpParams):
         So many beginnings of the fractional cover are completed by the heuristic.
     """
 
+    effort: float = 0.01
     rounds: int = 60
     restarts: int = 10
     roundings: int = 8
