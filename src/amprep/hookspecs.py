@@ -50,7 +50,9 @@ class ReadMeshes(Protocol):
 class MakeVolume(Protocol):
     """Makes a bounding volume that contains the part as a solid."""
 
-    def __call__(self, part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> BoundingVolume: ...
+    def __call__(
+        self, part: Part, *, params: Any, rng: np.random.Generator, stop: Stop
+    ) -> BoundingVolume: ...
 
 
 class Pack(Protocol):

@@ -21,7 +21,16 @@ def digest(folder: Path) -> dict[str, str]:
 def demo(tmp_path_factory, fixtures) -> Path:
     """The demo job, run once by a fresh process."""
     folder = tmp_path_factory.mktemp("demo")
-    command = [sys.executable, "-m", "amprep", "run", str(fixtures / "demo" / "job.toml"), "-o", str(folder), "-q"]
+    command = [
+        sys.executable,
+        "-m",
+        "amprep",
+        "run",
+        str(fixtures / "demo" / "job.toml"),
+        "-o",
+        str(folder),
+        "-q",
+    ]
     assert subprocess.run(command, check=False).returncode == 0
     return folder
 
@@ -105,7 +114,9 @@ def test_files_folders_and_counts_may_be_mixed(amprep, fixtures, tmp_path):
     folder.mkdir()
     shutil.copy(fixtures / "ball.stl", folder)
     shutil.copy(fixtures / "table.stl", folder)
-    outcome = amprep("run", f"{folder}:2", f"{fixtures / 'knife-edge.stl'}:3", "-o", tmp_path / "out", "--json")
+    outcome = amprep(
+        "run", f"{folder}:2", f"{fixtures / 'knife-edge.stl'}:3", "-o", tmp_path / "out", "--json"
+    )
     names = sorted(part["name"] for build in outcome.json["builds"] for part in build["parts"])
     assert names == ["ball", "ball-2", "knife-edge", "knife-edge-2", "knife-edge-3", "table", "table-2"]
 
@@ -120,7 +131,9 @@ def test_a_dry_run_writes_nothing(amprep, fixtures, tmp_path):
 def test_stl_files_lie_in_build_coordinates(amprep, fixtures, tmp_path):
     import trimesh
 
-    outcome = amprep("run", fixtures / "table.stl", "-o", tmp_path, "--stl", "--json", "--set", "packing.lift_mm=3")
+    outcome = amprep(
+        "run", fixtures / "table.stl", "-o", tmp_path, "--stl", "--json", "--set", "packing.lift_mm=3"
+    )
     names = outcome.json["builds"][0]["stl_files"]
     bounds = [trimesh.load_mesh(tmp_path / name).bounds for name in names]
     assert len(names) == 2, "the part and its supports"
@@ -203,7 +216,15 @@ def test_an_inside_out_mesh_is_turned_and_that_is_reported(amprep, fixtures, tmp
 @pytest.mark.parametrize("seconds", [0.3, 1.5, 3.0, 4.0])
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_leaves_nothing(fixtures, tmp_path, seconds, how):
-    command = [sys.executable, "-m", "amprep", "run", str(fixtures / "demo" / "job.toml"), "-o", str(tmp_path / "out")]
+    command = [
+        sys.executable,
+        "-m",
+        "amprep",
+        "run",
+        str(fixtures / "demo" / "job.toml"),
+        "-o",
+        str(tmp_path / "out"),
+    ]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "COLUMNS": "80"}
     )

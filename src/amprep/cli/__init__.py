@@ -11,7 +11,7 @@ DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
 """Exit codes: done; done with something unplaced, unsupported or failing; wrong input or usage; interrupted."""
 
 
-def _interrupt(signum: int, frame: FrameType | None) -> NoReturn:
+def _interrupt(signum: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001 - as `signal` calls it
     """Let a termination request end a run as cleanly as Ctrl-C does."""
     raise KeyboardInterrupt
 

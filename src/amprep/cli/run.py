@@ -41,7 +41,9 @@ def run(
     cell: Annotated[str | None, typer.Option(help="Lattice cell by name.")] = None,
     target: Annotated[
         str | None,
-        typer.Option("--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."),
+        typer.Option(
+            "--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."
+        ),
     ] = None,
     sets: Annotated[
         list[str] | None,
@@ -50,18 +52,24 @@ def run(
     seed: Annotated[int | None, typer.Option(help="Seed of everything random; default 0.")] = None,
     time_limit: Annotated[
         float | None,
-        typer.Option(min=0.0, metavar="SECONDS", help="Packing and routing end by then with their best so far."),
+        typer.Option(
+            min=0.0, metavar="SECONDS", help="Packing and routing end by then with their best so far."
+        ),
     ] = None,
     stl: Annotated[bool, typer.Option("--stl", help="Write parts and supports as STL too.")] = False,
     allow_surface: Annotated[
         bool, typer.Option("--allow-surface", help="Pack and support meshes that are no solids as they are.")
     ] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Plan and judge everything, write nothing.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON on standard output.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Plan and judge everything, write nothing.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the report as JSON on standard output.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table; errors only.")] = False,
     modules: Modules = None,
     no_plugins: NoPlugins = False,
-    debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
     """Pack, support and write build jobs, one 3MF for each printing run.
 
@@ -73,7 +81,9 @@ def run(
 
     from amprep.job import apply_sets, override
 
-    job = override(_job(inputs), printer=printer, packer=packer, router=router, cell=cell, target=target, seed=seed)
+    job = override(
+        _job(inputs), printer=printer, packer=packer, router=router, cell=cell, target=target, seed=seed
+    )
     job = apply_sets(job, sets or [])
     console = Console(stderr=True, quiet=quiet)
     if job.printer_is_default:
@@ -94,7 +104,13 @@ def run(
 
 
 def _watched(
-    job: "Job", folder: Path, console: "Console", *, modules: list[str], no_plugins: bool, **options: bool | float | None
+    job: "Job",
+    folder: Path,
+    console: "Console",
+    *,
+    modules: list[str],
+    no_plugins: bool,
+    **options: bool | float | None,
 ) -> "RunRecord":
     """Run with progress bars; nothing heavy is imported before they show."""
     from amprep.cli.progress import Bars
@@ -111,14 +127,16 @@ def _watched(
 
 
 def _job(inputs: list[str]) -> "Job":
-    """A job file stands alone: what it prints and how is written in it."""
+    """Return the job; a job file stands alone: what it prints and how is written in it."""
     from amprep.job import job_from_inputs, load_job
 
     job_files = [name for name in inputs if name.lower().endswith(".toml")]
     if not job_files:
         return job_from_inputs(inputs)
     if len(inputs) > 1:
-        raise JobError(f"a job file comes alone, got {len(inputs)} inputs; list them as inputs = [...] in {job_files[0]}")
+        raise JobError(
+            f"a job file comes alone, got {len(inputs)} inputs; list them as inputs = [...] in {job_files[0]}"
+        )
     return load_job(Path(job_files[0]))
 
 

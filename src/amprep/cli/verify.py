@@ -16,7 +16,7 @@ def verify(
     file: Annotated[Path, typer.Argument(help="A build job that amprep wrote (.3mf, any target).")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")] = False,
-    debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
     """Re-check a written build from the file alone.
 

@@ -1,0 +1,1 @@
+"""Array mathematics in numpy, scipy and manifold3d: plain arrays in, plain arrays out."""

@@ -58,7 +58,9 @@ def _pieces(segments: Floats, column: Ints, patches: Patches, chosen: Ints) -> F
         has = corner < sizes
         here = patches.points[first + np.where(has, corner, 0)]
         following = patches.points[first + np.where(corner + 1 < sizes, corner + 1, 0)]
-        normal += np.where(has[:, None], np.cross(here - patches.points[first], following - patches.points[first]), 0.0)
+        normal += np.where(
+            has[:, None], np.cross(here - patches.points[first], following - patches.points[first]), 0.0
+        )
         side = following - here
         inward = np.column_stack([-side[:, 1], side[:, 0]])
         distance = np.einsum("ij,ij->i", start - here[:, :2], inward)
@@ -70,7 +72,9 @@ def _pieces(segments: Floats, column: Ints, patches: Patches, chosen: Ints) -> F
     pieces = np.column_stack([segment, enter, leave, enter, leave])
     for height, place in ((3, 1), (4, 2)):
         point = start + along * pieces[:, place : place + 1] - patches.points[first, :2]
-        pieces[:, height] = patches.points[first, 2] - np.einsum("ij,ij->i", point, normal[:, :2]) / normal[:, 2]
+        pieces[:, height] = (
+            patches.points[first, 2] - np.einsum("ij,ij->i", point, normal[:, :2]) / normal[:, 2]
+        )
     length = np.linalg.norm(along, axis=1)
     return np.asarray(pieces[(leave - enter) * length > _SHORTEST])
 
@@ -121,7 +125,7 @@ def plan_segments(points: Floats, triangles: Ints) -> Floats:
     level = np.abs(points[:, 2]) < 1e-9
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides = np.unique(np.sort(sides[level[sides].all(axis=1)], axis=1), axis=0)
-    return points[sides][:, :, :2]
+    return np.asarray(points[sides][:, :, :2])
 
 
 def join_sheets(sheets: Sequence[Arrays]) -> Arrays:

@@ -77,7 +77,6 @@ class Patches(NamedTuple):
         of_column = np.searchsorted(owner[:, 0], np.arange(len(self.of_column)))
         return Patches(self.points[np.repeat(keep, sizes)], start, owner, of_column)
 
-
     def corners_in(self, column: int) -> Iterator[Floats]:
         """Yield the corners ``(k, 3)`` of each patch in a column."""
         for index in range(self.of_column[column], self.of_column[column + 1]):
@@ -103,7 +102,11 @@ def clip_into(columns: Columns, corners: Floats, number: Ints, allowed: Bools) -
     square_start = np.searchsorted(flat[order], np.arange(ny * nx + 1))
     room = 4 * len(corners) + 64
     while True:
-        points, start, owner = np.empty((8 * room, 3)), np.empty(room + 1, np.int64), np.empty((room, 2), np.int64)
+        points, start, owner = (
+            np.empty((8 * room, 3)),
+            np.empty(room + 1, np.int64),
+            np.empty((room, 2), np.int64),
+        )
         count = kernels.clip_into_columns(
             corners, columns.grid, columns.shape, square_start, chosen[order], columns.lo, columns.hi,
             RUN_SLACK, points, start, owner,
@@ -204,7 +207,7 @@ def connect(
     covered = find_covered(held, surface)
     free = held.chosen(~covered[held.owner[:, 0]])
     meshes = [separate_edges(*stand_on(free, base[free.owner[:, 0]], overlap))] if len(free.owner) else []
-    for column in np.flatnonzero(covered):
+    for column in np.flatnonzero(covered).tolist():
         way = union([_between(corners, base[column], overlap) for corners in held.corners_in(column)])
         first, last = surface.of_column[column : column + 2]
         for corners, mine in zip(surface.corners_in(column), own[first:last], strict=True):
@@ -280,7 +283,9 @@ def _walls(left: Floats, right: Floats, levels: Floats, begins: Ints) -> Iterato
             forth[chosen],
         )  # fmt: skip
     level = (last[0] == last[1]) & (shared == last[0])
-    yield from _quads_cut(at(left, level, shared), at(right, level, shared), right[level], left[level], forth[level])
+    yield from _quads_cut(
+        at(left, level, shared), at(right, level, shared), right[level], left[level], forth[level]
+    )
     for ends, other, mine, is_left in ((left, right, last[0], True), (right, left, last[1], False)):
         taller = mine > shared
         apex = other[taller]

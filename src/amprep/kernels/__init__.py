@@ -1,0 +1,1 @@
+"""Compiled kernels, numba only: plain arrays in, plain arrays out."""

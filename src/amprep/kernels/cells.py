@@ -166,9 +166,7 @@ def _apart(points, first, last, others, other_first, other_last, margin):
 
 
 @njit(cache=True)
-def find_covered(
-    hold_points, hold_start, hold_owner, hold_columns, points, start, owner, columns, covered
-):
+def find_covered(hold_points, hold_start, hold_owner, hold_columns, points, start, owner, columns, covered):
     """Find columns where a patch lies under another patch that is to be held.
 
     Both families are sorted by column; `hold_columns` and `columns` ``(m + 1,)`` say where each column's

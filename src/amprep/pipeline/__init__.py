@@ -1,0 +1,1 @@
+"""One module per stage, and `run`, which runs them all."""

@@ -1,4 +1,4 @@
-"""Keeps connectors out of parts: deeper than the overlap nothing of them stays, nor what then hangs in the air."""
+"""Keeps connectors out of parts: nothing of them stays deeper than the overlap, nor hangs in the air then."""
 
 from collections.abc import Sequence
 from functools import cache

@@ -40,7 +40,8 @@ def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
     held, surface, own = [], [], []
     first = 0
     for part, (mesh, needs) in enumerate(zip(meshes, layout.overhangs, strict=True)):
-        corners = held_corners(mesh.vertices, mesh.triangles, needs.faces, needs.edges, needs.tips, width=width)
+        faces, edges, tips = (np.asarray(each, np.int64) for each in (needs.faces, needs.edges, needs.tips))
+        corners = held_corners(mesh.vertices, mesh.triangles, faces, edges, tips, width=width)
         added = -1 - np.arange(len(corners) - len(needs.faces))
         mine = layout.red_part == part
         number = np.concatenate([first + needs.faces, added]).astype(np.int64)
@@ -51,7 +52,9 @@ def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
     count = len(layout.red)
     all_surface = join_patches(surface, count)
     ends = np.cumsum([len(mesh.triangles) for mesh in meshes])
-    own = layout.red_part[all_surface.owner[:, 0]] == np.searchsorted(ends, all_surface.owner[:, 1], side="right")
+    own = layout.red_part[all_surface.owner[:, 0]] == np.searchsorted(
+        ends, all_surface.owner[:, 1], side="right"
+    )
     return Ways(columns, join_patches(held, count), all_surface, own)
 
 

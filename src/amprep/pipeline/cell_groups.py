@@ -175,7 +175,7 @@ def _upright(template: Ints, cube: Ints, frame: GridFrame) -> Tiles:
 
 
 def _squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
-    """Number grid squares."""
+    """Return the numbers of grid squares."""
     _, ny, nx = layout.frame.shape
     return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 

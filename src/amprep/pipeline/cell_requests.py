@@ -27,7 +27,17 @@ def make_request(
         edges = np.vstack([edges, _above_red(layout)])
     plane, y, x, load, group, direction, role = edges.T
     return CellRequest(
-        layout.frame, plane, y, x, direction, role, load, group, parts, overlap=overlap, allow_surface=allow_surface
+        layout.frame,
+        plane,
+        y,
+        x,
+        direction,
+        role,
+        load,
+        group,
+        parts,
+        overlap=overlap,
+        allow_surface=allow_surface,
     )
 
 
@@ -57,7 +67,9 @@ def checked(request: CellRequest, cells: object) -> Cells:
         raise PluginError("the lattice cell returned arrays template, edge and matrix of different lengths")
     _require_range("template", cells.template, len(cells.templates))
     _require_range("edge", cells.edge, len(request.plane))
-    _require_range("group", np.array([extra.group for extra in cells.extra]), int(request.group.max(initial=-1)) + 1)
+    _require_range(
+        "group", np.array([extra.group for extra in cells.extra]), int(request.group.max(initial=-1)) + 1
+    )
     meshes = [template.mesh for template in cells.templates] + [extra.mesh for extra in cells.extra]
     finite = np.isfinite(cells.matrix).all() and all(np.isfinite(mesh.vertices).all() for mesh in meshes)
     if not finite:
@@ -68,5 +80,5 @@ def checked(request: CellRequest, cells: object) -> Cells:
 
 
 def _require_range(name: str, index: np.ndarray, count: int) -> None:
-    if len(index) and not (0 <= index.min() and index.max() < count):
+    if len(index) and not (index.min() >= 0 and index.max() < count):
         raise PluginError(f"the lattice cell returned a {name} index outside 0 to {count - 1}")

@@ -5,6 +5,7 @@ import shutil
 import tempfile
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 from amprep.errors import InputError
 
@@ -28,7 +29,7 @@ class OutputFolder:
         self.folder, self.stem = folder, safe_name(stem)
         self._names: list[str] = []
 
-    def __enter__(self) -> "OutputFolder":
+    def __enter__(self) -> Self:
         self._made = not self.folder.exists()
         try:
             self.folder.mkdir(parents=True, exist_ok=True)

@@ -97,5 +97,5 @@ def placed_builds(
 
 
 def snapped(matrix: np.ndarray) -> np.ndarray:
-    """Return the matrix as a 3MF file keeps it (float32 of six decimals), so that what is planned is what is written."""
+    """Return the matrix as a 3MF keeps it (float32 of six decimals): what is planned is what is written."""
     return np.round(matrix, 6).astype(np.float32).astype(np.float64)

@@ -52,7 +52,7 @@ def run_record(
         status=packing.status,
         stop_reason=packing.stop_reason,
         bound=packing.bound,
-        warnings=tuple([*host.warnings, *left]),
+        warnings=(*host.warnings, *left),
         notes=tuple(f"{part.name}: {note}" for part in parts for note in part.notes),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from amprep.host import Host, Listed
 from amprep.hookspecs import Packer
+from amprep.host import Host, Listed
 from amprep.job import Job, apply_part_settings
 from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, Stop
 from amprep.pipeline.cell_file import choose_cell
@@ -65,7 +65,8 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
     placed = placed_builds(parts, problem, packing)
     with OutputFolder(options.folder, job.name) as outputs:
         supported = [
-            support_build(job, host, build, number, clock, limit) for number, build in enumerate(placed, start=1)
+            support_build(job, host, build, number, clock, limit)
+            for number, build in enumerate(placed, start=1)
         ]
         records = [
             finish_build(each, number, outputs, options.dry_run, options.stl, clock, stop)
@@ -96,14 +97,16 @@ def _read(job: Job, host: Host, allow_surface: bool, report: Report) -> list[Par
 
     def read(path: Path) -> list[Part]:
         listed = host.reader_for(path, job.reading.readers)
-        return host.call(listed, path, params=host.params(listed, job.reading.params.get(listed.offer.name, {})))
+        return host.call(
+            listed, path, params=host.params(listed, job.reading.params.get(listed.offer.name, {}))
+        )
 
     parts = read_all(files, read, allow_surface=allow_surface, report=report)
     return apply_part_settings(parts, job)
 
 
 def _volume(job: Job, host: Host, part: Part, stop: Stop) -> BoundingVolume:
-    """A part with boxes given by hand is bounded by them, whatever the job's strategy."""
+    """Bound a part: by the boxes given by hand, if there are any, whatever the job's strategy."""
     listed = host.choose("volume", "boxes" if part.boxes is not None else job.packing.volumes)
     params = host.params(listed, job.packing.volume_params if part.boxes is None else {})
     return host.call(listed, part, params=params, rng=np.random.default_rng(job.seed), stop=stop)

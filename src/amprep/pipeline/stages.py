@@ -21,7 +21,7 @@ class Unwatched:
     """A watcher that shows nothing."""
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[Report]:
+    def stage(self, name: str) -> Iterator[Report]:  # noqa: ARG002 - as a `Watcher` is called
         """Yield a report nobody reads."""
         yield silent
 

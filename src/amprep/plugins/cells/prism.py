@@ -23,7 +23,7 @@ def emit_prisms(request: CellRequest, *, params: NoParams, stop: Stop, report: R
     """Put the unit cube under the map of each edge."""
     count = len(request.plane)
     templates = (Template("prism", unit_cube()),)
-    return Cells(templates, np.zeros(count), np.arange(count), request.matrices)
+    return Cells(templates, np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices)
 
 
 def prism_material(pitch: float, step: float, params: NoParams) -> tuple[float, float]:  # noqa: ARG001

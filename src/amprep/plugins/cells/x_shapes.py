@@ -20,7 +20,7 @@ _MIRRORED_SIDES = (5, 8, 9, 12)
 """Sides of the ring on x = 0 and y = 0: cut along the other diagonal, the one of the neighbour's side."""
 
 
-def solid_x(arm: float, low: float, waist: float, high: float) -> Template:
+def solid_x(arm: float, low: float, waist: float, high: float, hair: float = 0.0) -> Template:
     """Return a closed X.
 
     Parameters
@@ -29,18 +29,21 @@ def solid_x(arm: float, low: float, waist: float, high: float) -> Template:
         Half of a wall's width along x, as a share of the square's side.
     low, waist, high
         How far the arms are drawn back from the square's sides at the bottom, half way up and at the top.
+    hair
+        How much thinner and shorter than that the arms are half way up.
     """
-    heights, insets = _sections(low, waist, high)
-    points = np.vstack([_ring(arm, inset, height) for height, inset in zip(heights, insets, strict=True)])
+    heights, insets, arms = _sections(arm, low, waist, high, hair)
+    sections = zip(arms, insets, heights, strict=True)
+    points = np.vstack([_ring(*section) for section in sections])
     cap = np.array(_CAP)
     triangles = [cap[:, ::-1], cap + 16 * (len(heights) - 1)]
     triangles += [_loft() + 16 * level for level in range(len(heights) - 1)]
     return Template(_name(low, waist, high), Mesh(points, np.vstack(triangles).astype(np.int32)))
 
 
-def surface_x(arm: float, low: float, waist: float, high: float) -> Template:  # noqa: ARG001 - as `solid_x`
-    """Return four open sheets that meet in the axis of the cell."""
-    heights, insets = _sections(low, waist, high)
+def surface_x(low: float, waist: float, high: float) -> Template:
+    """Return four open sheets that meet in the axis of the cell; the arguments are as for `solid_x`."""
+    heights, insets, _ = _sections(0.0, low, waist, high, 0.0)
     points = [_cross(inset, height) for height, inset in zip(heights, insets, strict=True)]
     sheets = [[[0, i, i + 5], [0, i + 5, 5]] for i in range(1, 5)]
     triangles = [np.array(sheets).reshape(-1, 3) + 5 * level for level in range(len(heights) - 1)]
@@ -56,11 +59,13 @@ def _name(low: float, waist: float, high: float) -> str:
     return "narrowing" if low < high else "widening"
 
 
-def _sections(low: float, waist: float, high: float) -> tuple[list[float], list[float]]:
-    """Return the heights at which the sides bend, and the insets there."""
-    if waist == (low + high) / 2:
-        return [0.0, 1.0], [low, high]
-    return [0.0, 0.5, 1.0], [low, waist, high]
+def _sections(
+    arm: float, low: float, waist: float, high: float, hair: float
+) -> tuple[list[float], list[float], list[float]]:
+    """Return the heights at which the sides bend, and the insets and arms there."""
+    if waist == (low + high) / 2 and hair == 0.0:
+        return [0.0, 1.0], [low, high], [arm, arm]
+    return [0.0, 0.5, 1.0], [low, waist + hair, high], [arm, arm - hair, arm]
 
 
 def _ring(arm: float, inset: float, height: float) -> Floats:

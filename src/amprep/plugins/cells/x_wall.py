@@ -8,6 +8,16 @@ from amprep.errors import JobError
 from amprep.model import CellRequest, Cells, Report, Role, Stop
 from amprep.plugins.cells.x_shapes import solid_x, surface_x
 
+HAIR = 1e-3
+"""Share of the square: how much thinner oblique cells are half way up, times the number of their direction.
+
+So no two cells of different directions have sides in a common plane. Uniting such cells is where manifold3d
+leaves triangles folded onto one another.
+"""
+
+_USUAL = 0.3
+"""mm; what a fine scan track with its neighbour is wide, and what powder still runs through."""
+
 
 @dataclass(frozen=True)
 class XWallParams:
@@ -16,23 +26,25 @@ class XWallParams:
     Attributes
     ----------
     wall_mm
-        Thickness of the walls; 0 makes surfaces, which only targets with walls of no thickness can read.
+        Thickness of the walls; 0 makes surfaces, which only targets with walls of no thickness can read. Left
+        out, it is 0.3 mm, or a quarter of the pitch if that is less.
     join_every
         Neighbours meet in every n-th layer, the one on the plate first; 1 joins them all the way up.
     gap_mm
-        How far neighbouring walls are apart where they do not meet.
+        How far neighbouring walls are apart where they do not meet. Left out, it is 0.3 mm, or a quarter of the
+        pitch if that is less.
     """
 
-    wall_mm: float = 0.3
+    wall_mm: float | None = None
     join_every: int = 3
-    gap_mm: float = 0.3
+    gap_mm: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.wall_mm < np.inf:
+        if self.wall_mm is not None and not 0.0 <= self.wall_mm < np.inf:
             raise ValueError(f"wall_mm must be 0 or more, got {self.wall_mm}")
         if self.join_every < 1:
             raise ValueError(f"join_every must be at least 1, got {self.join_every}")
-        if not 0.0 < self.gap_mm < np.inf:
+        if self.gap_mm is not None and not 0.0 < self.gap_mm < np.inf:
             raise ValueError(f"gap_mm must be more than 0, got {self.gap_mm}")
 
 
@@ -52,45 +64,79 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, repor
     """
     shares = _shares(request.frame.pitch, params)
     if params.wall_mm == 0.0 and not request.allow_surface:
-        raise JobError("x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm")
+        raise JobError(
+            "x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm"
+        )
     lower = request.plane - 1
     low = np.where(_is_joined(lower, params.join_every), 0.0, shares.inset)
     high = np.where(_is_joined(request.plane, params.join_every), 0.0, shares.inset)
-    waist = np.where(lower % params.join_every == 0, 0.0, np.where(low == high, shares.inset, (low + high) / 2))
+    waist = np.where(
+        lower % params.join_every == 0, 0.0, np.where(low == high, shares.inset, (low + high) / 2)
+    )
     whole = request.role == Role.CONNECTOR
     low[whole], waist[whole], high[whole] = 0.0, 0.0, 0.0
-    kinds, template = np.unique(np.column_stack([low, waist, high]), axis=0, return_inverse=True)
-    make = solid_x if params.wall_mm > 0.0 else surface_x
-    templates = tuple(make(shares.arm, *insets) for insets in kinds.tolist())
+    rows = np.column_stack([low, waist, high])
+    if params.wall_mm == 0.0:
+        kinds, template = np.unique(rows, axis=0, return_inverse=True)
+        templates = tuple(surface_x(*insets) for insets in kinds.tolist())
+    else:
+        rows = np.column_stack([rows, HAIR * request.direction])
+        kinds, template = np.unique(rows, axis=0, return_inverse=True)
+        templates = tuple(solid_x(shares.arm, *kind) for kind in kinds.tolist())
     return Cells(templates, template.ravel(), np.arange(len(request.plane)), request.matrices)
 
 
 def x_wall_material(pitch: float, step: float, params: XWallParams) -> tuple[float, float]:
-    """Volume in mm3 of an edge, on average over the layers; shearing keeps it.
+    """Volume in mm3 of an upright and of an oblique edge, on average over the layers (and the directions).
 
     The X with arms of half width a in a square with side q = 1 - 2 inset covers 4 a (q - a) of the unit
-    square, and in each layer the inset changes linearly.
+    square. Between two sections both change linearly; shearing keeps the volume.
     """
     shares = _shares(pitch, params)
+    if params.wall_mm == 0.0:
+        return 0.0, 0.0
+    full, back = 0.0, shares.inset
     n = params.join_every
-    drawn_back = {1: 0.0, 2: 0.25}.get(n, (n - 2) / n)  # mean inset, as a share of the full one
-    side = 1.0 - 2.0 * shares.inset * drawn_back
-    volume = 4.0 * shares.arm * (side - shares.arm) * pitch * pitch * step
-    return volume, volume
+    layers = [(full, full, full)]
+    if n == 2:
+        layers.append((full, back, full))
+    elif n > 2:
+        layers += [(full, back / 2, back), (back, back / 2, full)] + [(back, back, back)] * (n - 3)
+    upright = _mean_volume(shares.arm, layers, 0.0)
+    oblique = np.mean([_mean_volume(shares.arm, layers, HAIR * direction) for direction in range(1, 5)])
+    return upright * pitch * pitch * step, float(oblique) * pitch * pitch * step
+
+
+def _mean_volume(arm: float, layers: list[tuple[float, float, float]], hair: float) -> float:
+    """Mean share of the prism that the X of each layer fills."""
+    total = 0.0
+    for low, waist, high in layers:
+        areas = [
+            4.0 * a * (1.0 - 2.0 * inset - a)
+            for a, inset in ((arm, low), (arm - hair, waist + hair), (arm, high))
+        ]
+        middles = [
+            4.0 * (arm - hair / 2) * (1.0 - (end + waist + hair) - (arm - hair / 2)) for end in (low, high)
+        ]
+        total += (areas[0] + 4 * middles[0] + 2 * areas[1] + 4 * middles[1] + areas[2]) / 12.0
+    return total / len(layers)
 
 
 def _is_joined(plane: np.ndarray, every: int) -> np.ndarray:
     """Whether the layer above or below a plane is one in which neighbours meet."""
-    return (plane % every == 0) | ((plane - 1) % every == 0)
+    return np.asarray((plane % every == 0) | ((plane - 1) % every == 0))
 
 
 def _shares(pitch: float, params: XWallParams) -> _Shares:
     """Turn millimetres into shares of the pitch."""
-    shares = _Shares(params.wall_mm / np.sqrt(2.0) / pitch, 0.5 * params.gap_mm / pitch)
+    usual = min(_USUAL, pitch / 4.0)
+    wall = usual if params.wall_mm is None else params.wall_mm
+    gap = usual if params.gap_mm is None else params.gap_mm
+    shares = _Shares(wall / np.sqrt(2.0) / pitch, 0.5 * gap / pitch)
     if shares.arm + shares.inset >= 0.45:
-        needed = (params.wall_mm * np.sqrt(2.0) + params.gap_mm) / 0.9
+        needed = (wall * np.sqrt(2.0) + gap) / 0.9
         raise JobError(
-            f"x-wall: walls of {params.wall_mm:g} mm with gaps of {params.gap_mm:g} mm need a pitch of more than "
-            f"{needed:.3g} mm, the grid has {pitch:.4g}; make wall_mm or gap_mm smaller or pitch_mm larger"
+            f"x-wall: walls of {wall:g} mm with gaps of {gap:g} mm need a pitch of more than {needed:.3g} mm, "
+            f"the grid has {pitch:.4g}; make wall_mm or gap_mm smaller or pitch_mm larger"
         )
     return shares
