@@ -173,9 +173,8 @@ def test_a_floating_piece_and_a_void_inside_a_piece_are_told_apart():
 
 
 def test_carving_leaves_the_overlap_in_what_is_held_and_nothing_in_others():
-    post = as_manifold(
-        *(lambda m: (m.vertices, m.triangles.astype(np.int64)))(box((15, 15, 0), (17, 17, 12)))
-    )
+    mesh = box((15, 15, 0), (17, 17, 12))
+    post = as_manifold(mesh.vertices, mesh.triangles.astype(np.int64))
     build = build_of()
     held = Obstacles(build.parts).carve(post, (0,), 0.1)
     free = Obstacles(build.parts).carve(post, (), 0.1)
