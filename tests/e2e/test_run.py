@@ -134,7 +134,7 @@ def test_stl_files_lie_in_build_coordinates(amprep, fixtures, tmp_path):
     outcome = amprep(
         "run", fixtures / "table.stl", "-o", tmp_path, "--stl", "--json", "--set", "packing.lift_mm=3"
     )
-    names = outcome.json["builds"][0]["stl_files"]
+    names = outcome.json["builds"][0]["stl"]
     bounds = [trimesh.load_mesh(tmp_path / name).bounds for name in names]
     assert len(names) == 2, "the part and its supports"
     assert bounds[0][0][2] == pytest.approx(3.0, abs=1e-4)
@@ -198,8 +198,8 @@ def test_a_mistake_costs_one_clear_error_and_exit_code_2(amprep, fixtures, tmp_p
 
 def test_every_malformed_fixture_is_refused_in_one_line(amprep, fixtures, tmp_path):
     for path in sorted((fixtures / "malformed").iterdir()):
-        if path.name == "inside-out.stl":
-            continue  # turned and reported instead
+        if path.name in ("inside-out.stl", "missing-thumbnail.3mf"):
+            continue  # mended and reported instead
         outcome = amprep("run", path, "-o", tmp_path / "out")
         assert outcome.code == 2, path.name
         lines = [line for line in outcome.err.splitlines() if line.startswith("amprep:")]
@@ -240,9 +240,13 @@ def test_an_interrupted_run_leaves_nothing(fixtures, tmp_path, seconds, how):
 
 
 def test_help_comes_at_once():
+    """Processor time of the quickest of three: the wall clock would measure the neighbours' work too."""
+    import resource
+
     seconds = []
     for _ in range(3):
-        began = time.perf_counter()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run([sys.executable, "-m", "amprep", "--help"], check=True, capture_output=True)
-        seconds.append(time.perf_counter() - began)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     assert min(seconds) < 0.5

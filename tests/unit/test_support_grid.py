@@ -284,11 +284,11 @@ def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
     def pitch(size, space=SPACE):
         return choose_pitch(placed(box(size, (0, 0, 0))), space)
 
-    assert pitch((30, 30, 30)) == 1.0
-    assert pitch((15, 15, 15)) == 0.6
-    assert pitch((4, 4, 4)) == 0.4
+    assert pitch((30, 30, 30)) == 2.0
+    assert pitch((15, 15, 15)) == 1.2
+    assert pitch((4, 4, 4)) == 0.8
     assert pitch((700, 700, 700), BuildVolume([800, 800, 800])) > 1.5
-    assert choose_pitch([], SPACE) == 1.0
+    assert choose_pitch([], SPACE) == 2.0
 
 
 def test_a_pitch_far_too_fine_is_refused():

@@ -158,10 +158,15 @@ def _thickness(solid: "Manifold") -> float:
 
 
 def _sheet_enters(body: Body, placed: PlacedPart, depth: float) -> bool:
-    """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too."""
+    """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too.
+
+    Sideways it has to lie deeper than contact.
+    """
     corners = body.support.mesh.vertices[body.support.mesh.triangles]
     middles = (corners + np.roll(corners, 1, axis=1)) / 2
     points = np.concatenate([corners.reshape(-1, 3), middles.reshape(-1, 3), corners.mean(axis=1)])
-    mesh = placed.mesh
-    entered = points[inside(points, mesh.vertices, mesh.triangles)]
-    return bool(inside(entered - (0.0, 0.0, depth), mesh.vertices, mesh.triangles).any())
+    mesh, side = placed.mesh, 2 * TOLERANCE
+    for dx, dy in ((0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)):
+        for dz in (0.0, -depth):
+            points = points[inside(points + (dx, dy, dz), mesh.vertices, mesh.triangles)]
+    return len(points) > 0

@@ -1,5 +1,6 @@
 """The command line: parse, print, exit codes; nothing is computed here."""
 
+import os
 import signal
 import sys
 from types import FrameType
@@ -31,7 +32,9 @@ def main() -> NoReturn:
         sys.exit(DONE)
     except (KeyboardInterrupt, Interrupted):
         _say("interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(INTERRUPTED)  # compiled libraries cut off in mid-work may crash while Python tears them down
     except AmprepError as error:
         if debug:
             raise

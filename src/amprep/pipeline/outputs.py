@@ -67,5 +67,5 @@ class OutputFolder:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         shutil.rmtree(self._staging, ignore_errors=True)
-        if kind is not None and self._made and not any(self.folder.iterdir()):
+        if self._made and not any(self.folder.iterdir()):
             self.folder.rmdir()
