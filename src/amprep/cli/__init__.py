@@ -3,18 +3,12 @@
 import os
 import signal
 import sys
-from types import FrameType
 from typing import NoReturn
 
 from amprep.errors import AmprepError, Interrupted
 
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
 """Exit codes: done; done with something unplaced, unsupported or failing; wrong input or usage; interrupted."""
-
-
-def _interrupt(signum: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001 - as `signal` calls it
-    """Let a termination request end a run as cleanly as Ctrl-C does."""
-    raise KeyboardInterrupt
 
 
 def _say(line: str) -> None:
@@ -24,7 +18,7 @@ def _say(line: str) -> None:
 def main() -> NoReturn:
     """Run the command line; a mistake of the user's becomes one line and exit code 2, never a traceback."""
     debug = "--debug" in sys.argv
-    signal.signal(signal.SIGTERM, _interrupt)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends a run as cleanly as Ctrl-C does
     try:
         from amprep.cli.app import app
 
