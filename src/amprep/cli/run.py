@@ -123,6 +123,8 @@ def _watched(
             from amprep.pipeline.run import run as run_job
 
             host = Host.load(modules=modules, plugins_enabled=not no_plugins)
+        for warning in host.warnings:
+            console.print(f"warning: {warning}", markup=False)
         return run_job(job, host, RunOptions(folder, **options), watcher=bars, stop=Stop())  # type: ignore[arg-type]
 
 
