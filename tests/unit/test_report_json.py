@@ -10,11 +10,11 @@ from rich.console import Console
 
 from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, BuildVolume
-from amprep.report.atomic import replacing
 from amprep.report.json_report import json_text, to_json, write_json
 from amprep.report.measures import build_density, build_height, support_volume
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedRecord, UnplacedRecord
 from amprep.report.table import LISTED, summary
+from amprep.threemf.writing_files import replacing
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from amprep.report.atomic import replacing
 from amprep.report.html_tables import body_sections, header
 from amprep.report.json_report import plain
 from amprep.report.record import RunRecord
 from amprep.report.view_model import view_model
+from amprep.threemf.writing_files import replacing
 
 VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">

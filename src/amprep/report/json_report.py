@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from amprep.model import PlacedPart, SupportBody, Unsupported
-from amprep.report.atomic import replacing
 from amprep.report.measures import part_volume
 from amprep.report.record import BuildRecord, RunRecord, UnconnectedRecord
+from amprep.threemf.writing_files import replacing
 
 FORMAT = 1
 """Version of the layout; grows when a key changes its meaning or goes."""

@@ -7,11 +7,11 @@ import numpy as np
 
 from amprep.model import Build, Mesh
 from amprep.model.arrays import Floats
-from amprep.report.atomic import replacing
 from amprep.report.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.labels import draw_labels
 from amprep.report.render import render
 from amprep.report.scene import PART_KIND, Body, build_bodies, plate_body, unsupported_marks
+from amprep.threemf.writing_files import replacing
 
 if TYPE_CHECKING:
     from PIL.Image import Image
