@@ -193,3 +193,53 @@ def find_covered(hold_points, hold_start, hold_owner, hold_columns, points, star
                     break
             if covered[column]:
                 break
+
+
+@njit(cache=True)
+def find_clashes(ends, square, square_start, square_edge, shape, slack, pairs):
+    """Find edges that run back along part of another, in the same or a neighbouring square.
+
+    Parameters
+    ----------
+    ends
+        ``(n, 4)`` float64: x and y of each edge's start and end.
+    square
+        ``(n, 2)`` int64 y and x of each edge's square.
+    square_start, square_edge
+        Edges of each square ``y * nx + x``, as compressed rows.
+    shape
+        Numbers of squares (ny, nx).
+    slack
+        mm; edges this far apart count as collinear, and shorter overlaps are none.
+    pairs
+        ``(k, 2)`` int64, written in place.
+
+    Returns
+    -------
+    count
+        Number of pairs; when it exceeds k, only the first k are written.
+    """
+    ny, nx = shape
+    count = 0
+    for i in range(len(ends)):
+        x, y = ends[i, 0], ends[i, 1]
+        dx, dy = ends[i, 2] - x, ends[i, 3] - y
+        length = np.sqrt(dx * dx + dy * dy)
+        if length <= slack:
+            continue
+        dx, dy = dx / length, dy / length
+        for row in range(max(0, square[i, 0] - 1), min(ny, square[i, 0] + 2)):
+            for column in range(max(0, square[i, 1] - 1), min(nx, square[i, 1] + 2)):
+                for entry in range(square_start[row * nx + column], square_start[row * nx + column + 1]):
+                    j = square_edge[entry]
+                    if j <= i:
+                        continue
+                    ax, ay, bx, by = ends[j, 0] - x, ends[j, 1] - y, ends[j, 2] - x, ends[j, 3] - y
+                    if abs(ax * dy - ay * dx) > slack or abs(bx * dy - by * dx) > slack:
+                        continue
+                    a, b = ax * dx + ay * dy, bx * dx + by * dy
+                    if a > b and min(a, length) - max(b, 0.0) > slack:
+                        if count < len(pairs):
+                            pairs[count, 0], pairs[count, 1] = i, j
+                        count += 1
+    return count
