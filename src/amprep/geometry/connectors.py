@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from amprep.geometry.cell_edges import separate_edges
 from amprep.geometry.cell_solids import arrays_of, union
 from amprep.geometry.solids import as_manifold
-from amprep.geometry.welding import kept, label_equal_rows, weld
+from amprep.geometry.welding import kept, weld
 from amprep.kernels import cells as kernels
 
 if TYPE_CHECKING:
@@ -180,14 +180,7 @@ def find_covered(held: Patches, surface: Patches) -> Bools:
 
 
 def connect(
-    columns: Columns,
-    held: Patches,
-    surface: Patches,
-    *,
-    base: Floats,
-    lid: Floats,
-    overlap: float,
-    own: Bools,
+    held: Patches, surface: Patches, *, base: Floats, lid: Floats, overlap: float, own: Bools
 ) -> list[Arrays]:
     """Fill columns from the red squares up to the held faces, `overlap` mm into them.
 
@@ -195,7 +188,7 @@ def connect(
 
     Parameters
     ----------
-    columns, held, surface
+    held, surface
         Pieces in the columns; `surface` is all that looks down, of any part, held or not.
     base, lid
         ``(m,)`` mm, where the connectors of each column begin, and a height that none of them reaches.
@@ -208,16 +201,12 @@ def connect(
     Returns
     -------
     meshes
-        Closed ones that may touch one another: few of all columns where nothing is in the way, and one for
+        Closed ones that may touch one another: one of all columns where nothing is in the way, and one for
         each other column.
     """
     covered = find_covered(held, surface)
     free = held.chosen(~covered[held.owner[:, 0]])
-    colour = _colours(free, columns, overlap)
-    meshes = []
-    for each in range(int(colour.max(initial=-1)) + 1):
-        part = free.chosen(colour == each)
-        meshes.append(separate_edges(*stand_on(part, base[part.owner[:, 0]], overlap)))
+    meshes = [separate_edges(*stand_on(free, base[free.owner[:, 0]], overlap))] if len(free.owner) else []
     for column in np.flatnonzero(covered).tolist():
         way = union([_between(corners, base[column], overlap) for corners in held.corners_in(column)])
         first, last = surface.of_column[column : column + 2]
@@ -226,50 +215,6 @@ def connect(
         if not way.is_empty():
             meshes.append(arrays_of(way))
     return meshes
-
-
-def _colours(patches: Patches, columns: Columns, rise: float) -> Ints:
-    """Colour patches ``(n,)`` so that those of one colour meet in whole edges at the same heights, or not at all.
-
-    Where two meet otherwise, at a step of the surface or where its edges are cut differently, part of a wall
-    would be there twice.
-    """
-    sizes = np.diff(patches.start)
-    owner = np.repeat(np.arange(len(sizes)), sizes)
-    start = kept(patches.points + (0.0, 0.0, rise))
-    following = np.arange(1, len(start) + 1)
-    following[patches.start[1:] - 1] = patches.start[:-1]
-    end = start[following]
-    label, count = label_equal_rows(np.concatenate([start, end]).view(np.int64))
-    ends = label.reshape(2, -1)
-    edge, kinds = label_equal_rows(
-        np.column_stack([ends.min(axis=0), ends.max(axis=0), np.zeros(len(start), np.int64)])
-    )
-    alone = np.flatnonzero(np.bincount(edge, minlength=kinds)[edge] == 1)
-    pairs = owner[alone][
-        _clashes(start[alone], end[alone], columns.square[patches.owner[owner[alone], 0]], columns.shape)
-    ]
-    colour = np.zeros(len(sizes), np.int64)
-    for one in np.unique(pairs[:, 1]).tolist():
-        others = colour[pairs[pairs[:, 1] == one, 0]]
-        colour[one] = np.setdiff1d(np.arange(len(others) + 1), others)[0]
-    return colour
-
-
-def _clashes(start: Floats, end: Floats, square: Ints, shape: tuple[int, int]) -> Ints:
-    """Find pairs ``(k, 2)`` of edges that overlap in plan and run in opposite directions; the higher comes last."""
-    ny, nx = shape
-    flat = square[:, 0] * nx + square[:, 1]
-    order = np.argsort(flat, kind="stable")
-    square_start = np.searchsorted(flat[order], np.arange(ny * nx + 1))
-    ends = np.column_stack([start[:, :2], end[:, :2]])
-    room = 1024
-    while True:
-        pairs = np.empty((room, 2), np.int64)
-        found = kernels.find_clashes(ends, square, square_start, order, shape, _LOWEST, pairs)
-        if found <= room:
-            return pairs[:found]
-        room = found
 
 
 def _between(corners: Floats, level: float, rise: float) -> "Manifold":

@@ -9,7 +9,6 @@ import numpy as np
 from amprep.geometry.merging import compact
 from amprep.geometry.shells import label_shells
 from amprep.geometry.solids import as_manifold
-from amprep.geometry.welding import kept
 from amprep.model import CONTACT_TOLERANCE, PlacedPart
 from amprep.model.arrays import Floats, Ints
 
@@ -26,7 +25,7 @@ class Obstacles:
 
     def _arrays(self, index: int) -> tuple[Floats, Ints]:
         mesh = dict(self._parts)[index]
-        return kept(mesh.vertices), mesh.triangles.astype(np.int64)  # rounded as connectors are
+        return mesh.vertices, mesh.triangles.astype(np.int64)
 
     def carve(self, connectors: "Manifold", held: tuple[int, ...], overlap: float) -> "Manifold":
         """Return what of the connectors lies at most `overlap` mm deep in parts they hold, and in no other.

@@ -112,7 +112,7 @@ def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, ove
     base = ways.columns.lo[:, 2] - seat / 2
     lid = ways.columns.hi[:, 2] + layout.frame.step
     overlap = max(overlap, CONTACT_TOLERANCE)
-    return connect(ways.columns, held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
+    return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
 
 
 def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
