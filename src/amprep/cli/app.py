@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, plugins, printers, run, verify
+from amprep.cli import bench, plugins, printers, run, support, verify
 
 app = typer.Typer(
     name="amprep",
@@ -16,6 +16,7 @@ app = typer.Typer(
     "write a 3MF build job per printing run.",
 )
 app.command("run")(run.run)
+app.command("support")(support.support)
 app.command("verify")(verify.verify)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(printers.app, name="printers")

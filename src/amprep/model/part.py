@@ -89,6 +89,9 @@ class Part:
         False only when the user allowed a surface that manifold3d refuses.
     boxes
         ``(k, 6)`` x0 y0 z0 x1 y1 z1 given by hand in the job, or None.
+    positions
+        ``(k, 3)`` mm, where the file puts the part's origin, once for each time its build asks for it; only
+        what supports a plate as it lies looks at them. None: one, at the origin.
     notes
         What reading mended or found, one sentence each, shown to the user.
     metadata
@@ -106,6 +109,7 @@ class Part:
     appearance: Appearance = field(default_factory=Appearance)
     is_solid: bool = True
     boxes: Floats | None = None
+    positions: Floats | None = None
     part_number: str = ""
     source: str = ""
     notes: tuple[str, ...] = ()

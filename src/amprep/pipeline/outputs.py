@@ -19,14 +19,19 @@ def safe_name(text: str) -> str:
 class OutputFolder:
     """Collects a run's files and publishes them all at once; on any exception nothing appears.
 
+    Parameters
+    ----------
+    numbered
+        False when there is one build only: its files then need no number.
+
     Raises
     ------
     InputError
         If the folder cannot be made or written.
     """
 
-    def __init__(self, folder: Path, stem: str) -> None:
-        self.folder, self.stem = folder, safe_name(stem)
+    def __init__(self, folder: Path, stem: str, *, numbered: bool = True) -> None:
+        self.folder, self.stem, self.numbered = folder, safe_name(stem), numbered
         self._names: list[str] = []
 
     def __enter__(self) -> Self:
@@ -51,6 +56,10 @@ class OutputFolder:
     def name(self, suffix: str) -> str:
         """Return what ``STEM.suffix`` will be called."""
         return f"{self.stem}.{suffix}"
+
+    def of_build(self, number: int, suffix: str) -> str:
+        """Return the suffix of a file of build `number`: ``build-2.3mf``, or ``3mf`` without numbers."""
+        return f"build-{number}.{suffix}" if self.numbered else suffix
 
     def stale_builds(self, count: int) -> list[str]:
         """Names of build files of an earlier run with more builds than `count`; they are left alone."""

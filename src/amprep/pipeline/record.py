@@ -32,10 +32,10 @@ def run_record(
     job: Job,
     host: Host,
     parts: Sequence[Part],
-    problem: PackingProblem,
-    packing: Packing,
     builds: Sequence[BuildRecord],
     outputs: OutputFolder,
+    packing: Packing,
+    unplaced: tuple[UnplacedRecord, ...] = (),
 ) -> RunRecord:
     """Return the record of a whole run."""
     stale = outputs.stale_builds(len(builds))
@@ -48,7 +48,7 @@ def run_record(
         target=job.target,
         objective=job.packing.objective,
         builds=tuple(builds),
-        unplaced=_unplaced(parts, problem, packing),
+        unplaced=unplaced,
         status=packing.status,
         stop_reason=packing.stop_reason,
         bound=packing.bound,
@@ -58,7 +58,10 @@ def run_record(
     )
 
 
-def _unplaced(parts: Sequence[Part], problem: PackingProblem, packing: Packing) -> tuple[UnplacedRecord, ...]:
+def unplaced_records(
+    parts: Sequence[Part], problem: PackingProblem, packing: Packing
+) -> tuple[UnplacedRecord, ...]:
+    """Return the copies that found no place, and why."""
     items = ((problem.items[entry.item], entry.reason) for entry in packing.unplaced)
     return tuple(UnplacedRecord(parts[item.part].name, item.copy + 1, reason) for item, reason in items)
 

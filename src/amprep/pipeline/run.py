@@ -13,7 +13,7 @@ from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
 from amprep.pipeline.reading import expand_inputs, read_all
-from amprep.pipeline.record import run_record
+from amprep.pipeline.record import run_record, unplaced_records
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.pipeline.supported import support_build
 from amprep.pipeline.writing import finish_build, write_reports
@@ -57,7 +57,7 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
     clock, limit = Clock(watcher), stop.within(options.time_limit)
     check_choices(job, host)
     with clock.stage("read") as report:
-        parts = _read(job, host, options.allow_surface, report)
+        parts = read_job(job, host, options.allow_surface, report)
     with clock.stage("bound") as report:
         volumes = make_volumes(parts, lambda part: _volume(job, host, part, limit), report)
     with clock.stage("pack") as report:
@@ -65,18 +65,25 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
     placed = placed_builds(parts, problem, packing)
     with OutputFolder(options.folder, job.name) as outputs:
         supported = [
-            support_build(job, host, build, number, clock, limit)
+            support_build(job, host, build, number, clock, limit, build_id=f"{job.name}.build-{number}")
             for number, build in enumerate(placed, start=1)
         ]
         records = [
             finish_build(each, number, outputs, options.dry_run, options.stl, clock, stop)
             for number, each in enumerate(supported, start=1)
         ]
-        record = run_record(job, host, parts, problem, packing, records, outputs)
-        if options.dry_run:
-            return replace(record, stages=clock.times)
-        record = write_reports(record, outputs, clock)
-        outputs.publish()
+        unplaced = unplaced_records(parts, problem, packing)
+        return published(
+            run_record(job, host, parts, records, outputs, packing, unplaced), outputs, options, clock
+        )
+
+
+def published(record: RunRecord, outputs: OutputFolder, options: RunOptions, clock: Clock) -> RunRecord:
+    """Write the reports and let all files appear, unless this is a dry run; return the complete record."""
+    if options.dry_run:
+        return replace(record, stages=clock.times)
+    record = write_reports(record, outputs, clock)
+    outputs.publish()
     return record
 
 
@@ -92,7 +99,8 @@ def check_choices(job: Job, host: Host) -> None:
         host.params(listed, params)
 
 
-def _read(job: Job, host: Host, allow_surface: bool, report: Report) -> list[Part]:
+def read_job(job: Job, host: Host, allow_surface: bool, report: Report) -> list[Part]:
+    """Read everything the job names, and apply what it says of single parts."""
     files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
 
     def read(path: Path) -> list[Part]:

@@ -31,13 +31,20 @@ class SupportedBuild:
 
 
 def support_build(
-    job: Job, host: Host, parts: tuple[PlacedPart, ...], number: int, clock: Clock, stop: Stop
+    job: Job,
+    host: Host,
+    parts: tuple[PlacedPart, ...],
+    number: int,
+    clock: Clock,
+    stop: Stop,
+    *,
+    build_id: str,
 ) -> SupportedBuild:
     """Return build `number` with supports for everything that needs some, or listed with its reason."""
     if not job.supports.enabled:
-        return SupportedBuild(Build(build_settings(job, number, pitch=1.0), parts))
+        return SupportedBuild(Build(build_settings(job, build_id, pitch=1.0), parts))
     pitch = job.supports.pitch_mm or choose_pitch(parts, job.printer.space, job.supports.strut_angle_deg)
-    settings = build_settings(job, number, pitch)
+    settings = build_settings(job, build_id, pitch)
     with clock.stage("route") as report:
         layout = _plan(job, host, parts, number, pitch, stop, report)
     with clock.stage("cells") as report:
@@ -59,10 +66,10 @@ def support_build(
     return SupportedBuild(Build(settings, parts, bodies, unsupported), layout)
 
 
-def build_settings(job: Job, number: int, pitch: float) -> BuildSettings:
+def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
     """Return the rules that travel with the build's file."""
     return BuildSettings(
-        build_id=f"{job.name}.build-{number}",
+        build_id=build_id,
         space=job.printer.space,
         target=job.target,
         printer=job.printer.name,

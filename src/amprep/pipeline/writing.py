@@ -41,7 +41,7 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
         builds = []
         for number, each in enumerate(record.builds, start=1):
             report((number - 1) / (len(record.builds) + 1), f"picture {number}")
-            name = f"build-{number}.png"
+            name = outputs.of_build(number, "png")
             write_picture(each.build, outputs.path(name))
             builds.append(replace(each, picture=outputs.name(name)))
         record = replace(record, builds=tuple(builds))
@@ -54,13 +54,13 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
 def _read_back(number: int, outputs: OutputFolder) -> Build:
     from amprep.threemf import read_build
 
-    return read_build(outputs.staged(f"build-{number}.3mf"))
+    return read_build(outputs.staged(outputs.of_build(number, "3mf")))
 
 
 def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool) -> BuildRecord:
     from amprep.threemf import write_build
 
-    name = f"build-{number}.3mf"
+    name = outputs.of_build(number, "3mf")
     write_build(record.build, outputs.path(name))
     stl_files = _write_stl(record.build, number, outputs) if stl else ()
     return replace(record, file=outputs.name(name), stl_files=stl_files)
@@ -74,7 +74,7 @@ def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, .
     meshes += [(body.name, body.mesh) for body in build.supports]
     names = []
     for index, (label, mesh) in enumerate(meshes, start=1):
-        suffix = f"build-{number}.{index:03d}.{safe_name(label)}.stl"
+        suffix = outputs.of_build(number, f"{index:03d}.{safe_name(label)}.stl")
         write_stl(mesh, outputs.path(suffix))
         names.append(outputs.name(suffix))
     return tuple(names)

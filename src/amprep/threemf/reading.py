@@ -37,6 +37,7 @@ class _Item(NamedTuple):
 
     thing: "Lib3MF.Object"
     linear: Floats
+    translation: Floats
     part_number: str
     metadata: dict[tuple[str, str], str]
 
@@ -44,8 +45,8 @@ class _Item(NamedTuple):
 def read_parts(path: Path) -> list[Part]:
     """Return the parts a 3MF file's build asks for, not yet settled.
 
-    An item's translation is dropped, its linear map applied to the mesh; items of one object under the same
-    map are one part. Components become one mesh. A file that lib3mf refuses is read by trimesh.
+    An item's linear map is applied to the mesh, its translation kept as a position; items of one object under
+    the same map are one part. Components become one mesh. A file that lib3mf refuses is read by trimesh.
 
     Raises
     ------
@@ -88,11 +89,11 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
     roles = parse_part_roles(package.part_config, str(path))
     gatherer = Gatherer(loaded.model, volumes, roles, str(path))
     parts: list[Part] = []
-    for item, count in _items(loaded.model, package.unprintable):
+    for item, positions in _items(loaded.model, package.unprintable):
         shape = gatherer.shape_of(item.thing, item.linear)
         if shape.vertices:
             notes = [*notes, *shape.notes]
-            parts.append(_part(item, count, shape, scale, tuple(dict.fromkeys(notes)), path))
+            parts.append(_part(item, positions * scale, shape, scale, tuple(dict.fromkeys(notes)), path))
             notes = []
         else:
             notes += shape.notes
@@ -101,8 +102,8 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
     return parts
 
 
-def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_Item, int]]:
-    """Yield the different build items, and how often each comes, in the order of their first."""
+def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_Item, Floats]]:
+    """Yield the different build items, and the positions ``(k, 3)`` of each, in the order of their first."""
     found: dict[object, list[_Item]] = {}
     items = model.GetBuildItems()
     index = 0
@@ -112,14 +113,16 @@ def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple
             key = (item.thing.GetUniqueResourceID(), (item.linear + 0.0).tobytes(), item.part_number)
             found.setdefault((key, tuple(sorted(item.metadata.items()))), []).append(item)
         index += 1
-    yield from ((same[0], len(same)) for same in found.values())
+    yield from ((same[0], np.array([item.translation for item in same])) for same in found.values())
 
 
 def _item(item: "Lib3MF.BuildItem") -> _Item:
     thing = item.GetObjectResource()
-    linear = row_matrix(item.GetObjectTransform())[:3, :3] if item.HasObjectTransform() else np.eye(3)
+    matrix = row_matrix(item.GetObjectTransform()) if item.HasObjectTransform() else np.eye(4)
     metadata = _metadata(thing.GetMetaDataGroup()) | _metadata(item.GetMetaDataGroup())
-    return _Item(thing, linear, item.GetPartNumber() or thing.GetPartNumber(), metadata)
+    return _Item(
+        thing, matrix[:3, :3], matrix[3, :3], item.GetPartNumber() or thing.GetPartNumber(), metadata
+    )
 
 
 def _metadata(group: "Lib3MF.MetaDataGroup") -> dict[tuple[str, str], str]:
@@ -127,7 +130,9 @@ def _metadata(group: "Lib3MF.MetaDataGroup") -> dict[tuple[str, str], str]:
     return {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
 
 
-def _part(item: _Item, count: int, shape: Shape, scale: float, notes: tuple[str, ...], path: Path) -> Part:
+def _part(
+    item: _Item, positions: Floats, shape: Shape, scale: float, notes: tuple[str, ...], path: Path
+) -> Part:
     name = part_name([item.thing.GetName(), *shape.names], path)
     wishes = wishes_of(item.metadata, f"{path}: {name}")
     vertices, triangles = shape.joined()
@@ -135,11 +140,12 @@ def _part(item: _Item, count: int, shape: Shape, scale: float, notes: tuple[str,
         name=name,
         mesh=Mesh(vertices * scale, triangles.astype(np.int32)),
         volume_mm3=0.0,
-        quantity=wishes.quantity * count,
+        quantity=wishes.quantity * len(positions),
         value=wishes.value,
         orientations=wishes.orientations,
         regions=tuple(_scaled(region, scale) for region in shape.regions),
         appearance=appearance_of(shape.paints) if len(triangles) else Appearance(),
+        positions=positions,
         part_number=item.part_number,
         source=str(path),
         notes=notes,

@@ -1,0 +1,114 @@
+"""What ``amprep run`` and ``amprep support`` share: options, the job named by inputs, progress, the closing table."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from amprep.errors import JobError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from amprep.host import Host
+    from amprep.job import Job
+    from amprep.pipeline.stages import Watcher
+    from amprep.report.record import RunRecord
+
+    Work = Callable[[Host, Watcher], RunRecord]
+
+Output = Annotated[
+    Path | None, typer.Option("-o", "--output", help="Output folder; default: beside the first input.")
+]
+PrinterName = Annotated[
+    str | None, typer.Option("--printer", help="Printer profile by name or file; see 'amprep printers list'.")
+]
+Router = Annotated[str | None, typer.Option("--router", help="Support router by name.")]
+Cell = Annotated[str | None, typer.Option("--cell", help="Lattice cell by name.")]
+Target = Annotated[
+    str | None,
+    typer.Option("--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."),
+]
+Sets = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of everything random; default 0.")]
+TimeLimit = Annotated[
+    float | None,
+    typer.Option(
+        "--time-limit",
+        min=0.0,
+        metavar="SECONDS",
+        help="Packing and routing end by then with their best so far.",
+    ),
+]
+Stl = Annotated[bool, typer.Option("--stl", help="Write parts and supports as STL too.")]
+AllowSurface = Annotated[
+    bool, typer.Option("--allow-surface", help="Pack and support meshes that are no solids as they are.")
+]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Plan and judge everything, write nothing.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the report as JSON on standard output.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table; errors only.")]
+Modules = Annotated[
+    list[str] | None,
+    typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
+]
+NoPlugins = Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.")]
+
+
+def job_of(inputs: list[str]) -> "Job":
+    """Return the job that the inputs name; a job file stands alone: what it prints and how is written in it."""
+    from amprep.job import job_from_inputs, load_job
+
+    job_files = [name for name in inputs if name.lower().endswith(".toml")]
+    if not job_files:
+        return job_from_inputs(inputs)
+    if len(inputs) > 1:
+        raise JobError(
+            f"a job file comes alone, got {len(inputs)} inputs; list them as inputs = [...] in {job_files[0]}"
+        )
+    return load_job(Path(job_files[0]))
+
+
+def watched(
+    job: "Job", console: "Console", work: "Work", *, modules: list[str], no_plugins: bool
+) -> "RunRecord":
+    """Do the work with progress bars; nothing heavy is imported before they show."""
+    from amprep.cli.progress import Bars
+    from amprep.host import Host
+
+    if job.printer_is_default:
+        console.print(f"[dim]no printer given, using {job.printer.name}; see 'amprep printers list'")
+    with Bars(console) as bars:
+        with bars.stage("start"):
+            import amprep.pipeline.run  # noqa: F401 - loading it is part of the start
+
+            host = Host.load(modules=modules, plugins_enabled=not no_plugins)
+        for warning in host.warnings:
+            console.print(f"warning: {warning}", markup=False)
+        return work(host, bars)
+
+
+def beside(first: str) -> Path:
+    """Folder of the first input; a folder's own outputs lie beside it, so that a second run does not read them."""
+    from amprep.job.loading import parse_input
+
+    return parse_input(first, "inputs").path.resolve().parent
+
+
+def print_record(record: "RunRecord", *, as_json: bool, quiet: bool) -> None:
+    """Print the report as JSON, or the closing table unless `quiet`."""
+    import json
+
+    from rich.console import Console
+
+    from amprep.report.json_report import to_json
+    from amprep.report.table import summary
+
+    if as_json:
+        typer.echo(json.dumps(to_json(record), indent=2))
+    elif not quiet:
+        Console().print(summary(record))

@@ -1,0 +1,100 @@
+"""`amprep support`: supports for a plate as it lies."""
+
+import json
+
+import pytest
+
+from amprep.threemf import read_build
+
+BOXES = """<vertex x="0" y="0" z="0"/><vertex x="10" y="0" z="0"/><vertex x="10" y="10" z="0"/>
+<vertex x="0" y="10" z="0"/><vertex x="0" y="0" z="4"/><vertex x="10" y="0" z="4"/><vertex x="10" y="10" z="4"/>
+<vertex x="0" y="10" z="4"/>"""
+CORNERS = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4))
+CORNERS += ((1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7))
+OFFICE = "http://schemas.openxmlformats.org/package/2006"
+FMT = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+
+
+def plate_3mf(path, *positions, triangles="", unit="millimeter", config="", attributes=""):
+    """Write a 3MF of one box of 10 x 10 x 4 mm, once at each position."""
+    import zipfile
+
+    rows = triangles or "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in CORNERS)
+    items = "".join(
+        f'<item objectid="1" transform="1 0 0 0 1 0 0 0 1 {x} {y} {z}"/>' for x, y, z in positions
+    )
+    model = (
+        f'<model unit="{unit}" xmlns="{FMT}" {attributes}><resources><object id="1" type="model"><mesh><vertices>'
+        f"{BOXES}</vertices><triangles>{rows}</triangles></mesh></object></resources><build>{items}</build></model>"
+    )
+    relation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(
+            "[Content_Types].xml",
+            f'<Types xmlns="{OFFICE}/content-types"><Default Extension="rels" ContentType="application/vnd.'
+            'openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.'
+            'ms-package.3dmanufacturing-3dmodel+xml"/></Types>',
+        )
+        archive.writestr(
+            "_rels/.rels",
+            f'<Relationships xmlns="{OFFICE}/relationships"><Relationship Target="/3D/3dmodel.model" Id="r" '
+            f'Type="{relation}"/></Relationships>',
+        )
+        archive.writestr("3D/3dmodel.model", model)
+        if config:
+            archive.writestr("Metadata/Slic3r_PE_model.config", config)
+    return path
+
+
+def test_parts_stay_where_the_build_items_put_them(amprep, tmp_path):
+    file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 6), (60.5, 30, 0))
+    outcome = amprep("support", file, "-o", tmp_path / "out", "--json")
+    assert outcome.code == 0
+    (build,) = outcome.json["builds"]
+    assert [part["low_mm"] for part in build["parts"]] == [[20, 30, 6], [60.5, 30, 0]]
+    assert [body["parts"] for body in build["supports"]["bodies"]] == [["plate"]], (
+        "the second lies on the plate"
+    )
+    assert build["supports"]["volume_mm3"] > 0
+    assert outcome.json["stop_reason"] == "as it lies"
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    stem = "plate.supported"
+    assert names == [f"{stem}.3mf", f"{stem}.png", f"{stem}.report.html", f"{stem}.report.json"]
+    assert amprep("verify", tmp_path / "out" / f"{stem}.3mf").code == 0
+
+
+def test_positions_are_in_the_unit_of_the_file(amprep, tmp_path):
+    file = plate_3mf(tmp_path / "plate.3mf", (2, 3, 0.5), unit="centimeter")
+    outcome = amprep("support", file, "--json", "--dry-run")
+    (part,) = outcome.json["builds"][0]["parts"]
+    assert (part["low_mm"], part["high_mm"]) == ([20, 30, 5], [120, 130, 45])
+
+
+def test_a_mesh_lies_where_its_own_coordinates_say_or_in_the_middle(amprep, fixtures, tmp_path):
+    outside = amprep("support", fixtures / "table.stl", "-o", tmp_path)
+    assert outside.code == 2
+    assert "--center" in outside.err
+    assert not list(tmp_path.iterdir())
+    outcome = amprep("support", fixtures / "table.stl", "-o", tmp_path, "--center", "--json")
+    assert outcome.code == 0
+    (part,) = json.loads((tmp_path / "table.supported.report.json").read_text())["builds"][0]["parts"]
+    assert [low + high for low, high in zip(part["low_mm"][:2], part["high_mm"][:2], strict=True)] == [
+        250,
+        250,
+    ]
+    assert part["low_mm"][2] == 0
+
+
+@pytest.mark.parametrize("position", [(-5, 20, 0), (20, 20, -2), (245, 20, 0)])
+def test_parts_outside_the_build_volume_are_refused_by_name(amprep, tmp_path, position):
+    outcome = amprep("support", plate_3mf(tmp_path / "plate.3mf", position), "--dry-run")
+    assert outcome.code == 2
+    assert "plate lies from" in outcome.err
+
+
+def test_a_printer_whose_process_needs_no_supports_gets_some_when_asked(amprep, tmp_path):
+    file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 6))
+    own = "printer={size_mm=[100.0,100.0,50.0],technology='polymer-powder-bed'}"
+    outcome = amprep("support", file, "--set", own, "--json", "-o", tmp_path)
+    assert outcome.code == 0
+    assert read_build(tmp_path / "plate.supported.3mf").supports
