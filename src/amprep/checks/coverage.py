@@ -96,10 +96,8 @@ def _coverage(
     """Sample every part's needs, and see which samples have a contact on the same part within reach."""
     covered = []
     for placed in parts:
-        mesh = placed.mesh
         needs = needs_of(
             placed,
-            mesh,
             overhang_angle_deg=settings.overhang_angle_deg,
             least_area=settings.least_area,
             least_length=settings.least_length,
@@ -108,8 +106,9 @@ def _coverage(
         own = placed.part.overrides.overhang_angle_deg
         angle = min(settings.overhang_angle_deg if own is None else own, 85.0)
         spacing = settings.reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
-        samples = sample_overhangs(mesh.vertices, mesh.triangles, needs, spacing)
-        covered.append(_Covered(samples, needs.regions, _held(samples.points, mesh, bodies, spacing, reach)))
+        samples = sample_overhangs(needs.mesh.vertices, needs.mesh.triangles, needs.overhangs, spacing)
+        held = _held(samples.points, placed.mesh, bodies, spacing, reach)
+        covered.append(_Covered(samples, needs.overhangs.regions, held))
     return covered
 
 

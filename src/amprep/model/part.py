@@ -34,7 +34,16 @@ class Orientations:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Marks part of a part: some of its triangles, or a mesh of its own, in part coordinates."""
+    """Marks part of a part: some of its triangles, what lies in a mesh, or pieces painted on triangles.
+
+    Attributes
+    ----------
+    triangles
+        Indices of the part's triangles; alone, they are marked as wholes.
+    mesh
+        In part coordinates. Alone, a closed mesh that marks what lies in it; with `triangles`, triangle i of
+        this mesh is the piece that is painted on the part's triangle ``triangles[i]``.
+    """
 
     kind: RegionKind
     name: str

@@ -56,7 +56,7 @@ def build_supports(
         request = make_request(layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=True)
         cells = checked(request, emit(request))
     emitted = sort_out(request, cells)
-    ways, obstacles = find_ways(layout, meshes), Obstacles(parts)
+    ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts)
     bodies: list[SupportBody] = []
     count = len(layout.group_parts)
     for group, held in enumerate(layout.group_parts):

@@ -143,9 +143,11 @@ def _with_mesh(part: Part, settled: Settled) -> Part:
 def _follow(region: Region, settled: Settled, triangles_before: int) -> Region:
     if region.triangles is None:
         return region
-    chosen = np.zeros(triangles_before, np.bool_)
-    chosen[region.triangles] = True
-    return replace(region, triangles=np.flatnonzero(chosen[settled.kept]).astype(np.int32))
+    after = np.full(triangles_before, -1, np.int32)
+    after[settled.kept] = np.arange(len(settled.kept))
+    triangles = after[region.triangles]
+    mesh = region.mesh and Mesh(region.mesh.vertices, region.mesh.triangles[triangles >= 0])
+    return replace(region, triangles=triangles[triangles >= 0], mesh=mesh)
 
 
 def _recoloured(appearance: Appearance, settled: Settled) -> Appearance:

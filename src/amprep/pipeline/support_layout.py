@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.geometry.overhangs import Longs, Overhangs
 from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
+from amprep.model.mesh import Mesh
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW, GridFrame
 
 
@@ -17,8 +18,10 @@ class SupportLayout:
     ----------
     cubes
         ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Cube`.
+    meshes
+        One per placed part, in build coordinates: its own, or split finer where blockers and enforcers end.
     overhangs
-        One per placed part, in the part's own mesh (same indices), measured in build coordinates.
+        One per placed part; indices into `meshes`.
     red
         ``(m, 3)`` int32 plane, y, x; sorted. A square appears once per part that needs it. Those on plane 0
         need no support of their own ("what lies in the layer on the plate"): connected, without edges.
@@ -47,6 +50,7 @@ class SupportLayout:
 
     frame: GridFrame
     cubes: Bytes
+    meshes: tuple[Mesh, ...]
     overhangs: tuple[Overhangs, ...]
     red: Ints
     red_part: Ints

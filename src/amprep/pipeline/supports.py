@@ -64,13 +64,13 @@ def plan_supports(
     PluginError
         When the router returns a plan that breaks its promise.
     """
-    meshes = [placed.mesh for placed in parts]
     limits = {
         "overhang_angle_deg": overhang_angle_deg,
         "least_area": least_area,
         "least_length": least_length,
     }
-    needs = [needs_of(placed, mesh, **limits) for placed, mesh in zip(parts, meshes, strict=True)]
+    found = [needs_of(placed, **limits) for placed in parts]
+    meshes, needs = [each.mesh for each in found], [each.overhangs for each in found]
     report(0.05, "overhangs found")
     pitch = pitch or choose_pitch(parts, space, strut_angle_deg)
     frame = frame_of(meshes, needs, space, pitch=pitch, strut_angle_deg=strut_angle_deg)
@@ -96,6 +96,7 @@ def plan_supports(
     return SupportLayout(
         frame=frame,
         cubes=cubes,
+        meshes=tuple(meshes),
         overhangs=tuple(needs),
         red=red.square,
         red_part=red.part,

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -168,7 +169,7 @@ def part_name(candidates: list[str], path: Path) -> str:
 def _scaled(region: Region, scale: float) -> Region:
     if region.mesh is None or scale == 1.0:
         return region
-    return Region(region.kind, region.name, mesh=Mesh(region.mesh.vertices * scale, region.mesh.triangles))
+    return replace(region, mesh=Mesh(region.mesh.vertices * scale, region.mesh.triangles))
 
 
 def _meant(warnings: tuple[str, ...]) -> list[str]:
