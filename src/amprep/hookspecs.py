@@ -20,6 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 import pluggy
 
+from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import CellRequest, Cells
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
@@ -147,7 +148,8 @@ class CellEmitter:
     """Offers a lattice cell.
 
     `material` tells routers what an edge costs: given the frame's pitch and step and the checked params it
-    returns the mm3 of a vertical and of an oblique edge; None counts both as one full prism.
+    returns the mm3 of a vertical and of an oblique edge; None counts both as one full prism. `declare`, given the
+    same, returns the cell's declaration, if it has one: `amprep.cells.cell_offer` fills it in.
     """
 
     name: str
@@ -155,6 +157,7 @@ class CellEmitter:
     run: EmitCells
     params: type = NoParams
     material: Callable[[float, float, Any], tuple[float, float]] | None = None
+    declare: Callable[[float, float, Any], DeclaredCell] | None = None
 
 
 Offer = MeshReader | VolumeMaker | Packer | SupportRouter | CellEmitter

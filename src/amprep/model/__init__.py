@@ -10,6 +10,7 @@ from amprep.model.build import (
     Target,
     Unsupported,
 )
+from amprep.model.cell_shapes import DeclaredCell, GraphCell, ImplicitCell, MeshCell, Shape, Variant, When
 from amprep.model.cells import Beams, CellRequest, Cells, ExtraMesh, Role, Template
 from amprep.model.control import Report, Stop, silent
 from amprep.model.mesh import Mesh
@@ -34,10 +35,14 @@ __all__ = [
     "Cells",
     "ConvexPieces",
     "Cube",
+    "DeclaredCell",
     "ExtraMesh",
+    "GraphCell",
     "GridFrame",
+    "ImplicitCell",
     "Item",
     "Mesh",
+    "MeshCell",
     "Objective",
     "Orientations",
     "Overrides",
@@ -49,6 +54,7 @@ __all__ = [
     "Region",
     "Report",
     "Role",
+    "Shape",
     "Solid",
     "Stop",
     "SupportBody",
@@ -59,5 +65,7 @@ __all__ = [
     "Unconnected",
     "Unplaced",
     "Unsupported",
+    "Variant",
+    "When",
     "silent",
 ]

@@ -1,0 +1,19 @@
+"""Declared cells: shapes in the unit cube become offers, from Python or from files.
+
+A lattice package needs no more than this::
+
+    from amprep.cells import cell_offer
+    from amprep.hookspecs import hookimpl
+    from amprep.model import GraphCell
+
+    amprep_api = 1
+
+    @hookimpl
+    def amprep_cell_emitters():
+        pin = GraphCell(points=[[0.5, 0.5, 0], [0.5, 0.5, 1]], struts=[[0, 1]], radius=0.4)
+        yield cell_offer("pin", "A round pin along every edge.", pin)
+"""
+
+from amprep.cells.offers import GraphParams, cell_offer, estimate
+
+__all__ = ["GraphParams", "cell_offer", "estimate"]

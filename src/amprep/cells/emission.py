@@ -1,0 +1,166 @@
+"""Puts a declared cell in the place of each edge: picks variants, and shapes templates for each direction."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.geometry.cell_graph import Graph, graph_solid
+from amprep.geometry.cell_implicit import implicit_solid
+from amprep.geometry.cell_ports import conform
+from amprep.model import (
+    Beams,
+    CellRequest,
+    Cells,
+    DeclaredCell,
+    GraphCell,
+    ImplicitCell,
+    Mesh,
+    MeshCell,
+    Role,
+    Shape,
+    Template,
+    When,
+)
+from amprep.model.arrays import Bools, Floats, Ints
+
+LOAD_STEPS = 8
+"""Radii grow with the load in that many steps, so that few templates are made."""
+
+
+class Fitted(NamedTuple):
+    """Edges that get the same template: the variant (index), how much thicker its struts are."""
+
+    variant: int
+    factor: float
+    edges: Ints
+
+
+def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = True) -> Cells:
+    """Replace each edge by the first variant that fits it.
+
+    Parameters
+    ----------
+    solid
+        False: struts become beams instead of templates.
+
+    Raises
+    ------
+    ValueError
+        When the function of an implicit cell does not give numbers.
+    """
+    templates: list[Template] = []
+    which, edges = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+    beams: list[Beams] = []
+    for fitted in fit(cell, request):
+        shape = cell.variants[fitted.variant].shape
+        if isinstance(shape, GraphCell) and not solid:
+            beams.append(beams_of(shape, request, fitted))
+            if not len(shape.faces):
+                continue
+            shape = GraphCell(shape.points, faces=shape.faces, thickness=shape.thickness)
+        linear = request.matrices[fitted.edges[0], :, :3]
+        for template in templates_of(f"{fitted.variant}", shape, linear, fitted.factor):
+            if template.surface and not request.allow_surface:
+                continue
+            which.append(np.full(len(fitted.edges), len(templates)))
+            edges.append(fitted.edges)
+            templates.append(template)
+    edge = np.concatenate(edges)
+    return Cells(tuple(templates), np.concatenate(which), edge, request.matrices[edge], beams=_joined(beams))
+
+
+def fit(cell: DeclaredCell, request: CellRequest) -> Iterator[Fitted]:
+    """Yield sets of edges that get the same template, each edge at most once."""
+    left = np.ones(len(request.plane), np.bool_)
+    for number, variant in enumerate(cell.variants):
+        mine = left & edges_for(variant.when, request)
+        left &= ~mine
+        factors = _factors(variant.shape, request.load)
+        # only what is measured in mm depends on the map
+        directions = request.direction if isinstance(variant.shape, GraphCell) else 0 * request.direction
+        keys = np.column_stack([directions, factors])[mine]
+        for direction, factor in np.unique(keys, axis=0).tolist():
+            same = mine & (directions == direction) & (factors == factor)
+            yield Fitted(number, float(factor), np.flatnonzero(same))
+
+
+def edges_for(when: When, request: CellRequest) -> Bools:
+    """Tell which edges of the request meet every condition."""
+    fits = (request.load >= when.least_load) & (request.load <= when.most_load)
+    fits &= (request.plane - 1) % when.every == when.layer
+    if when.edges != "any":
+        fits &= (request.direction == 0) == (when.edges == "straight")
+    if when.roles:
+        words = {"trunk": Role.TRUNK, "foot": Role.FOOT, "connector": Role.CONNECTOR}
+        own = np.isin(request.role, [words[word] for word in when.roles if word in words])
+        if "surface" in when.roles:
+            own |= (request.role == Role.TRUNK) & ~sides_taken(request).all(axis=1)
+        fits &= own
+    return np.asarray(fits)
+
+
+def sides_taken(request: CellRequest) -> Bools:
+    """Tell which of its four sides (-x, +x, -y, +y) each edge shares with an edge of its direction, ``(n, 4)``."""
+    ny, nx = int(request.y.max(initial=0)) + 3, int(request.x.max(initial=0)) + 3
+    place = (request.plane.astype(np.int64) * 5 + request.direction) * ny * nx
+    place += (request.y + 1) * nx + request.x + 1
+    return np.column_stack([np.isin(place + step, place) for step in (-1, 1, -nx, nx)])
+
+
+def templates_of(name: str, shape: Shape, linear: Floats, factor: float = 1.0) -> Iterator[Template]:
+    """Yield a shape as templates for edges whose map has the linear part ``(3, 3)``: a solid, a sheet, or both."""
+    if isinstance(shape, MeshCell):
+        yield Template(f"mesh {name}", _conforming(shape), shape.surface)
+    elif isinstance(shape, ImplicitCell):
+        yield Template(f"implicit {name}", _mesh(*implicit_solid(shape.function, shape.resolution)))
+    else:
+        if len(shape.struts) or shape.thickness:
+            graph = Graph(shape.points, shape.struts, factor * shape.radii, shape.faces, shape.thickness)
+            yield Template(f"graph {name}", _mesh(*graph_solid(graph, linear)))
+        if shape.is_sheet:
+            yield Template(f"sheet {name}", Mesh(shape.points, shape.faces), surface=True)
+
+
+def beams_of(shape: GraphCell, request: CellRequest, fitted: Fitted) -> Beams:
+    """Return the struts of a set of edges as round beams."""
+    matrix = request.matrices[fitted.edges]
+    places = np.einsum("nij,vj->nvi", matrix[:, :, :3], shape.points) + matrix[:, None, :, 3]
+    first = np.arange(len(matrix)) * len(shape.points)
+    struts = (shape.struts[None] + first[:, None, None]).reshape(-1, 2)
+    radii = np.tile(fitted.factor * shape.radii, (len(matrix), 1))
+    group = np.repeat(request.group[fitted.edges], len(shape.struts))
+    return Beams(places.reshape(-1, 3), struts.astype(np.int32), radii, group)
+
+
+def _joined(beams: list[Beams]) -> Beams | None:
+    """Join beams; points at the same place become one, and of equal beams in a group one stays."""
+    if not beams:
+        return None
+    first = np.cumsum([0, *(len(each.nodes) for each in beams[:-1])])
+    nodes = np.concatenate([each.nodes for each in beams])
+    struts = np.concatenate([each.struts + start for each, start in zip(beams, first, strict=True)])
+    radii, group = (np.concatenate([getattr(each, name) for each in beams]) for name in ("radii", "group"))
+    _, kept, place = np.unique(np.round(nodes, 6), axis=0, return_index=True, return_inverse=True)
+    struts = place.reshape(-1)[struts]
+    _, different = np.unique(np.column_stack([np.sort(struts, axis=1), group]), axis=0, return_index=True)
+    different = np.sort(different)
+    return Beams(nodes[kept], struts[different].astype(np.int32), radii[different], group[different])
+
+
+def _factors(shape: Shape, load: Ints) -> Floats:
+    """Return how much thicker the struts of each edge are: cross-sections grow evenly with the load, in steps."""
+    if not isinstance(shape, GraphCell) or shape.growth == 1.0:
+        return np.ones(len(load))
+    share = np.clip((load - 1) / (shape.full_load - 1), 0.0, 1.0)
+    return np.asarray(np.sqrt(1.0 + np.ceil(share * LOAD_STEPS) / LOAD_STEPS * (shape.growth**2 - 1.0)))
+
+
+def _conforming(shape: MeshCell) -> Mesh:
+    if shape.surface:
+        return shape.mesh
+    return _mesh(*conform(shape.mesh.vertices, shape.mesh.triangles.astype(np.int64)))
+
+
+def _mesh(points: Floats, triangles: Ints) -> Mesh:
+    return Mesh(points, triangles)
