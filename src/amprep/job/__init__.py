@@ -2,7 +2,7 @@
 
 from amprep.job.loading import job_from_inputs, load_job, make_job
 from amprep.job.overrides import apply_sets, override
-from amprep.job.parts import apply_part_settings
+from amprep.job.parts import apply_part_settings, names_part
 from amprep.job.printers import Printer, find_printer, list_printers
 from amprep.job.settings import (
     CellSettings,
@@ -30,5 +30,6 @@ __all__ = [
     "list_printers",
     "load_job",
     "make_job",
+    "names_part",
     "override",
 ]

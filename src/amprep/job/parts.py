@@ -21,7 +21,7 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
     """
     result = list(parts)
     for number, entry in enumerate(job.parts, start=1):
-        chosen = [index for index, part in enumerate(parts) if _names(entry, part, job)]
+        chosen = [index for index, part in enumerate(parts) if names_part(entry, part, job)]
         if not chosen:
             raise JobError(f"{job.source}: [[part]] {number}: {_unmatched(entry, parts)}")
         for index in chosen:
@@ -29,7 +29,8 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
     return result
 
 
-def _names(entry: PartSettings, part: Part, job: Job) -> bool:
+def names_part(entry: PartSettings, part: Part, job: Job) -> bool:
+    """Tell whether an entry of the job is about the part."""
     same_name = entry.name is None or part.name == entry.name
     return same_name and (entry.file is None or _same_file(entry.file, part.source, job.folder))
 

@@ -155,8 +155,12 @@ class PartSettings:
     boxes: tuple[Box, ...] | None = None
     supports: bool | None = None
     overhang_angle_deg: float | None = None
+    blockers: tuple[str, ...] = ()
+    enforcers: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for file in (*self.blockers, *self.enforcers):
+            require(bool(file) and "\0" not in file, "blockers and enforcers are paths", repr(file))
         require(bool(self.file or self.name), "a part is named by file or name", "neither")
         require("\0" not in (self.file or ""), "file is a path", repr(self.file))
         _require_quantity(self.quantity)

@@ -12,6 +12,7 @@ from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, 
 from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
+from amprep.pipeline.part_regions import with_region_files
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.pipeline.record import run_record, unplaced_records
 from amprep.pipeline.stages import Clock, Watcher
@@ -110,7 +111,7 @@ def read_job(job: Job, host: Host, allow_surface: bool, report: Report) -> list[
         )
 
     parts = read_all(files, read, allow_surface=allow_surface, report=report)
-    return apply_part_settings(parts, job)
+    return with_region_files(apply_part_settings(parts, job), job, read)
 
 
 def _volume(job: Job, host: Host, part: Part, stop: Stop) -> BoundingVolume:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import unquote
 
 from amprep.errors import InputError
+from amprep.threemf.reading_paint import Painted, find_paint
 from amprep.threemf.reading_xml import Outline, Scanner, check_instances
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ class Package(NamedTuple):
         Indices of build items marked as not to be printed.
     notes
         What was mended.
+    paint
+        Model part and object id -> supports painted on the object.
     """
 
     data: bytes
@@ -49,6 +52,7 @@ class Package(NamedTuple):
     part_config: bytes
     unprintable: frozenset[int]
     notes: tuple[str, ...]
+    paint: dict[tuple[str, int], Painted]
 
 
 def open_package(path: Path) -> Package:
@@ -72,7 +76,12 @@ def open_package(path: Path) -> Package:
     check_instances(outlines, str(path))
     root = outlines.get(_root_model(entries), Outline())
     config, part_config = entries.get(_SLICER_CONFIG, b""), entries.get(_PART_CONFIG, b"")
-    return Package(_stored(entries), config, part_config, frozenset(root.unprintable), tuple(notes))
+    paint = {
+        (f"/{name}", number): painted
+        for name in outlines
+        for number, painted in find_paint(entries[name]).items()
+    }
+    return Package(_stored(entries), config, part_config, frozenset(root.unprintable), tuple(notes), paint)
 
 
 def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:

@@ -88,7 +88,7 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
         notes.append(f"left out {len(package.unprintable)} items that the file marks as not to be printed")
     volumes = parse_slicer_config(package.config, str(path))
     roles = parse_part_roles(package.part_config, str(path))
-    gatherer = Gatherer(loaded.model, volumes, roles, str(path))
+    gatherer = Gatherer(loaded.model, volumes, roles, package.paint, str(path))
     parts: list[Part] = []
     for item, positions in _items(loaded.model, package.unprintable):
         shape = gatherer.shape_of(item.thing, item.linear)

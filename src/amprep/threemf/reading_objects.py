@@ -13,6 +13,7 @@ from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
 from amprep.threemf.reading_arrays import fetch_mesh
 from amprep.threemf.reading_colours import Paint, paint_of
+from amprep.threemf.reading_paint import Painted, painted_regions
 from amprep.threemf.reading_slicer import (
     BLOCKER,
     ENFORCER,
@@ -57,18 +58,20 @@ class Shape:
 
 
 class Gatherer:
-    """Gathers the shapes of a model's objects; `where` names the file."""
+    """Gathers the shapes of a model's objects; `where` names the file, `paint` is that of `Package`."""
 
     def __init__(
         self,
         model: "Lib3MF.Model",
         slicer: Mapping[int, SlicerObject],
         roles: Mapping[tuple[int, int], Role],
+        paint: Mapping[tuple[str, int], Painted],
         where: str,
     ) -> None:
         self.model = model
         self.slicer = slicer
         self.roles = roles
+        self.paint = paint
         self.where = where
         self._triangles = 0
 
@@ -114,7 +117,8 @@ class Gatherer:
         if turns == 0.0:
             raise InputError(f"{self.where}: {thing.GetName()!r} is squashed flat by its transform")
         paint = paint_of(self.model, thing, raw)
-        vertices, triangles = raw.vertices @ frame[:3, :3] + frame[3, :3], raw.triangles
+        vertices = raw.vertices @ frame[:3, :3] + frame[3, :3]
+        triangles = as_read = raw.triangles
         if turns < 0.0:
             triangles, paint = triangles[:, ::-1], paint._replace(colours=paint.colours[:, ::-1])
         if thing.BeamLattice().GetBeamCount():
@@ -124,7 +128,13 @@ class Gatherer:
         known = self.slicer.get(thing.GetModelResourceID(), SlicerObject("", ()))
         shape.names.append(thing.GetName() or known.name)
         whole = (Volume(*role, 0, len(triangles) - 1),) if role else ()
-        self._add(vertices, triangles, paint, known.volumes or whole, shape)
+        first = sum(map(len, shape.triangles))
+        printed = self._add(vertices, triangles, paint, known.volumes or whole, shape)
+        painted = self.paint.get((thing.PackagePart().GetPath(), thing.GetModelResourceID()))
+        if painted is not None:
+            regions, words = painted_regions(painted, vertices, as_read, printed, first)
+            shape.regions += regions
+            shape.notes += [words] if words else []
 
     def _add(
         self,
@@ -133,8 +143,8 @@ class Gatherer:
         paint: Paint,
         volumes: tuple[Volume, ...],
         shape: Shape,
-    ) -> None:
-        """Add a mesh, its blockers and enforcers apart from what is printed."""
+    ) -> NDArray[np.bool_]:
+        """Add a mesh, its blockers and enforcers apart from what is printed; tell which triangles are."""
         printed = np.ones(len(triangles), np.bool_)
         for volume in volumes:
             if volume.kind != SOLID:
@@ -144,6 +154,7 @@ class Gatherer:
         shape.vertices.append(vertices)
         shape.triangles.append(triangles)
         shape.paints.append(paint)
+        return printed
 
     def _set_apart(
         self,
