@@ -6,26 +6,25 @@ import pytest
 
 from amprep.threemf import read_build
 
-BOXES = """<vertex x="0" y="0" z="0"/><vertex x="10" y="0" z="0"/><vertex x="10" y="10" z="0"/>
-<vertex x="0" y="10" z="0"/><vertex x="0" y="0" z="4"/><vertex x="10" y="0" z="4"/><vertex x="10" y="10" z="4"/>
-<vertex x="0" y="10" z="4"/>"""
+BOX = ((0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 4), (10, 0, 4), (10, 10, 4), (0, 10, 4))
 CORNERS = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4))
 CORNERS += ((1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7))
 OFFICE = "http://schemas.openxmlformats.org/package/2006"
 FMT = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 
 
-def plate_3mf(path, *positions, triangles="", unit="millimeter", config="", attributes=""):
-    """Write a 3MF of one box of 10 x 10 x 4 mm, once at each position."""
+def plate_3mf(path, *positions, triangles="", unit="millimeter", config="", attributes="", blocker=None):
+    """Write a 3MF of one box of 10 x 10 x 4 mm, once at each position; with vertices of `blocker` after its own."""
     import zipfile
 
+    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in (*BOX, *(blocker or ())))
     rows = triangles or "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in CORNERS)
     items = "".join(
         f'<item objectid="1" transform="1 0 0 0 1 0 0 0 1 {x} {y} {z}"/>' for x, y, z in positions
     )
     model = (
         f'<model unit="{unit}" xmlns="{FMT}" {attributes}><resources><object id="1" type="model"><mesh><vertices>'
-        f"{BOXES}</vertices><triangles>{rows}</triangles></mesh></object></resources><build>{items}</build></model>"
+        f"{vertices}</vertices><triangles>{rows}</triangles></mesh></object></resources><build>{items}</build></model>"
     )
     relation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
     with zipfile.ZipFile(path, "w") as archive:
@@ -98,3 +97,70 @@ def test_a_printer_whose_process_needs_no_supports_gets_some_when_asked(amprep, 
     outcome = amprep("support", file, "--set", own, "--json", "-o", tmp_path)
     assert outcome.code == 0
     assert read_build(tmp_path / "plate.supported.3mf").supports
+
+
+def _overhang_area(outcome):
+    return sum(entry["area_mm2"] for entry in outcome.json["builds"][0]["supports"]["overhangs"])
+
+
+def _box(path, corner, size):
+    import trimesh
+
+    box = trimesh.creation.box(extents=size)
+    box.apply_translation([c + s / 2 for c, s in zip(corner, size, strict=True)])
+    box.export(path)
+
+
+def test_a_job_blocks_part_of_a_face_by_a_mesh(amprep, tmp_path):
+    _box(tmp_path / "slab.stl", (0, 0, 0), (40, 20, 3))
+    _box(tmp_path / "keep-free.stl", (-1, -1, -1), (21, 22, 5))
+    (tmp_path / "job.toml").write_text(
+        "packing.lift_mm = 5\n[[part]]\nfile = 'slab.stl'\nblockers = ['keep-free.stl']\n", encoding="utf-8"
+    )
+    outcome = amprep("run", tmp_path / "job.toml", "-o", tmp_path / "out", "--json")
+    assert outcome.code == 0
+    (region,) = outcome.json["builds"][0]["supports"]["overhangs"]
+    assert (region["name"], region["kind"], region["held"]) == ("overhang 1 of slab", "face", "whole")
+    assert region["area_mm2"] == pytest.approx(400, rel=0.03)
+    build = read_build(tmp_path / "out" / "job.build-1.3mf")
+    part_lo, _ = build.parts[0].mesh.bounds
+    assert build.supports[0].mesh.bounds[0][0] > part_lo[0] + 17, "nothing stands under the blocked half"
+    assert amprep("verify", tmp_path / "out" / "job.build-1.3mf").code == 0
+    (tmp_path / "job.toml").write_text(
+        "[[part]]\nfile = 'slab.stl'\nenforcers = ['nowhere.stl']\n", encoding="utf-8"
+    )
+    wrong = amprep("run", tmp_path / "job.toml", "-o", tmp_path / "out")
+    assert wrong.code == 2
+    assert "nowhere.stl" in wrong.err
+
+
+@pytest.mark.parametrize(("paint", "area"), [("", 100), ("8", 50), ("0802", 87.5)])
+def test_painted_blockers_of_a_3mf_take_their_area_away(amprep, tmp_path, paint, area):
+    """The underside is two triangles of 50 mm2."""
+    rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in CORNERS)
+    if paint:
+        rows = rows.replace('v3="1"/>', f'v3="1" s:custom_supports="{paint}"/>', 1)
+    names = 'xmlns:s="http://schemas.slic3r.org/3mf/2017/06"'
+    file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 6), triangles=rows, attributes=names)
+    outcome = amprep("support", file, "--json", "-o", tmp_path)
+    assert outcome.code == 0
+    assert _overhang_area(outcome) == pytest.approx(area, abs=6)
+
+
+def test_support_blocker_volumes_of_prusaslicer_are_no_parts(amprep, tmp_path):
+    config = (
+        '<config><object id="1"><volume firstid="0" lastid="11"><metadata type="volume" key="volume_type" '
+        'value="ModelPart"/></volume><volume firstid="12" lastid="23"><metadata type="volume" key="volume_type" '
+        'value="SupportBlocker"/></volume></object></config>'
+    )
+    rows = "".join(
+        f'<triangle v1="{a + shift}" v2="{b + shift}" v3="{c + shift}"/>'
+        for shift in (0, 8)
+        for a, b, c in CORNERS
+    )
+    around = [[1.2 * x - 1, 1.2 * y - 1, z - 1] for x, y, z in BOX]
+    file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 6), triangles=rows, config=config, blocker=around)
+    outcome = amprep("support", file, "--json", "-o", tmp_path)
+    assert outcome.code == 0
+    assert outcome.json["builds"][0]["supports"]["overhangs"] == []
+    assert outcome.json["builds"][0]["parts"][0]["triangles"] == 12

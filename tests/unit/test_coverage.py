@@ -185,3 +185,58 @@ def test_segments_are_sampled_with_both_ends():
     points, owner = sample_segments(np.zeros((2, 3)), np.array([[1.0, 0, 0], [0, 0, 0]]), 0.4)
     assert points[:, 0].tolist() == pytest.approx([0, 1 / 3, 2 / 3, 1, 0, 0])
     assert owner.tolist() == [0, 0, 0, 0, 1, 1]
+
+
+def minor_of(*bodies, parts=(TABLE,), **settings):
+    return [region for region in listed(*bodies, parts=parts, **settings) if region.minor]
+
+
+def test_a_bare_corner_below_the_least_area_is_listed_as_minor():
+    """A support that leaves a corner: what lies beyond the reach of it is a triangle of about 2 mm2."""
+    most = body(box((20, 20, 10.1), (0, 0, 0)) - box((3.2, 3.2, 20), (16.8, 16.8, -1)))
+    (region,) = listed(most, least_area=4.0)
+    assert region.minor
+    assert 0 < region.measure < 4.0
+    assert region.reason == REASON
+    (fault,) = listed(most, least_area=0.5)
+    assert not fault.minor
+    assert judged(most, unsupported=(region,)) == [], "what is listed breaks no promise, minor or not"
+
+
+def test_patches_are_measured_one_by_one():
+    corners = box((3.2, 3.2, 20), (16.8, 16.8, -1)) + box((3.2, 3.2, 20), (0, 0, -1))
+    most = body(box((20, 20, 10.1), (0, 0, 0)) - corners)
+    one = body(box((20, 20, 10.1), (0, 0, 0)) - box((3.2, 3.2, 20), (16.8, 16.8, -1)))
+    (region,), (half,) = listed(most, least_area=4.0), listed(one, least_area=4.0)
+    assert region.minor
+    assert region.measure == pytest.approx(2 * half.measure, rel=0.2)
+
+
+def test_a_small_patch_that_starts_in_the_air_is_never_minor():
+    """A stud below the table: its bottom is small and lower than anything held near it."""
+    table = part_of(
+        box((20, 20, 3), (0, 0, 10)) + box((4, 4, 10), (8, 8, 0)) + box((1.9, 1.9, 3), (18, 18, 7.5))
+    )
+    held = body(box((20, 20, 10.1), (0, 0, 0)) - box((6, 6, 20), (14, 14, -1)))
+    stud = [region for region in listed(held, parts=(table,), least_area=30.0) if region.measure < 4.0]
+    assert stud
+    assert not any(region.minor for region in stud)
+
+
+def test_tips_are_never_minor():
+    tip = mesh_of(Solid.extrude(manifold3d.CrossSection.square((4, 4), center=True), 9.0, scale_top=(0, 0)))
+    upside_down = part_of(_flipped(tip))
+    found = [
+        region
+        for region in listed(parts=(upside_down,), least_area=50, least_length=50)
+        if region.kind == "tip"
+    ]
+    assert found
+    assert not any(region.minor for region in found)
+
+
+def _flipped(mesh):
+    points = np.array(mesh.vertices) * (1, 1, -1) + (0, 0, 12)
+    return manifold3d.Manifold(
+        manifold3d.Mesh(points.astype(np.float32), np.array(mesh.triangles)[:, ::-1].astype(np.uint32))
+    )

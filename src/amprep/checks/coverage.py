@@ -1,10 +1,12 @@
 """The promise of coverage: whatever needs support is within reach of a contact, or listed with its reason."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from amprep.checks.bare import list_bare, region_name
 from amprep.checks.needs import needs_of
 from amprep.checks.violation import Violation
 from amprep.geometry.inside import inside
@@ -45,17 +47,12 @@ def find_unsupported(
     reason_of
         Called with a part's index and points ``(n, 3)``; says for each why nothing holds it.
     """
-    found = []
+    found: list[Unsupported] = []
     for part, each in enumerate(_coverage(parts, bodies, settings, settings.reach)):
-        bare = np.flatnonzero(~each.covered)
-        reasons = np.array(reason_of(part, each.samples.points[bare]), dtype=object)
-        for region in np.unique(each.samples.region[bare]):
-            here = each.samples.region[bare] == region
-            for reason in sorted(set(reasons[here])):
-                chosen = bare[here & (reasons == reason)]
-                found.append(
-                    _listed(part, parts[part].label, each, int(region), chosen, str(reason), settings)
-                )
+        reasons = partial(reason_of, part)
+        found += list_bare(
+            part, parts[part].label, each.samples, each.regions, each.covered, settings, reasons
+        )
     return tuple(found)
 
 
@@ -77,7 +74,7 @@ def check_coverage(build: Build) -> list[Violation]:
         for region in np.unique(each.samples.region[~covered]):
             bare = ~covered & (each.samples.region == region)
             x, y, z = each.samples.points[bare][0]
-            where = f"{_name(int(region), build.parts[part].label)} ({each.regions[region].kind})"
+            where = f"{region_name(int(region), build.parts[part].label)} ({each.regions[region].kind})"
             message = (
                 f"{where} has {bare.sum()} sample points over {build.settings.reach:g} mm from any contact "
                 f"and is not listed, first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
@@ -211,34 +208,3 @@ def _nearest(targets: Floats, points: Floats, reach: float) -> Bools:
         return np.zeros(len(points), np.bool_)
     distance, _ = KDTree(targets).query(points, distance_upper_bound=reach)
     return np.asarray(np.isfinite(distance))
-
-
-def _listed(
-    part: int,
-    label: str,
-    each: _Covered,
-    region: int,
-    chosen: np.ndarray,
-    reason: str,
-    settings: BuildSettings,
-) -> Unsupported:
-    """Measure what is bare by its share of the region's samples, and thin its points for the record."""
-    kind, measure, _ = each.regions[region]
-    own = each.samples.region == region
-    weight = each.samples.inner if each.samples.inner[own].any() else np.ones(len(own), np.bool_)
-    share = weight[chosen].sum() / weight[own].sum()
-    points = each.samples.points[chosen]
-    _, first = np.unique(np.floor(points / (settings.reach / 3)), axis=0, return_index=True)
-    return Unsupported(
-        part,
-        _name(region, label),
-        kind,
-        reason,
-        float(measure * share),
-        points[np.sort(first)],
-        settings.reach,
-    )
-
-
-def _name(region: int, label: str) -> str:
-    return f"overhang {region + 1} of {label}"

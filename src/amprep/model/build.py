@@ -113,6 +113,8 @@ class Unsupported:
         Unsupported area in mm2, length in mm, or 0 for a tip.
     points
         ``(n, 3)`` mm, build coordinates: every point of the region lies within `radius` of one of them.
+    minor
+        Whether it is smaller than the least area or length to support, beside held surface: listed, no fault.
     """
 
     part: int
@@ -122,6 +124,7 @@ class Unsupported:
     measure: float
     points: Floats
     radius: float
+    minor: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", frozen(self.points, np.float64, 3))

@@ -3,15 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 
+import numpy as np
+
 from amprep import __version__
+from amprep.checks.bare import region_name
+from amprep.geometry.overhangs import OverhangRegion
 from amprep.host import Host
 from amprep.job import Job
-from amprep.model import Packing, PackingProblem, Part
+from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.supported import SupportedBuild
 from amprep.pipeline.supports import SupportLayout
 from amprep.report.measures import build_density, build_height, support_volume
-from amprep.report.record import BuildRecord, RunRecord, UnconnectedRecord, UnplacedRecord
+from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord, UnplacedRecord
 
 
 def build_record(supported: SupportedBuild) -> BuildRecord:
@@ -22,6 +26,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         density=build_density(build),
         height_mm=build_height(build),
         support_volume_mm3=support_volume(build),
+        overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),
         shared=() if layout is None else layout.notes,
@@ -66,6 +71,43 @@ def unplaced_records(
     return tuple(UnplacedRecord(parts[item.part].name, item.copy + 1, reason) for item, reason in items)
 
 
+def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...]:
+    """Return a record of each overhang region of each part."""
+    bare: dict[str, list[Unsupported]] = {}
+    for each in build.unsupported:
+        bare.setdefault(each.label, []).append(each)
+    records = []
+    for part, (placed, overhangs) in enumerate(zip(build.parts, layout.overhangs, strict=True)):
+        count = len(overhangs.regions)
+        own = layout.red_part == part
+        red = np.bincount(layout.red_region[own], minlength=count)
+        connected = np.bincount(layout.red_region[own & layout.connected], minlength=count)
+        for number, region in enumerate(overhangs.regions):
+            name = region_name(number, placed.label)
+            x, y, z = region.centre.tolist()
+            records.append(
+                OverhangRecord(
+                    name,
+                    placed.label,
+                    region.kind,
+                    z if region.kind == "tip" else region.measure,
+                    (x, y, z),
+                    int(red[number]),
+                    int(connected[number]),
+                    _held(region, bare.get(name, ())),
+                    tuple(sorted({each.reason for each in bare.get(name, ())})),
+                )
+            )
+    return tuple(records)
+
+
+def _held(region: OverhangRegion, bare: Sequence[Unsupported]) -> str:
+    """Say how much of a region is held, from what is listed of it."""
+    if all(each.minor for each in bare):
+        return "whole"
+    return "part" if sum(each.measure for each in bare) < (1.0 - 1e-6) * region.measure else "not"
+
+
 def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedRecord, ...]:
     frame, records = layout.frame, []
     for red in (~layout.connected).nonzero()[0].tolist():
@@ -74,7 +116,7 @@ def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[Unco
         records.append(
             UnconnectedRecord(
                 label,
-                f"overhang {int(layout.red_region[red]) + 1} of {label}",
+                region_name(int(layout.red_region[red]), label),
                 layout.reasons[red],
                 (plane, y, x),
                 (

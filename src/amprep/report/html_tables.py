@@ -45,6 +45,7 @@ def body_sections(record: RunRecord) -> str:
         ("Builds", _builds(record)),
         ("Unplaced", _unplaced(record)),
         ("Unsupported", _unsupported(record)),
+        ("Overhangs", "".join(_overhangs(n, entry) for n, entry in enumerate(record.builds, start=1))),
         ("Verification", _verification(record)),
         ("Parts", "".join(_parts(number, entry) for number, entry in enumerate(record.builds, start=1))),
         ("Warnings and notes", _words(record)),
@@ -92,7 +93,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
         ("Height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
         ("Supports", f"{volume:.2f} <small>cm³</small>", False),
-        ("Unsupported", f"{area:.1f} <small>mm²</small>", any(e.build.unsupported for e in builds)),
+        ("Unsupported", f"{area:.1f} <small>mm²</small>", any(e.unsupported for e in builds)),
         ("Violations", verdict, bool(broken)),
         ("Time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
     ]
@@ -152,13 +153,36 @@ def _unplaced(record: RunRecord) -> str:
     return table(("Part", "Copy|", "Reason"), rows) if rows else ""
 
 
+def _overhangs(number: int, entry: BuildRecord) -> str:
+    if not entry.overhangs:
+        return ""
+    units = {"face": "mm²", "edge": "mm long", "tip": "mm high"}
+    rows = (
+        (
+            each.name,
+            each.kind,
+            ("number", f"{each.measure:.2f} {units[each.kind]}"),
+            ", ".join(f"{value:.2f}" for value in each.position_mm),
+            ("number", f"{each.connected} of {each.red}"),
+            each.held,
+            ", ".join(each.reasons),
+        )
+        for each in entry.overhangs
+    )
+    headings = ("Overhang", "Kind", "Size|", "Centre mm", "Red squares connected|", "Held", "Reasons")
+    held = sum(each.held == "whole" for each in entry.overhangs)
+    name = f"Build {number}: {len(entry.overhangs)} overhangs, {held} held"
+    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+
+
 def _unsupported(record: RunRecord) -> str:
     rows: list[Sequence[Cell]] = []
     for number, entry in enumerate(record.builds, start=1):
         for region in entry.build.unsupported:
             unit = {"face": " mm²", "edge": " mm"}.get(region.kind, "")
             measure = f"{region.measure:.2f}{unit}" if unit else ""
-            rows.append((number, region.label, region.kind, ("number", measure), region.reason))
+            reason = f"{region.reason} (below the least size)" if region.minor else region.reason
+            rows.append((number, region.label, region.kind, ("number", measure), reason))
     listed = table(("Build|", "Region", "Kind", "Size|", "Reason"), rows) if rows else ""
     squares = Counter(
         (number, square.region, square.reason)

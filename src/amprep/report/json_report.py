@@ -10,7 +10,7 @@ import numpy as np
 
 from amprep.model import PlacedPart, SupportBody, Unsupported
 from amprep.report.measures import part_volume
-from amprep.report.record import BuildRecord, RunRecord, UnconnectedRecord
+from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord
 from amprep.threemf.writing_files import replacing
 
 FORMAT = 1
@@ -72,9 +72,11 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
         "supports": {
             "volume_mm3": entry.support_volume_mm3,
             "material": entry.support_material,
+            "overhangs": [_overhang(region) for region in entry.overhangs],
             "red": entry.red,
             "unconnected": [_unconnected(square) for square in entry.unconnected],
             "unsupported_mm2": entry.unsupported_mm2,
+            "minor_mm2": entry.minor_mm2,
             "unsupported": [_unsupported(entry, region) for region in build.unsupported],
             "bodies": [_body(entry, body) for body in build.supports],
             "shared": list(entry.shared),
@@ -113,6 +115,21 @@ def _unconnected(square: UnconnectedRecord) -> dict[str, Any]:
     }
 
 
+def _overhang(region: OverhangRecord) -> dict[str, Any]:
+    measures = {"face": "area_mm2", "edge": "length_mm", "tip": "height_mm"}
+    return {
+        "name": region.name,
+        "part": region.part,
+        "kind": region.kind,
+        **{key: region.measure if kind == region.kind else None for kind, key in measures.items()},
+        "position_mm": list(region.position_mm),
+        "red": region.red,
+        "connected": region.connected,
+        "held": region.held,
+        "reasons": list(region.reasons),
+    }
+
+
 def _unsupported(entry: BuildRecord, region: Unsupported) -> dict[str, Any]:
     return {
         "part": entry.build.parts[region.part].label,
@@ -120,6 +137,7 @@ def _unsupported(entry: BuildRecord, region: Unsupported) -> dict[str, Any]:
         "kind": region.kind,
         "reason": region.reason,
         "measure": region.measure,
+        "minor": region.minor,
         "centre_mm": region.points.mean(axis=0) if len(region.points) else None,
     }
 

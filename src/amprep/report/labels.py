@@ -32,8 +32,8 @@ def _subtitle(build: Build) -> str:
     x, y, z = build.settings.space.size.tolist()
     box = f"{x:g} x {y:g} x {z:g} mm" if build.settings.space.shape == "box" else f"⌀ {x:g} x {z:g} mm"
     words = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
-    if build.unsupported:
-        count = len(build.unsupported)
+    count = sum(not region.minor for region in build.unsupported)
+    if count:
         words.append(f"{count} region{'s' if count > 1 else ''} unsupported (red)")
     return "   ·   ".join(word for word in words if word)
 

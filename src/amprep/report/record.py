@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from amprep.checks.violation import Violation
-from amprep.model import Build
+from amprep.model import Build, Unsupported
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,39 @@ class UnconnectedRecord:
 
 
 @dataclass(frozen=True)
+class OverhangRecord:
+    """An overhang region: what needs support, and what became of it.
+
+    Attributes
+    ----------
+    name
+        For people, ``overhang 7 of bracket-2``.
+    kind
+        ``face``, ``edge`` or ``tip``.
+    measure
+        Area in mm2, length in mm, or a tip's height above the plate in mm.
+    position_mm
+        Its centre in build coordinates.
+    red, connected
+        Its red squares, and those with a way to where supports end.
+    held
+        ``whole`` (minor remainders aside), ``part`` or ``not``.
+    reasons
+        Why something of it is unsupported, minor remainders included.
+    """
+
+    name: str
+    part: str
+    kind: str
+    measure: float
+    position_mm: tuple[float, float, float]
+    red: int
+    connected: int
+    held: str
+    reasons: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class UnplacedRecord:
     """A copy of a part that is in no build, and why; copies count from 1."""
 
@@ -66,6 +99,8 @@ class BuildRecord:
         What `amprep verify` found; None when the build was not verified.
     shared
         Supports that hold several parts, one sentence each.
+    overhangs
+        Everything that needs support.
     """
 
     build: Build
@@ -80,11 +115,22 @@ class BuildRecord:
     verification: tuple[Violation, ...] | None = None
     stl_files: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
+    overhangs: tuple[OverhangRecord, ...] = ()
+
+    @property
+    def unsupported(self) -> tuple[Unsupported, ...]:
+        """What is listed as unsupported and not minor."""
+        return tuple(region for region in self.build.unsupported if not region.minor)
 
     @property
     def unsupported_mm2(self) -> float:
-        """Area of the faces listed as unsupported, mm2; edges and tips have none."""
-        return sum(region.measure for region in self.build.unsupported if region.kind == "face")
+        """Area of the faces listed as unsupported, mm2, minor ones left out; edges and tips have none."""
+        return sum(region.measure for region in self.unsupported if region.kind == "face")
+
+    @property
+    def minor_mm2(self) -> float:
+        """Area of the minor faces listed as unsupported, mm2."""
+        return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,5 +170,5 @@ class RunRecord:
     @property
     def faults(self) -> int:
         """How many things a person should look at: copies missing, regions unsupported, promises broken."""
-        listed = sum(len(entry.build.unsupported) + len(entry.verification or ()) for entry in self.builds)
+        listed = sum(len(entry.unsupported) + len(entry.verification or ()) for entry in self.builds)
         return listed + (0 if self.objective == "fill" else len(self.unplaced))

@@ -3,7 +3,6 @@
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from amprep.model import Build
 from amprep.report.record import BuildRecord, RunRecord, StageTime
 
 if TYPE_CHECKING:
@@ -74,15 +73,15 @@ def _attention(record: RunRecord) -> list[str]:
             f"build {number}: {found.promise}: {found.subject}: {found.message}"
             for found in entry.verification or ()
         ]
-        lines += [f"build {number}: unsupported: {words}" for words in _unsupported(entry.build)]
+        lines += [f"build {number}: unsupported: {words}" for words in _unsupported(entry)]
     return lines
 
 
-def _unsupported(build: Build) -> list[str]:
+def _unsupported(entry: BuildRecord) -> list[str]:
     """Return one line for each part with unsupported regions."""
     lines = []
-    for index, placed in enumerate(build.parts):
-        regions = [region for region in build.unsupported if region.part == index]
+    for index, placed in enumerate(entry.build.parts):
+        regions = [region for region in entry.unsupported if region.part == index]
         reasons = Counter(region.reason for region in regions)
         if len(regions) == 1:
             lines.append(f"{regions[0].label}: {regions[0].reason}")

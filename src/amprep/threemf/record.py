@@ -157,6 +157,7 @@ def unsupported_record(region: Unsupported) -> Record:
         "reason": region.reason,
         "measure": region.measure,
         "radius": region.radius,
+        **({"minor": True} if region.minor else {}),
         "points": plain(region.points, decimals=6),
     }
 
@@ -172,6 +173,7 @@ def unsupported_of(record: Any, parts: int) -> Unsupported:
         measure=number(values, "measure"),
         points=table(values, "points", 3),
         radius=number(values, "radius"),
+        minor="minor" in values and flag(values, "minor"),
     )
 
 
