@@ -207,9 +207,9 @@ def test_patches_are_measured_one_by_one():
     corners = box((3.2, 3.2, 20), (16.8, 16.8, -1)) + box((3.2, 3.2, 20), (0, 0, -1))
     most = body(box((20, 20, 10.1), (0, 0, 0)) - corners)
     one = body(box((20, 20, 10.1), (0, 0, 0)) - box((3.2, 3.2, 20), (16.8, 16.8, -1)))
-    (region,), (half,) = listed(most, least_area=4.0), listed(one, least_area=4.0)
+    (region,), (half,) = listed(most, least_area=5.0), listed(one, least_area=5.0)
     assert region.minor
-    assert region.measure == pytest.approx(2 * half.measure, rel=0.2)
+    assert region.measure == pytest.approx(2 * half.measure, rel=0.5)
 
 
 def test_a_small_patch_that_starts_in_the_air_is_never_minor():
