@@ -1,9 +1,12 @@
-"""Built-in lattice cells: ``prism`` and ``x-wall``."""
+"""Built-in lattice cells: ``prism``, ``x-wall``, ``strut``, ``bcc`` and ``hatch``."""
 
 from collections.abc import Iterator
 
+from amprep.cells import cell_offer
 from amprep.hookspecs import CellEmitter, hookimpl
+from amprep.plugins.cells.hatch import HatchParams, emit_hatch, hatch_material
 from amprep.plugins.cells.prism import emit_prisms, prism_material
+from amprep.plugins.cells.struts import BccParams, StrutParams, declare_bcc, declare_strut
 from amprep.plugins.cells.x_wall import XWallParams, emit_x_walls, x_wall_material
 
 amprep_api = 1
@@ -11,7 +14,7 @@ amprep_api = 1
 
 @hookimpl
 def amprep_cell_emitters() -> Iterator[CellEmitter]:
-    """Yield the cells of thesis section 3.5."""
+    """Yield the cells of thesis section 3.5, lattices of struts, and the block support."""
     yield CellEmitter("prism", "Every section as its full prism.", run=emit_prisms, material=prism_material)
     yield CellEmitter(
         "x-wall",
@@ -19,4 +22,17 @@ def amprep_cell_emitters() -> Iterator[CellEmitter]:
         run=emit_x_walls,
         params=XWallParams,
         material=x_wall_material,
+    )
+    yield cell_offer(
+        "strut", "A round pin along every edge, tied to its neighbours.", declare_strut, params=StrutParams
+    )
+    yield cell_offer(
+        "bcc", "Round struts from the centre to the corners of the cell.", declare_bcc, params=BccParams
+    )
+    yield CellEmitter(
+        "hatch",
+        "Block support: a grid of thin walls with windows, teeth and gaps.",
+        run=emit_hatch,
+        params=HatchParams,
+        material=hatch_material,
     )
