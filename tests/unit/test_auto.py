@@ -104,7 +104,9 @@ def test_the_budget_of_work_ends_the_search_at_the_same_place_every_time():
 
 
 def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
-    packing = run(problem(np.random.default_rng(7).integers(2, 8, (40, 3)).tolist()), Stop.after(0.0))
+    from amprep.pipeline.bench_instances import mpv_instance
+
+    packing = run(mpv_instance(5, 50, 1).problem, Stop.after(0.0))
     assert packing.stop_reason == "time limit"
     assert run(problem([(6, 6, 6)] * 5), Stop.after(0.0)).stop_reason == "bound met"
     assert run(problem([])).builds == ()

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from amprep.kernels.box_places import LEFT, WORK, Array, Indices
+from amprep.kernels.box_places import LEFT, WORK, Array, Indices, helper
 from amprep.kernels.extreme_points import pack
 
 SOLVED, PAUSED = 0, 1
@@ -22,6 +23,33 @@ MOST_A_STEP = 40_000_000
 
 SPENT, STEPS = 0, 1
 """Places in `spent`: comparisons and steps made."""
+
+
+class Seen(NamedTuple):
+    """Builds met on the way, each set of items once; when there is no room for more, all are forgotten.
+
+    Attributes
+    ----------
+    code
+        ``(n,)`` uint64 random number of each item; a build's key is the sum of its items'.
+    key, row
+        ``(2^b,)`` hash table: key and number of a build; row -1 is empty.
+    start
+        ``(p + 1,)`` where the items of each build begin.
+    item, variant, place
+        ``(t,)``, ``(t,)`` and ``(t, 3)`` as in `Bins`.
+    noted
+        ``(1,)`` builds noted.
+    """
+
+    code: NDArray[np.uint64]
+    key: NDArray[np.uint64]
+    row: Indices
+    start: Indices
+    item: Indices
+    variant: Indices
+    place: Array
+    noted: Indices
 
 
 class Bins(NamedTuple):
@@ -43,10 +71,40 @@ def _random(state):
     return np.float64((x * np.uint64(2685821657736338717)) >> np.uint64(11)) / 9007199254740992.0
 
 
-@njit(cache=True)
+@helper
+def _note(number, items, answer, seen):
+    """Note what `items` the build of this number holds, unless it is known (seen modified)."""
+    key, size = np.uint64(0), 0
+    for item in items:
+        if answer.build[item] == number:
+            key += seen.code[item]
+            size += 1
+    if seen.noted[0] + 1 >= seen.start.size or seen.start[seen.noted[0]] + size > seen.item.size:
+        seen.row[:] = -1
+        seen.noted[0] = 0
+    mask = seen.key.size - 1
+    at = np.int64(key >> np.uint64(16)) & mask
+    while seen.row[at] >= 0 and seen.key[at] != key:
+        at = (at + 1) & mask
+    if seen.row[at] >= 0 or size == 0:
+        return
+    row = seen.noted[0]
+    seen.key[at], seen.row[at] = key, row
+    last = seen.start[row]
+    for item in items:
+        if answer.build[item] == number:
+            seen.item[last], seen.variant[last] = item, answer.variant[item]
+            for i in range(3):
+                seen.place[last, i] = answer.place[item, i]
+            last += 1
+    seen.start[row + 1] = last
+    seen.noted[0] = row + 1
+
+
+@njit(cache=True, nogil=True)
 def search(
     items, builds, most_ruined, heat, keys, weight, styles, shapes, room, obstacles, zones, work, random,
-    bins, answer, scratch, chosen, order, spent,
+    bins, answer, scratch, chosen, order, spent, seen,
 ):  # fmt: skip
     """Pack the loose items into `builds` builds by packing a few of them anew, until none is loose.
 
@@ -64,8 +122,9 @@ def search(
         ``(n,)`` what an item counts when loose.
     styles
         ``(s, 6)`` ways to choose places, see `amprep.kernels.box_places`.
-    random, bins, answer, scratch, chosen, order, spent
-        Modified in place; `chosen` has `most_ruined` places, `order` n, `spent` 2.
+    random, bins, answer, scratch, chosen, order, spent, seen
+        Modified in place; `chosen` has `most_ruined` places, `order` n, `spent` 2. Builds are noted in `seen`
+        unless something stands in the first.
     """
     last = spent[SPENT] + work
     key = np.empty(order.size)
@@ -113,6 +172,8 @@ def search(
         pack(sorted_order, shapes, room, standing, zones, style, r, MOST_A_STEP, answer, scratch)
         spent[SPENT] += scratch.cursor[WORK] + items.size + 20 * count
         spent[STEPS] += 1
+        for i in range(0 if fixed else r):
+            _note(i, sorted_order, answer, seen)
         after = 0.0
         for item in sorted_order:
             if answer.build[item] < 0:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from amprep.hookspecs import Packer
     from amprep.host import Listed
 
-UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12}
+UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12, "proof": 1e12}
 """Parameters that end a packer before its time."""
 
 

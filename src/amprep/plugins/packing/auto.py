@@ -4,11 +4,11 @@ import numpy as np
 
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
+from amprep.plugins.packing.auto_builds import pack_builds
 from amprep.plugins.packing.bounds import builds_bound, fill_bound
 from amprep.plugins.packing.extreme_points import Runner, Solution, as_packing
 from amprep.plugins.packing.params import AutoParams
 from amprep.plugins.packing.scene import prepare
-from amprep.plugins.packing.search import Search
 from amprep.plugins.packing.sortings import Pass, passes
 
 DISTURBANCE = 0.1
@@ -25,20 +25,14 @@ def pack_auto(
     `amprep.kernels.packing_search`). For `fill`, disturbed copies of the best order are packed. The first
     pass is always begun, so that a late stop still gives an answer.
     """
+    if problem.objective == "builds":
+        return pack_builds(problem, params=params, rng=rng, stop=stop, report=report)
     scene = prepare(problem)
     runner = Runner(scene)
     filling = problem.objective == "fill"
     bound = -fill_bound(scene) if filling else float(builds_bound(scene))
     best, reason = _construct(runner, bound, params, rng, stop)
-    if reason or filling or not best.complete:
-        return as_packing(scene, best, reason or "finished")
-    search = Search(runner, best, params, rng)
-    while not reason:
-        report(
-            min(search.spent[0] / (params.work * 1e6 + 1.0), 1.0), f"{search.builds} builds, bound {bound:g}"
-        )
-        reason = "bound met" if search.builds <= bound else search.save_a_build(stop)
-    return as_packing(scene, search.best, reason)
+    return as_packing(scene, best, reason or "finished")
 
 
 def _construct(

@@ -12,6 +12,8 @@ import numpy as np
 from amprep.geometry.packing_space import union_volume
 from amprep.model.arrays import CONTACT_TOLERANCE, Floats
 from amprep.plugins.packing.l2 import l2_bound
+from amprep.plugins.packing.relaxed_boxes import core_room, core_sizes, relaxed_boxes
+from amprep.plugins.packing.scales import heaviest_scale
 from amprep.plugins.packing.scene import Scene, Variant
 
 
@@ -23,9 +25,9 @@ class Amounts(NamedTuple):
 
 
 def builds_bound(scene: Scene) -> int:
-    """Return the fewest builds that can hold what fits: by volume, plate area and `l2_bound`.
+    """Return the fewest builds that can hold what fits: by volume, plate area, `l2_bound` and scales.
 
-    Without stacking every item counts as high as the room, which makes L2 the bound for the plane.
+    Without stacking every item counts as high as the room, which makes the latter bounds for the plane.
     """
     counted = scene.kind[~scene.too_large]
     if not len(counted):
@@ -33,8 +35,10 @@ def builds_bound(scene: Scene) -> int:
     bound = 1
     for amounts in amounts_of(scene):
         bound = max(bound, int(np.ceil(amounts.taken[counted].sum() / amounts.room - 1e-9)))
-    size, room, gap = _core_sizes(scene), _core_room(scene), scene.problem.clearance
-    return max(bound, l2_bound(size[counted], room, gap))
+    size, room, gap = core_sizes(scene), core_room(scene), scene.problem.clearance
+    boxes, demand = relaxed_boxes(scene), np.bincount(counted, minlength=len(scene.kinds))
+    weight = heaviest_scale(boxes.size / boxes.room, demand)
+    return max(bound, l2_bound(size[counted], room, gap), int(np.ceil(weight - 1e-6)))
 
 
 def fill_bound(scene: Scene) -> float:
@@ -117,24 +121,3 @@ def _lost(scene: Scene, dimensions: int) -> float:
         least, most = space.lo, space.hi
     lo, hi = np.maximum(lo, least)[:, :dimensions], np.minimum(hi, most)[:, :dimensions]
     return union_volume(lo, hi)
-
-
-def _core_room(scene: Scene) -> Floats:
-    """Return the sides of the room, ``(3,)`` mm."""
-    return np.asarray(scene.space.hi - scene.space.lo + CONTACT_TOLERANCE)
-
-
-def _core_sizes(scene: Scene) -> Floats:
-    """Return a box ``(kinds, 3)`` within each kind however turned: of its largest boxes, the least sides."""
-    room = _core_room(scene)
-    sizes = np.empty((len(scene.kinds), 3))
-    for i, kind in enumerate(scene.kinds):
-        cores = []
-        for variant in kind:
-            side = variant.hi - variant.lo
-            if scene.space.flat:
-                side = np.where((variant.lo[:, 2:] <= CONTACT_TOLERANCE), side, 0.0)
-                side[:, 2] = room[2] + CONTACT_TOLERANCE
-            cores.append(side[np.argmax(side.prod(axis=1))])
-        sizes[i] = np.min(cores, axis=0)
-    return np.asarray(np.maximum(sizes - CONTACT_TOLERANCE, 0.0))

@@ -129,14 +129,14 @@ def _value(scene: Scene, build: records.Indices) -> float:
     return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
 
 
-def as_packing(scene: Scene, best: Solution, stop_reason: str) -> Packing:
-    """Return the solution as a packing, with what is known about its quality."""
+def as_packing(scene: Scene, best: Solution, stop_reason: str, *, proved: int | None = None) -> Packing:
+    """Return the solution as a packing, with what is known: the builds it takes are `proved`, or bounded here."""
     filling = scene.problem.objective == "fill"
     builds = _builds(scene, best)
     left = "out of time" if not best.complete else "no room left" if filling else "too large"
     reasons = {int(i): "too large" for i in np.flatnonzero(scene.too_large)}
     reasons |= {int(i): left for i in np.flatnonzero(scene.free & (best.build < 0))}
-    bound = fill_bound(scene) if filling else float(builds_bound(scene))
+    bound = fill_bound(scene) if filling else float(builds_bound(scene) if proved is None else proved)
     reached = _value(scene, best.build) if filling else float(len(builds))
     return Packing(
         builds=builds,

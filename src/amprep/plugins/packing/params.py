@@ -95,18 +95,22 @@ class AutoParams:
         disturbed orders.
     work
         Millions of comparisons after which the search ends; some 40 a second.
+    proof
+        Millions of comparisons spent on the bound, in a second thread; some 170 a second.
     """
 
     most_ruined: int = 3
     heat: float = 0.05
     patience: int = 1000
     work: float = 100.0
+    proof: float = 400.0
 
     def __post_init__(self) -> None:
         _at_least("most_ruined", self.most_ruined, 1)
         _at_least("heat", self.heat, 0)
         _at_least("patience", self.patience, 0)
         _at_least("work", self.work, 0)
+        _at_least("proof", self.proof, 0)
 
 
 @dataclass(frozen=True)
@@ -123,3 +127,23 @@ class SweepParams:
 
     def __post_init__(self) -> None:
         _at_least("slicings", self.slicings, 0)
+
+
+@dataclass(frozen=True)
+class BlockBuildingParams:
+    """Parameters of `block-building`; the budget counts work, so that the same job gives the same packing.
+
+    Attributes
+    ----------
+    blocks
+        Blocks that each of the two searches builds, at most; there is always one for each single box.
+    work
+        Millions of blocks and spaces looked at after which the searches end; some 200 a second.
+    """
+
+    blocks: int = 10_000
+    work: float = 500.0
+
+    def __post_init__(self) -> None:
+        _at_least("blocks", self.blocks, 0)
+        _at_least("work", self.work, 0)

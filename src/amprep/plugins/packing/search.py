@@ -1,5 +1,7 @@
 """The search of `auto`: one build less, and a few builds packed anew until nothing is loose."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from amprep.kernels import box_places as records
@@ -8,11 +10,18 @@ from amprep.model.arrays import Floats
 from amprep.model.control import Stop
 from amprep.plugins.packing.extreme_points import Runner, Solution
 from amprep.plugins.packing.params import AutoParams
+from amprep.plugins.packing.partition import Pool, choose_builds
 from amprep.plugins.packing.scene import Scene
 from amprep.plugins.packing.sortings import Pass, passes
 
 PAUSE = 1_000_000
 """Comparisons between two looks at `stop`, some 25 ms."""
+
+FIRST_CHOICE, GROWTH = 20_000_000, 2
+"""Comparisons before builds are first chosen among all that were met, and how much later each next time."""
+
+MOST_SEEN = 1 << 15
+"""Builds remembered."""
 
 
 class Search:
@@ -36,31 +45,80 @@ class Search:
         )
         self.chosen, self.order = np.zeros(params.most_ruined, np.int64), np.zeros(n, np.int64)
         self.spent = np.zeros(2, np.int64)
+        self.seen = _nothing_seen(n, int(np.ceil(len(self.items) / max(self.builds, 1))))
+        self.next_choice = FIRST_CHOICE
 
     @property
     def builds(self) -> int:
         """Builds of the best solution."""
         return int(self.best.build.max(initial=-1)) + 1
 
-    def save_a_build(self, stop: Stop) -> str:
+    def save_a_build(self, proved: Callable[[], int], stop: Stop) -> str:
         """Search for a solution with one build less; return why it ended in vain, empty when it did not."""
         self._dissolve()
         steps, limit = int(self.spent[kernel.STEPS]), self.params.patience * len(self.items)
-        code = kernel.PAUSED
-        while code == kernel.PAUSED:
+        while True:
+            if self.builds <= proved():
+                return "bound met"
             if stop():
                 return stop.reason
             if self.spent[kernel.SPENT] > self.params.work * 1e6:
                 return "work used up"
             if self.spent[kernel.STEPS] - steps > limit:
                 return "no better one found"
-            code = self._run()
-        variant = self.bins.variant - self.first_variant
-        build = self.bins.build.copy()
-        plan = Pass(self.items, self.styles[0])
-        rank = (0.0, float(build.max() + 1))
-        self.best = Solution(plan, rank, True, build, variant, self.bins.place.copy())
-        return ""
+            if self._run() == kernel.SOLVED:
+                self._keep(
+                    self.bins.build.copy(), self.bins.variant - self.first_variant, self.bins.place.copy()
+                )
+                return ""
+            if self._choose_in_time(stop):
+                return ""
+
+    def _keep(self, build: records.Indices, variant: records.Indices, place: Floats) -> None:
+        """Make this the best solution and go on from it."""
+        plan, rank = Pass(self.items, self.styles[0]), (0.0, float(build.max() + 1))
+        self.best = Solution(plan, rank, True, build, variant, place)
+        self.bins = kernel.Bins(build.copy(), variant + self.first_variant, place.copy())
+
+    def _choose_in_time(self, stop: Stop) -> bool:
+        """From time to time try to save a build by choosing among all builds met; say whether it did."""
+        if self.scene.problem.fixed or self.spent[kernel.SPENT] < self.next_choice:
+            return False
+        self.next_choice *= GROWTH
+        kinds, kind = np.unique(self.scene.kind[self.items], return_inverse=True)
+        of_item = np.zeros(len(self.scene.kind), np.int64)
+        of_item[self.items] = kind
+        start, item, variant, place = self._met()
+        pool = Pool(start, of_item[item])
+        demand = np.bincount(kind, minlength=len(kinds))
+        chosen = choose_builds(pool, demand, np.arange(self.builds), self.builds - 1, stop.remaining())
+        if chosen is None:
+            return False
+        build = np.full(len(self.scene.kind), -1, np.int64)
+        new_variant, new_place = np.zeros_like(build), np.zeros((len(build), 3))
+        waiting = [self.items[kind == k].tolist() for k in range(len(kinds))]
+        for number, row in enumerate(chosen.tolist()):
+            for at in range(start[row], start[row + 1]):
+                if waiting[pool.kind[at]]:
+                    own = waiting[pool.kind[at]].pop()
+                    build[own], new_variant[own], new_place[own] = number, variant[at], place[at]
+        self._keep(build, new_variant - self.first_variant, new_place)
+        return True
+
+    def _met(self) -> tuple[records.Indices, records.Indices, records.Indices, Floats]:
+        """Return where builds begin, and item, variant and place of what they hold: the best ones first."""
+        own = np.concatenate([np.flatnonzero(self.best.build == number) for number in range(self.builds)])
+        sizes = np.bincount(self.best.build[own], minlength=self.builds)
+        last = int(self.seen.noted[0])
+        kept = slice(int(self.seen.start[last]))
+        start = np.concatenate(([0], np.cumsum(sizes), sizes.sum() + self.seen.start[1 : last + 1]))
+        variant = (self.best.variant + self.first_variant)[own]
+        return (
+            start.astype(np.int64),
+            np.concatenate((own, self.seen.item[kept])),
+            np.concatenate((variant, self.seen.variant[kept])),
+            np.concatenate((self.best.place[own], self.seen.place[kept])),
+        )
 
     def _dissolve(self) -> None:
         """Make the items of the emptiest build loose, never those of one in which something is fixed."""
@@ -77,9 +135,19 @@ class Search:
         code = kernel.search(
             self.items, self.builds - 1, self.params.most_ruined, self.params.heat, self.keys, self.weight,
             self.styles, runner.shapes, runner.room, runner.obstacles, runner.zones, PAUSE, self.random,
-            self.bins, self.answer, runner.scratch, self.chosen, self.order, self.spent,
+            self.bins, self.answer, runner.scratch, self.chosen, self.order, self.spent, self.seen,
         )  # fmt: skip
         return int(code)
+
+
+def _nothing_seen(items: int, in_a_build: int) -> kernel.Seen:
+    """Return an empty memory of builds."""
+    held = max(MOST_SEEN * in_a_build, 4 * items)
+    return kernel.Seen(
+        np.random.default_rng(0).integers(1, 2**63, items, dtype=np.uint64),
+        np.zeros(2 * MOST_SEEN, np.uint64), np.full(2 * MOST_SEEN, -1, np.int64), np.zeros(MOST_SEEN, np.int64),
+        np.zeros(held, np.int64), np.zeros(held, np.int64), np.zeros((held, 3)), np.zeros(1, np.int64),
+    )  # fmt: skip
 
 
 def _keys(scene: Scene) -> Floats:

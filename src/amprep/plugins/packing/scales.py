@@ -1,0 +1,101 @@
+"""Conservative scales: lengths measured so that in no build their products add up to more than 1.
+
+A dual feasible function u maps [0, 1] to [0, 1] so that numbers that add up to at most 1 keep doing so. Lengths
+along each axis may be measured by such functions, each axis by its own: the boxes of a build then still have a
+total volume of at most 1 (Fekete and Schepers, *A general framework for bounds for higher-dimensional
+orthogonal packing problems*, Mathematical Methods of Operations Research 60 (2004),
+doi:10.1007/s001860400376).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from amprep.kernels.box_places import Indices
+from amprep.model.arrays import Floats
+
+ROUNDING = 1e-12
+MOST_CUTS = 20
+"""Thresholds tried an axis."""
+
+MULTIPLES = (1, 2, 3, 4, 5)
+
+
+def measures(length: Floats) -> Floats:
+    """Return lengths ``(k,)``, as shares of the room, under each dual feasible function tried, ``(f, k)``.
+
+    The functions are the identity, u^(k) and U^(e) of the paper, and f_2 of Carlier, Clautiaux and Moukrim,
+    *New reduction procedures and lower bounds for the two-dimensional bin packing problem with fixed
+    orientation*, Computers & Operations Research 34 (2007), doi:10.1016/j.cor.2005.08.012.
+    """
+    found = [length]
+    for k in MULTIPLES:
+        times = (k + 1) * length
+        whole = np.abs(times - np.round(times)) < 1e-9
+        found.append(np.where(whole, length, np.floor(times + ROUNDING) / k))
+    for cut in _cuts(length):
+        found.append(
+            np.where(length > 1.0 - cut + ROUNDING, 1.0, np.where(length < cut - ROUNDING, 0.0, length))
+        )
+        found.append(_rounded(length, float(cut)))
+    return np.unique(np.round(np.minimum(found, 1.0), 12), axis=0)
+
+
+def _cuts(length: Floats) -> Floats:
+    """Return thresholds up to a half at which something changes, evenly chosen."""
+    cuts = np.unique(np.round(np.concatenate((length, 1.0 - length)), 12))
+    cuts = cuts[(cuts > 1e-6) & (cuts <= 0.5 + ROUNDING)]
+    if len(cuts) > MOST_CUTS:
+        cuts = cuts[np.linspace(0, len(cuts) - 1, MOST_CUTS).astype(int)]
+    return np.asarray(cuts)
+
+
+def _rounded(length: Floats, cut: float) -> Floats:
+    """Return f_2: small lengths in whole cuts, and large ones as what they leave to others."""
+    cuts = np.floor(1.0 / cut + 1e-9)
+    large = 2.0 * (cuts - np.floor((1.0 - length) / cut + 1e-9))
+    small = 2.0 * np.floor(length / cut + 1e-9)
+    half = np.abs(length - 0.5) <= ROUNDING
+    return np.asarray(np.where(half, cuts, np.where(length > 0.5, large, small)) / (2.0 * cuts))
+
+
+def heaviest_scale(share: Floats, demand: Indices) -> float:
+    """Return the greatest total of boxes under a conservative scale: no fewer builds can hold them.
+
+    Parameters
+    ----------
+    share
+        ``(k, 3)`` sides of each kind as shares of the room, at most 1.
+    demand
+        ``(k,)`` how many there are.
+    """
+    return float(_weights([measures(share[:, axis]) for axis in range(3)], demand).max(initial=0.0))
+
+
+def heavy_scales(share: Floats, demand: Indices, most: int) -> Floats:
+    """Return the volume and the scales that weigh most, ``(k, s)``.
+
+    Parameters
+    ----------
+    share, demand
+        As in `heaviest_scale`.
+    most
+        Scales returned, at most; any two differ by more than 0.08 for some kind.
+    """
+    x, y, z = (measures(share[:, axis]) for axis in range(3))
+    weight = _weights([x, y, z], demand)
+    kept = [share.prod(axis=1)]
+    for place in np.argsort(-weight, axis=None, kind="stable")[: 400 * most]:
+        if len(kept) == most:
+            break
+        i, j, k = np.unravel_index(place, weight.shape)
+        scale = x[i] * y[j] * z[k]
+        if all(np.abs(scale - other).max() > 0.08 for other in kept):
+            kept.append(scale)
+    return np.ascontiguousarray(np.array(kept).T)
+
+
+def _weights(measured: Sequence[Floats], demand: Indices) -> Floats:
+    """Return the total under each triple of functions."""
+    x, y, z = measured
+    return np.array([(row * demand * y) @ z.T for row in x])
