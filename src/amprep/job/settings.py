@@ -96,6 +96,8 @@ class SupportSettings:
     vertical_cost: int = 1
     oblique_cost: int = 2
     share_between_parts: Literal["avoid", "allow"] = "avoid"
+    join_columns: bool = False
+    slender: float = 8.0
     least_area_mm2: float = 0.5
     least_length_mm: float = 0.5
     reach_mm: float | None = None
@@ -111,6 +113,7 @@ class SupportSettings:
         for name in ("pitch_mm", "reach_mm", "time_limit_s"):
             value = getattr(self, name)
             require(value is None or value > 0, f"{name} is above 0", value)
+        require(self.slender >= 1, "slender is at least 1", self.slender)
         for name in ("least_area_mm2", "least_length_mm", "gap_mm"):
             require(getattr(self, name) >= 0, f"{name} is at least 0", getattr(self, name))
         least = {"capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}

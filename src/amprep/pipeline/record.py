@@ -14,6 +14,7 @@ from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.supported import SupportedBuild
 from amprep.pipeline.supports import SupportLayout
+from amprep.report.columns import measure_columns
 from amprep.report.measures import build_density, build_height, support_volume
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord, UnplacedRecord
 
@@ -26,6 +27,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         density=build_density(build),
         height_mm=build_height(build),
         support_volume_mm3=support_volume(build),
+        columns=tuple(measure_columns(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),

@@ -114,6 +114,7 @@ def _plan(
         least_area=wishes.least_area_mm2,
         least_length=wishes.least_length_mm,
         share_between_parts=wishes.share_between_parts,
+        slender=wishes.slender if wishes.join_columns else None,
         stop=stop,
         report=report,
     )

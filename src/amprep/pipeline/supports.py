@@ -11,6 +11,7 @@ from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
 from amprep.pipeline.support_grid import choose_pitch, coloured, cubes_of, frame_of
+from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_layout import SupportLayout
 from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
 from amprep.pipeline.support_routing import (
@@ -42,6 +43,7 @@ def plan_supports(
     least_area: float = 0.5,
     least_length: float = 0.5,
     share_between_parts: Literal["avoid", "allow"] = "avoid",
+    slender: float | None = None,
     stop: Stop,
     report: Report,
 ) -> SupportLayout:
@@ -58,6 +60,8 @@ def plan_supports(
     share_between_parts
         ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
         one network.
+    slender
+        Columns higher than so many times their width are joined to others; None joins none.
 
     Raises
     ------
@@ -90,9 +94,17 @@ def plan_supports(
 
     routed = (route_apart if share_between_parts == "avoid" else route_together)(network, routing)
     edges = merge_edges(routed.edges)
+    notes = []
+    if slender is not None:
+        joined = join_columns(frame, cubes, edges, slender)
+        edges = merge_edges(np.concatenate([edges, joined.edges]))
+        notes.append(
+            f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
+        )
     connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
     group, edge_group, group_parts = _groups(edges, red, connected, len(parts))
     shared = [group for group in group_parts if len(group) > 1]
+    notes += ["share supports: " + ", ".join(parts[part].label for part in group) for group in shared]
     return SupportLayout(
         frame=frame,
         cubes=cubes,
@@ -114,7 +126,7 @@ def plan_supports(
         red_group=group,
         edge_group=edge_group,
         group_parts=group_parts,
-        notes=tuple("share supports: " + ", ".join(parts[part].label for part in group) for group in shared),
+        notes=tuple(notes),
     )
 
 

@@ -45,6 +45,7 @@ def body_sections(record: RunRecord) -> str:
         ("Builds", _builds(record)),
         ("Unplaced", _unplaced(record)),
         ("Unsupported", _unsupported(record)),
+        ("Supports", "".join(_supports(n, entry) for n, entry in enumerate(record.builds, start=1))),
         ("Overhangs", "".join(_overhangs(n, entry) for n, entry in enumerate(record.builds, start=1))),
         ("Verification", _verification(record)),
         ("Parts", "".join(_parts(number, entry) for number, entry in enumerate(record.builds, start=1))),
@@ -151,6 +152,26 @@ def _part_row(placed: PlacedPart, colour: str) -> tuple[Cell, ...]:
 def _unplaced(record: RunRecord) -> str:
     rows = [(item.name, item.copy, item.reason) for item in record.unplaced]
     return table(("Part", "Copy|", "Reason"), rows) if rows else ""
+
+
+def _supports(number: int, entry: BuildRecord) -> str:
+    if not entry.columns:
+        return ""
+    rows = (
+        (
+            body.name,
+            ("number", "" if body.surface else f"{abs(body.mesh.signed_volume) / 1000:.3f}"),
+            columns.pieces,
+            ("number", f"{columns.slenderness:.1f}"),
+            ("number", f"{columns.height_mm:.1f} / {columns.width_mm:.2f}"),
+            ", ".join(f"{value:.1f}" for value in columns.position_mm),
+        )
+        for body, columns in zip(entry.build.supports, entry.columns, strict=True)
+    )
+    headings = ("Supports", "Volume cm³|", "Pieces|", "Slenderness|", "Height / width mm|", "There, mm")
+    most = max(columns.slenderness for columns in entry.columns)
+    name = f"Build {number}: {len(entry.columns)} bodies, the most slender piece {most:.1f} times as high as wide"
+    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
 
 
 def _overhangs(number: int, entry: BuildRecord) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from amprep.model import PlacedPart, SupportBody, Unsupported
+from amprep.model import PlacedPart, Unsupported
 from amprep.report.measures import part_volume
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord
 from amprep.threemf.writing_files import replacing
@@ -78,7 +78,7 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
             "unsupported_mm2": entry.unsupported_mm2,
             "minor_mm2": entry.minor_mm2,
             "unsupported": [_unsupported(entry, region) for region in build.unsupported],
-            "bodies": [_body(entry, body) for body in build.supports],
+            "bodies": [_body(entry, index) for index in range(len(build.supports))],
             "shared": list(entry.shared),
         },
         "verified": entry.verification is not None,
@@ -142,13 +142,16 @@ def _unsupported(entry: BuildRecord, region: Unsupported) -> dict[str, Any]:
     }
 
 
-def _body(entry: BuildRecord, body: SupportBody) -> dict[str, Any]:
+def _body(entry: BuildRecord, index: int) -> dict[str, Any]:
+    body = entry.build.supports[index]
+    columns = entry.columns[index]._asdict() if entry.columns else {}
     return {
         "name": body.name,
         "parts": [entry.build.parts[index].label for index in body.parts],
         "surface": body.surface,
         "triangles": len(body.mesh.triangles),
         "volume_mm3": 0.0 if body.surface else abs(body.mesh.signed_volume),
+        **columns,
     }
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from amprep.checks.violation import Violation
 from amprep.model import Build, Unsupported
+from amprep.report.columns import Columns
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,8 @@ class BuildRecord:
         Supports that hold several parts, one sentence each.
     overhangs
         Everything that needs support.
+    columns
+        How slender each of the build's support bodies is.
     """
 
     build: Build
@@ -116,6 +119,7 @@ class BuildRecord:
     stl_files: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
+    columns: tuple[Columns, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
