@@ -11,10 +11,10 @@ import numpy as np
 
 from amprep.geometry.packing_space import union_volume
 from amprep.model.arrays import CONTACT_TOLERANCE, Floats
-from amprep.plugins.packing.l2 import l2_bound
+from amprep.plugins.packing.l2 import grown_volume, l2_bound
 from amprep.plugins.packing.relaxed_boxes import core_room, core_sizes, relaxed_boxes
 from amprep.plugins.packing.scales import heaviest_scale
-from amprep.plugins.packing.scene import Scene, Variant
+from amprep.plugins.packing.scene import Scene
 
 
 class Amounts(NamedTuple):
@@ -66,26 +66,32 @@ def amounts_of(scene: Scene) -> list[Amounts]:
 
 def _taken(scene: Scene, dimensions: int) -> Floats:
     """Return the volume or plate area that each kind takes, at least, in its best orientation."""
-    gap = max(scene.problem.clearance - CONTACT_TOLERANCE, 0.0)
-    return np.array([min(_grown(variant, dimensions, gap / 2.0) for variant in kind) for kind in scene.kinds])
-
-
-def _grown(variant: Variant, dimensions: int, radius: float) -> float:
-    """Return the measure of a variant grown by a ball of `radius`; of its union alone when that is more."""
-    lo, hi = variant.lo[:, :dimensions], variant.hi[:, :dimensions] - CONTACT_TOLERANCE
+    radius = max(scene.problem.clearance - CONTACT_TOLERANCE, 0.0) / 2.0
+    variants = [variant for kind in scene.kinds for variant in kind]
+    lo, hi = (
+        np.concatenate([getattr(v, side) for v in variants] or [np.empty((0, 3))]) for side in ("lo", "hi")
+    )
+    hi = hi - CONTACT_TOLERANCE
+    side = np.maximum(hi - lo, 0.0)[:, :dimensions]
     if dimensions == 2:
         # only boxes that stand on the plate are side by side for certain
-        low = variant.lo[:, 2] <= CONTACT_TOLERANCE
-        lo, hi = lo[low], hi[low]
-    side = np.maximum(hi - lo, 0.0)
-    faces = side.sum(axis=1)
-    measure = side.prod(axis=1)
-    if dimensions == 2:
-        grown = measure + 2.0 * radius * faces + np.pi * radius**2
-    else:
-        edges = side[:, 0] * side[:, 1] + side[:, 1] * side[:, 2] + side[:, 0] * side[:, 2]
-        grown = measure + 2.0 * radius * edges + np.pi * radius**2 * faces + 4.0 / 3.0 * np.pi * radius**3
-    return max(float(grown.max()), union_volume(lo, hi))
+        low = lo[:, 2] <= CONTACT_TOLERANCE
+        side, hi = side * low[:, None], np.where(low[:, None], hi, lo)
+    box = np.cumsum([0, *(len(v.lo) for v in variants)])
+    grown = np.maximum.reduceat(_grown(side, radius), box[:-1]) if variants else np.empty(0)
+    for v in np.flatnonzero(np.diff(box) > 1).tolist():
+        own = slice(box[v], box[v + 1])
+        grown[v] = max(grown[v], union_volume(lo[own, :dimensions], hi[own, :dimensions]))
+    first = np.cumsum([0, *(len(kind) for kind in scene.kinds)])
+    return np.asarray(np.minimum.reduceat(grown, first[:-1]) if len(grown) else grown)
+
+
+def _grown(side: Floats, radius: float) -> Floats:
+    """Return the measures of boxes ``(k, 2)`` or ``(k, 3)`` grown by a ball; 0 of what is no box."""
+    faces, measure = side.sum(axis=1), side.prod(axis=1)
+    in_plane = side.shape[1] == 2
+    grown = measure + 2.0 * radius * faces + np.pi * radius**2 if in_plane else grown_volume(side, radius)
+    return np.asarray(np.where(measure > 0.0, grown, 0.0))
 
 
 def _available(scene: Scene, dimensions: int) -> float:

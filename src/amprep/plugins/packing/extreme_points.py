@@ -12,7 +12,7 @@ from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unp
 from amprep.plugins.packing.bounds import builds_bound, fill_bound
 from amprep.plugins.packing.params import ExtremePointsParams
 from amprep.plugins.packing.scene import Scene, placements, prepare
-from amprep.plugins.packing.sortings import GRID, Pass, passes
+from amprep.plugins.packing.sortings import GRID, Pass, enough_passes, passes
 
 PAUSE = 10_000_000
 """Comparisons between two looks at `stop`, some 20 ms."""
@@ -54,7 +54,7 @@ def pack_extreme_points(
     """
     scene = prepare(problem)
     runner = Runner(scene)
-    plans = passes(scene)[: params.sortings or None]
+    plans = passes(scene)[: params.sortings or enough_passes(scene)]
     best = runner.run(plans[0], None, stop)
     for number in range(1, len(plans) + params.restarts):
         if stop():

@@ -33,7 +33,7 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
     length, whole = size[:, 2] + gap, float(room[2] + gap)
     both = (width > room[0] / 2.0) & (height > room[1] / 2.0)
     lined_up = _one_dimensional(length[both], whole)
-    grown = _grown_volume(size, gap / 2.0)
+    grown = grown_volume(size, gap / 2.0)
     floor = float((room[0] + gap) * (room[1] + gap))
     p = np.unique(np.append(width[width <= room[0] / 2.0], room[0] / 2.0))
     q = np.unique(np.append(height[height <= room[1] / 2.0], room[1] / 2.0))
@@ -46,7 +46,7 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
     return lined_up + max(0, int(np.ceil(more.max() - 1e-9)))
 
 
-def _grown_volume(size: Floats, radius: float) -> Floats:
+def grown_volume(size: Floats, radius: float) -> Floats:
     """Return the volumes of boxes ``(n, 3)`` grown by a ball."""
     x, y, z = size.T
     faces = 2.0 * radius * (x * y + y * z + x * z)

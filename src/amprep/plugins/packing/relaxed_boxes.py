@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.model.arrays import CONTACT_TOLERANCE, Floats
-from amprep.plugins.packing.scene import Scene
+from amprep.plugins.packing.scene import Scene, Variant
 
 UNITS = (1.0, 0.5, 0.25, 0.2, 0.1, 0.05, 0.02)
 """mm; when all lengths are multiples of one of them, tolerance makes no difference."""
@@ -28,18 +28,17 @@ def core_sizes(scene: Scene) -> Floats:
 
     Without stacking it is as high as the room. Smaller by the tolerance.
     """
-    room = core_room(scene)
-    sizes = np.empty((len(scene.kinds), 3))
-    for i, kind in enumerate(scene.kinds):
-        cores = []
-        for variant in kind:
-            side = variant.hi - variant.lo
-            if scene.space.flat:
-                side = np.where((variant.lo[:, 2:] <= CONTACT_TOLERANCE), side, 0.0)
-                side[:, 2] = room[2] + CONTACT_TOLERANCE
-            cores.append(side[np.argmax(side.prod(axis=1))])
-        sizes[i] = np.min(cores, axis=0)
-    return np.asarray(np.maximum(sizes - CONTACT_TOLERANCE, 0.0))
+    sizes = np.array([np.min([_core(variant, scene) for variant in kind], axis=0) for kind in scene.kinds])
+    return np.asarray(np.maximum(sizes.reshape(-1, 3) - CONTACT_TOLERANCE, 0.0))
+
+
+def _core(variant: Variant, scene: Scene) -> Floats:
+    """Return the sides of a variant's largest box; without stacking, of those that stand on the plate."""
+    side = variant.hi - variant.lo
+    if scene.space.flat:
+        side = np.where(variant.lo[:, 2:] <= CONTACT_TOLERANCE, side, 0.0)
+        side[:, 2] = core_room(scene)[2] + CONTACT_TOLERANCE
+    return np.asarray(side[side.prod(axis=1).argmax()] if len(side) > 1 else side[0])
 
 
 def relaxed_boxes(scene: Scene) -> RelaxedBoxes:

@@ -18,7 +18,8 @@ ROUNDING = 1e-12
 MOST_CUTS = 20
 """Thresholds tried an axis."""
 
-MULTIPLES = (1, 2, 3, 4, 5)
+MULTIPLES = np.arange(2.0, 7.0)
+"""k + 1 of u^(k)."""
 
 
 def measures(length: Floats) -> Floats:
@@ -28,17 +29,12 @@ def measures(length: Floats) -> Floats:
     *New reduction procedures and lower bounds for the two-dimensional bin packing problem with fixed
     orientation*, Computers & Operations Research 34 (2007), doi:10.1016/j.cor.2005.08.012.
     """
-    found = [length]
-    for k in MULTIPLES:
-        times = (k + 1) * length
-        whole = np.abs(times - np.round(times)) < 1e-9
-        found.append(np.where(whole, length, np.floor(times + ROUNDING) / k))
-    for cut in _cuts(length):
-        found.append(
-            np.where(length > 1.0 - cut + ROUNDING, 1.0, np.where(length < cut - ROUNDING, 0.0, length))
-        )
-        found.append(_rounded(length, float(cut)))
-    return np.unique(np.round(np.minimum(found, 1.0), 12), axis=0)
+    times = MULTIPLES[:, None] * length
+    whole = np.abs(times - np.round(times)) < 1e-9
+    multiples = np.where(whole, length, np.floor(times + ROUNDING) / (MULTIPLES[:, None] - 1.0))
+    cut = _cuts(length)[:, None]
+    clipped = np.where(length > 1.0 - cut + ROUNDING, 1.0, np.where(length < cut - ROUNDING, 0.0, length))
+    return np.asarray(np.minimum(np.vstack((length[None], multiples, clipped, _rounded(length, cut))), 1.0))
 
 
 def _cuts(length: Floats) -> Floats:
@@ -50,8 +46,8 @@ def _cuts(length: Floats) -> Floats:
     return np.asarray(cuts)
 
 
-def _rounded(length: Floats, cut: float) -> Floats:
-    """Return f_2: small lengths in whole cuts, and large ones as what they leave to others."""
+def _rounded(length: Floats, cut: Floats) -> Floats:
+    """Return f_2 for each cut ``(c, 1)``: small lengths in whole cuts, large ones as what they leave."""
     cuts = np.floor(1.0 / cut + 1e-9)
     large = 2.0 * (cuts - np.floor((1.0 - length) / cut + 1e-9))
     small = 2.0 * np.floor(length / cut + 1e-9)
