@@ -8,7 +8,13 @@ from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpLocalSearchParams, IpParams
-from amprep.plugins.packing.params import AutoParams, ExtremePointsParams, SweepParams, TabuParams
+from amprep.plugins.packing.params import (
+    AutoParams,
+    BlockBuildingParams,
+    ExtremePointsParams,
+    SweepParams,
+    TabuParams,
+)
 
 amprep_api = 1
 
@@ -84,6 +90,19 @@ def _column_generation(
     return pack_column_generation(problem, params=params, rng=rng, stop=stop, report=report)
 
 
+def _block_building(
+    problem: PackingProblem,
+    *,
+    params: BlockBuildingParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> Packing:
+    from amprep.plugins.packing.block_building import pack_block_building
+
+    return pack_block_building(problem, params=params, rng=rng, stop=stop, report=report)
+
+
 @hookimpl
 def amprep_packers() -> Iterable[Packer]:
     """Yield the built-in packers."""
@@ -114,6 +133,18 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=AutoParams,
+    )
+    yield Packer(
+        name="block-building",
+        summary="Beam search over blocks of boxes in maximal empty spaces (Araya, Riff; Fanslau, Bortfeldt).",
+        run=_block_building,
+        accepts=PackerAccepts(
+            objectives=frozenset({"fill"}),
+            orientations=frozenset({"fixed", "axis"}),
+            zones=True,
+            fixed=True,
+        ),
+        params=BlockBuildingParams,
     )
     yield Packer(
         name="sweep",
