@@ -4,22 +4,25 @@ Strategy: primal-dual. The potential of a state is its distance to the plate in 
 arc's reduced cost ``cost + potential[end] - potential[state]`` is never negative, and paths over arcs of
 reduced cost 0 are shortest. A round of depth-first searches finds as many as it can; then a search in buckets
 (Dial) from what is left finds how much further away the nearest exit has become, and raises the potentials of
-just the states it has been to: time grows with the jam, not with the grid.
+just the states it has been to: time grows with the jam, not with the grid. Potentials are looked at before
+anything else, because they rule out most arcs; the arcs are those of `flow_network`, written out.
 """
 
 from typing import NamedTuple
 
 from numba import njit
 
-from amprep.kernels.flow_network import Carried, Room, residual, shift
+from amprep.kernels.flow_network import Carried, Room, shift
 from amprep.kernels.routing import Bytes, Ints, Longs, Network
 
 NO_EXIT = -1
 """Answer of `search` when no exit can be reached."""
 
 TOO_FAR = -2
-"""Answer of `search` when it needs more buckets; nothing has been changed."""
+"""Answer of `search` when it needs more buckets or entries; nothing but labels has been changed."""
 
+NO_ARC = 9
+"""Stands for the arc by which a search came to where it started."""
 
 _UNKNOWN = 1 << 40
 
@@ -55,27 +58,23 @@ class Search(NamedTuple):
     Attributes
     ----------
     seen
-        ``(states,)`` number of the round of augmenting that last saw a state, 0 at first.
-    mark
-        ``(states, 4)``: number of the search that last saw a state (0 at first), label, and its neighbours
-        above and below in a bucket; side by side because they are needed together.
+        ``(states,)`` number of the round of augmenting that last saw a state, or what a search has found its
+        distance to be, plus the number that the search started from: all that is less is out of date.
+    stack, done
+        ``(states,)`` states to go on from, and those that are done with.
+    arc
+        ``(states,)`` next arcs of what is on the stack, or the arcs by which a search came to each state.
+    heads, entry, below
+        Buckets as stacks: the last entry of each, and of each entry the state and the entry below it.
     """
 
     seen: Ints
-    mark: Ints
     stack: Ints
     arc: Bytes
     done: Ints
-
-
-@njit(cache=True, inline="always")
-def _reduced(prices: Prices, potential: Ints, state: int, to: int, direction: int) -> int:
-    """Return the reduced cost of an arc; flow taken back pays back."""
-    gap: int = potential[to] - potential[state]
-    if direction < 0:
-        return gap
-    cost = prices.straight if direction == 0 else prices.oblique
-    return gap + (cost if state & 1 else -cost)
+    heads: Ints
+    entry: Ints
+    below: Ints
 
 
 @njit(cache=True)
@@ -101,6 +100,15 @@ def augment(
         Set to the square where the path from each start ends, -1 for none.
     """
     seen, stack, arcs = work.seen, work.stack, work.arc
+    flow, through, edge_room, square_room = carried.flow, carried.through, room.edge, room.square
+    via, offset, stride, top, ending = (
+        network.via,
+        network.offset,
+        network.stride,
+        network.via.size,
+        exits.open,
+    )
+    straight, oblique, each = prices.straight, prices.oblique, room.each
     found = 0
     for i in range(starts.size):
         ends[i] = -1
@@ -112,17 +120,36 @@ def augment(
         arcs[0] = 0
         while length >= 0:
             s = stack[length]
-            if not s & 1 and exits.open[s >> 1] and potential[s] == exits.level:
-                break
-            k = arcs[length]
-            last = 1 if not s & 1 and carried.through[s >> 1] == 0 else 6
-            to = -1
-            while k < last and to < 0:
-                t, space, direction = residual(network, carried, room, s, k)
-                if space > 0 and seen[t] != number and _reduced(prices, potential, s, t, direction) == 0:
-                    to = t
-                else:
+            u, level, k, to = s >> 1, potential[s], arcs[length], -1
+            if s & 1:
+                while k < 5 and to < 0:
+                    v = u - stride + offset[k]
+                    cost = straight if k == 0 else oblique
+                    tight = potential[2 * v] + cost == level and seen[2 * v] != number and via[v]
+                    if tight and flow[u, k] < edge_room[(5 * u + k) * each]:
+                        to = 2 * v
+                        break
                     k += 1
+                if k == 5 and potential[s - 1] == level and seen[s - 1] != number and through[u] > 0:
+                    to = s - 1
+            else:
+                if level == exits.level and ending[u]:
+                    break
+                if k == 0:
+                    tight = u >= stride and potential[s + 1] == level and seen[s + 1] != number
+                    if tight and through[u] < square_room[u * each]:
+                        to = s + 1
+                    k += to < 0
+                if k > 0 and through[u] > 0:
+                    while k < 6 and to < 0:
+                        direction = k if k < 5 else 0
+                        w = u + stride - offset[direction]
+                        if w < top and flow[w, direction] > 0:
+                            cost = oblique if direction else straight
+                            if potential[2 * w + 1] - cost == level and seen[2 * w + 1] != number:
+                                to = 2 * w + 1
+                                break
+                        k += 1
             arcs[length] = k
             if to < 0:
                 length -= 1
@@ -142,27 +169,17 @@ def augment(
     return found
 
 
-@njit(cache=True, inline="always")
-def _unlink(heads: Ints, mark: Ints, state: int) -> None:
-    """Take a state out of its bucket."""
-    above, below = mark[state, 2], mark[state, 3]
-    if above >= 0:
-        mark[above, 3] = below
+@njit(cache=True)
+def _take_back_to(network: Network, carried: Carried, state: int, arc: int) -> int:
+    """Send a unit over the arc that a search came to `state` by; return where it came from."""
+    u, stride = state >> 1, network.stride
+    if state & 1:
+        direction = arc if arc < 5 else 0
+        origin = 2 * (u - stride + network.offset[direction]) if arc else state - 1
     else:
-        heads[mark[state, 1]] = below
-    if below >= 0:
-        mark[below, 2] = above
-
-
-@njit(cache=True, inline="always")
-def _link(heads: Ints, mark: Ints, state: int, label: int) -> None:
-    """Put a state on top of the bucket of its label."""
-    mark[state, 1] = label
-    mark[state, 2] = -1
-    mark[state, 3] = heads[label]
-    if heads[label] >= 0:
-        mark[heads[label], 2] = state
-    heads[label] = state
+        origin = state + 1 if arc == 5 else 2 * (u + stride - network.offset[arc]) + 1
+    shift(network, carried, origin, arc, 1)
+    return origin
 
 
 @njit(cache=True)
@@ -174,66 +191,104 @@ def search(
     potential: Ints,
     exits: Exits,
     starts: Longs,
-    heads: Ints,
     lift: int,
     work: Search,
-    number: int,
-) -> int:
-    """Find the distance of the nearest exit under reduced costs, and raise potentials by it (Dial).
+    base: int,
+) -> tuple[int, int]:
+    """Send a unit to the nearest exit under reduced costs, and raise potentials by its distance (Dial).
 
-    Buckets are stacks, so that free ways are followed down at once. Without an exit in reach all states that
-    are in reach are raised by `lift` beyond the furthest.
+    Buckets are stacks, so that free ways are followed down at once; a state that is found again nearer by
+    stays in its old bucket and is passed over there. Without an exit in reach all states that are in reach
+    are raised by `lift` beyond the furthest.
 
-    Parameters
-    ----------
-    heads
-        Work array: one entry for each distance that a bucket is wanted for.
+    Returns
+    -------
+    int, int
+        The distance, and the square of `starts` that was served, -1 when none was.
     """
-    mark, stack, done = work.mark, work.stack, work.done
+    seen, stack, done, heads, came = work.seen, work.stack, work.done, work.heads, work.arc
+    entry, below, flow, through = work.entry, work.below, carried.flow, carried.through
+    edge_room, square_room, ending = room.edge, room.square, exits.open
+    via, offset, stride, top, each = network.via, network.offset, network.stride, network.via.size, room.each
     heads[:] = -1
-    highest, count, bucket, length = 0, 0, 0, 0
-    best = _UNKNOWN
+    highest, settled, bucket, length, count, end = 0, 0, 0, 0, 0, 0
+    best, straight, oblique = _UNKNOWN, prices.straight, prices.oblique
     for u in starts:
-        mark[2 * u, 0] = number
-        _link(heads, mark, 2 * u, 0)
-    while bucket <= highest and bucket < best:
+        seen[2 * u], came[2 * u] = base, NO_ARC
+        stack[length] = 2 * u
+        length += 1
+    while bucket < best:
         if length == 0:
-            s = heads[bucket]
-            if s < 0:
+            while bucket <= highest and heads[bucket] < 0:
                 bucket += 1
+            if bucket > highest:
+                break
+            i = heads[bucket]
+            heads[bucket] = below[i]
+            if seen[entry[i]] != base + bucket:
                 continue
-            _unlink(heads, mark, s)
-            stack[0], length = s, 1
-            mark[s, 0] = -number
+            stack[0], length = entry[i], 1
         length -= 1
         s = stack[length]
-        done[count] = s
-        count += 1
-        if not s & 1 and exits.open[s >> 1]:
-            best = min(best, bucket + exits.level - potential[s])
+        done[settled] = s
+        settled += 1
+        if count + 6 > entry.size:
+            return TOO_FAR, -1
+        u, near = s >> 1, bucket - potential[s]
+        inward = not s & 1
+        if inward and ending[u]:
+            if near + exits.level < best:
+                best, end = near + exits.level, s
             if bucket >= best:
                 break
-        for k in range(0 if not s & 1 and carried.through[s >> 1] == 0 else 5, -1, -1):
-            t, space, direction = residual(network, carried, room, s, k)
-            if space <= 0 or mark[t, 0] == -number:
-                continue
-            reach = bucket + _reduced(prices, potential, s, t, direction)
-            if reach >= best or (mark[t, 0] == number and mark[t, 1] <= reach):
+        first = 1 if inward and through[u] == 0 else 6
+        for k in range(first - 1, -1, -1):
+            if inward and k == 0:
+                if u < stride or through[u] >= square_room[u * each]:
+                    continue
+                t = s + 1
+                reach = near + potential[t]
+            elif inward:
+                direction = k if k < 5 else 0
+                w = u + stride - offset[direction]
+                if w >= top or flow[w, direction] == 0:
+                    continue
+                t = 2 * w + 1
+                reach = near + potential[t] - (oblique if direction else straight)
+            elif k == 5:
+                if through[u] == 0:
+                    continue
+                t = s - 1
+                reach = near + potential[t]
+            else:
+                v = u - stride + offset[k]
+                t = 2 * v
+                reach = near + potential[t] + (oblique if k else straight)
+                if reach >= best or base <= seen[t] <= base + reach or not via[v]:
+                    continue
+                if flow[u, k] >= edge_room[(5 * u + k) * each]:
+                    continue
+            if reach >= best or base <= seen[t] <= base + reach:
                 continue
             if reach >= heads.size:
-                return TOO_FAR
-            if mark[t, 0] == number:
-                _unlink(heads, mark, t)
+                return TOO_FAR, -1
+            seen[t], came[t] = base + reach, k
             if reach == bucket:
-                mark[t, 0], mark[t, 1], stack[length] = -number, reach, t
+                stack[length] = t
                 length += 1
             else:
-                mark[t, 0] = number
-                _link(heads, mark, t, reach)
                 highest = max(highest, reach)
+                entry[count], below[count], heads[reach] = t, heads[reach], count
+                count += 1
     raised = best if best < _UNKNOWN else highest + lift
-    for i in range(count):
+    for i in range(settled):
         s = done[i]
-        if mark[s, 1] < raised:
-            potential[s] += raised - mark[s, 1]
-    return best if best < _UNKNOWN else NO_EXIT
+        if seen[s] - base < raised:
+            potential[s] += raised - (seen[s] - base)
+            seen[s] = 0
+    if best == _UNKNOWN:
+        return NO_EXIT, -1
+    ending[end >> 1] = ending[end >> 1] and not exits.once
+    while came[end] < NO_ARC:
+        end = _take_back_to(network, carried, end, came[end])
+    return best, end >> 1

@@ -29,30 +29,19 @@ class Carried(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Greatest flow through a square above the plate and over an edge."""
+    """Greatest flow through squares above the plate and over edges: one number for all, or one for each.
 
-    square: int
-    edge: int
-
-
-@njit(cache=True)
-def residual(network: Network, carried: Carried, room: Room, state: int, arc: int) -> tuple[int, int, int]:
-    """Return where an arc leads, how much more it can take (0: there is none), and its direction.
-
-    The direction is that of the edge used, -1 between the two states of a square. Arcs 1 to 5 of an in state
-    and arc 5 of an out state take flow back; they are the only ones that lead upwards or inwards.
+    Attributes
+    ----------
+    square, edge
+        ``(1,)`` both, or ``(squares,)`` and ``(5 * squares,)``; that of edge d of square u is at ``5 * u + d``.
+    each
+        0 when there is one number for all, else 1: what indices are multiplied by.
     """
-    u, stride = state >> 1, network.stride
-    if state & 1:
-        if arc == 5:
-            return state - 1, carried.through[u], -1
-        v = u - stride + network.offset[arc]
-        return 2 * v, room.edge - carried.flow[u, arc] if network.via[v] else 0, arc
-    if arc == 0:
-        return state + 1, room.square - carried.through[u] if u >= stride else 0, -1
-    direction = arc if arc < 5 else 0
-    w = u + stride - network.offset[direction]
-    return 2 * w + 1, carried.flow[w, direction] if w < network.via.size else 0, direction
+
+    square: Ints
+    edge: Ints
+    each: int
 
 
 @njit(cache=True)

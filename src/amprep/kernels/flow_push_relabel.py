@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from amprep.kernels.flow_network import Carried, Room, residual, shift
+from amprep.kernels.flow_network import Carried, Room
 from amprep.kernels.routing import Bytes, Ints, Longs, Network
 
 CUT_OFF = 1 << 29
@@ -48,12 +48,6 @@ class Progress(NamedTuple):
 
 
 @njit(cache=True)
-def _upward(state: int, arc: int) -> bool:
-    """Tell whether an arc takes flow back."""
-    return arc == 5 if state & 1 else arc > 0
-
-
-@njit(cache=True)
 def _activate(preflow: Preflow, progress: Progress, state: int) -> None:
     """Put a state on the stack of its level."""
     level = preflow.level[state]
@@ -69,33 +63,6 @@ def activate_all(preflow: Preflow, progress: Progress, starts: Longs) -> None:
     for u in starts:
         preflow.excess[2 * u] = 1
         _activate(preflow, progress, 2 * u)
-
-
-@njit(cache=True)
-def _relabel(
-    network: Network, carried: Carried, room: Room, preflow: Preflow, progress: Progress, state: int
-) -> None:
-    """Lift a state to the least level from which it can push.
-
-    When that leaves a level empty (a gap), all states above it are cut off.
-    """
-    level, counts = preflow.level, preflow.counts
-    old, new = level[state], CUT_OFF
-    for k in range(6):
-        t, space, _ = residual(network, carried, room, state, k)
-        if space > 0:
-            new = min(new, level[t] + _upward(state, k))
-    level[state] = new = new if new < counts.size else CUT_OFF
-    preflow.arc[state] = 0
-    if new < CUT_OFF:
-        counts[new] += 1
-        if old == 0:
-            preflow.raised[progress.raised[0]] = state
-            progress.raised[0] += 1
-    if old > 0:
-        counts[old] -= 1
-        if counts[old] == 0:
-            _cut_off(preflow, progress, old)
 
 
 @njit(cache=True)
@@ -119,34 +86,94 @@ def discharge(
 ) -> bool:
     """Push excess on until no active state is left or the effort is used up; return whether none is left.
 
-    States of the lowest level come first: flow that runs down freely shows the others what is left. Of
-    several ways the straight one is increased first and decreased last (thesis 3.3): see the order of arcs.
+    States of the lowest level come first: flow that runs down freely shows the others what is left. One that
+    runs out of arcs is lifted to the least level from which it can push; when that leaves a level empty (a
+    gap), all states above it are cut off. Of several ways the straight one is increased first and decreased
+    last (thesis 3.3): see the order of arcs.
     """
-    excess, level, arcs, heads = preflow.excess, preflow.level, preflow.arc, preflow.heads
-    plate = 2 * network.stride
-    while progress.lowest[0] <= progress.highest[0] and effort > 0:
-        s = heads[progress.lowest[0]]
+    excess, level, arcs = preflow.excess, preflow.level, preflow.arc
+    heads, waiting = preflow.heads, preflow.below
+    counts, raised, flow, through = preflow.counts, preflow.raised, carried.flow, carried.through
+    square_room, edge_room, each, via, offset = room.square, room.edge, room.each, network.via, network.offset
+    stride, top, lowest, highest = network.stride, via.size, progress.lowest[0], progress.highest[0]
+    while lowest <= highest and effort > 0:
+        s = heads[lowest]
         if s == 0:
-            progress.lowest[0] += 1
+            lowest += 1
             continue
-        heads[progress.lowest[0]] = preflow.below[s]
-        while excess[s] > 0 and level[s] < CUT_OFF:
-            k = arcs[s]
+        heads[lowest] = waiting[s]
+        u, k, here = s >> 1, arcs[s], level[s]
+        while excess[s] > 0 and here < CUT_OFF:
             if k == 6:
-                _relabel(network, carried, room, preflow, progress, s)
+                least = CUT_OFF
+                if s & 1:
+                    for d in range(5):
+                        v = u - stride + offset[d]
+                        if level[2 * v] < least and via[v] and flow[u, d] < edge_room[(5 * u + d) * each]:
+                            least = level[2 * v]
+                    if through[u] > 0:
+                        least = min(least, level[s - 1] + 1)
+                else:
+                    if u >= stride and through[u] < square_room[u * each]:
+                        least = level[s + 1]
+                    for d in range(5):
+                        w = u + stride - offset[d]
+                        if w < top and level[2 * w + 1] + 1 < least and flow[w, d] > 0:
+                            least = level[2 * w + 1] + 1
+                least = least if least < counts.size else CUT_OFF
+                level[s] = least
+                if least < CUT_OFF:
+                    counts[least] += 1
+                    if here == 0:
+                        raised[progress.raised[0]] = s
+                        progress.raised[0] += 1
+                if here > 0:
+                    counts[here] -= 1
+                    if counts[here] == 0:
+                        _cut_off(preflow, progress, here)
+                k, here = 0, level[s]
                 effort -= 12
                 continue
             effort -= 1
-            t, space, _ = residual(network, carried, room, s, k)
-            if space <= 0 or level[t] + _upward(s, k) != level[s]:
-                arcs[s] += 1
+            up, space = 0, 0
+            if s & 1 and k < 5:
+                t = 2 * (u - stride + offset[k])
+                if level[t] == here and via[t >> 1]:
+                    space = edge_room[(5 * u + k) * each] - flow[u, k]
+            elif s & 1:
+                t, up = s - 1, 1
+                if level[t] + 1 == here:
+                    space = through[u]
+            elif k == 0:
+                t = s + 1
+                if level[t] == here and u >= stride:
+                    space = square_room[u * each] - through[u]
+            else:
+                d, up = k if k < 5 else 0, 1
+                w = u + stride - offset[d]
+                t = 2 * w + 1
+                if w < top and level[t] + 1 == here:
+                    space = flow[w, d]
+            if space <= 0:
+                k += 1
                 continue
             amount = min(excess[s], space)
-            shift(network, carried, s, k, amount)
+            if s & 1 and k < 5:
+                flow[u, k] += amount
+            elif s & 1:
+                through[u] -= amount
+            elif k == 0:
+                through[u] += amount
+            else:
+                flow[t >> 1, k if k < 5 else 0] -= amount
             excess[s] -= amount
-            if excess[t] == 0 and t >= plate:
-                _activate(preflow, progress, t)
+            if excess[t] == 0 and t >= 2 * stride:
+                waiting[t] = heads[here - up]
+                heads[here - up] = t
+                lowest, highest = min(lowest, here - up), max(highest, here - up)
             excess[t] += amount
+        arcs[s] = k
+    progress.lowest[0], progress.highest[0] = lowest, highest
     return bool(progress.lowest[0] > progress.highest[0])
 
 
@@ -160,43 +187,43 @@ def _find_free(
     returns how many there are of each.
     """
     stride, width, box, level = network.stride, network.width, network.box, preflow.level
+    via, offset, excess, arcs, flow, through = (
+        network.via,
+        network.offset,
+        preflow.excess,
+        preflow.arc,
+        carried.flow,
+        carried.through,
+    )
+    square_room, edge_room, each = room.square, room.edge, room.each
     seeds, active = 0, 0
     for p in range(1, box.shape[0]):
         for y in range(box[p, 0], box[p, 1] + 1):
             for u in range(p * stride + y * width + box[p, 2], p * stride + y * width + box[p, 3] + 1):
-                used = carried.through[u] > 0 or preflow.excess[2 * u] > 0
-                if not used and not network.via[u]:
+                used = through[u] > 0 or excess[2 * u] > 0
+                if not used and not via[u]:
                     level[2 * u] = level[2 * u + 1] = CUT_OFF
                     continue
                 free = False
                 for d in range(5):
-                    v = u - stride + network.offset[d]
-                    if network.via[v] and level[2 * v] == 0 and carried.flow[u, d] < room.edge:
+                    v = u - stride + offset[d]
+                    limit = edge_room[(5 * u + d) * each]
+                    if via[v] and level[2 * v] == 0 and flow[u, d] < limit:
                         free = True
                         break
-                enter = free and carried.through[u] < room.square
+                enter = free and through[u] < square_room[u * each]
                 level[2 * u] = 0 if enter else CUT_OFF
                 level[2 * u + 1] = 0 if free else CUT_OFF
-                preflow.arc[2 * u] = preflow.arc[2 * u + 1] = 0
+                arcs[2 * u] = arcs[2 * u + 1] = 0
                 if used:
                     for s in (2 * u, 2 * u + 1):
                         if level[s] == 0:
                             now[seeds] = s
                             seeds += 1
-                        if preflow.excess[s] > 0:
+                        if excess[s] > 0:
                             waiting[active] = s
                             active += 1
     return seeds, active
-
-
-@njit(cache=True)
-def _take(level: Ints, state: int, depth: int, batch: Ints, count: int) -> int:
-    """Set a state's level and list it, unless it is as low already; return the length of the list."""
-    if level[state] > depth:
-        level[state] = depth
-        batch[count] = state
-        count += 1
-    return count
 
 
 @njit(cache=True)
@@ -212,7 +239,9 @@ def relabel_all(
 ) -> None:
     """Set all levels to what they are at least (global relabelling), and stack the active states anew."""
     level, raised, flow, through = preflow.level, preflow.raised, carried.flow, carried.through
-    via, offset, stride = network.via, network.offset, network.stride
+    via, offset, stride, top = network.via, network.offset, network.stride, network.via.size
+    counts = preflow.counts
+    square_room, edge_room, each = room.square, room.edge, room.each
     for i in range(progress.raised[0]):
         if level[raised[i]] < CUT_OFF:
             preflow.counts[level[raised[i]]] = 0
@@ -228,23 +257,32 @@ def relabel_all(
             if depth > 0:
                 raised[count] = t
                 count += 1
-                preflow.counts[depth] += 1
+                counts[depth] += 1
             u = t >> 1
             if t & 1:
-                if through[u] < room.square:
-                    length = _take(level, t - 1, depth, now, length)
+                if level[t - 1] > depth and through[u] < square_room[u * each]:
+                    level[t - 1] = depth
+                    now[length] = t - 1
+                    length += 1
                 if through[u] > 0:
                     for d in range(5):
                         v = u - stride + offset[d]
-                        if flow[u, d] > 0 and v >= stride:
-                            ahead = _take(level, 2 * v, depth + 1, later, ahead)
+                        if level[2 * v] > depth + 1 and flow[u, d] > 0 and v >= stride:
+                            level[2 * v] = depth + 1
+                            later[ahead] = 2 * v
+                            ahead += 1
                 continue
-            if through[u] > 0:
-                ahead = _take(level, t + 1, depth + 1, later, ahead)
-            for d in range(5 if via[u] else 0):
-                w = u + stride - offset[d]
-                if w < via.size and flow[w, d] < room.edge:
-                    length = _take(level, 2 * w + 1, depth, now, length)
+            if level[t + 1] > depth + 1 and through[u] > 0:
+                level[t + 1] = depth + 1
+                later[ahead] = t + 1
+                ahead += 1
+            if via[u]:
+                for d in range(5):
+                    w = u + stride - offset[d]
+                    if w < top and level[2 * w + 1] > depth and flow[w, d] < edge_room[(5 * w + d) * each]:
+                        level[2 * w + 1] = depth
+                        now[length] = 2 * w + 1
+                        length += 1
         depth += 1
         for i in range(ahead):
             if level[later[i]] == depth:

@@ -10,6 +10,10 @@ from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
 
 Status = Literal["optimal", "feasible", "infeasible"]
 
+Escalation = Literal["none", "cut", "uniform"]
+"""What gives way when capacities leave out red squares that have a way to the plate: nothing; the smallest
+capacities of a minimum cut, by one at a time, vertical edges first; or all capacities alike (thesis 3.3)."""
+
 NO_WHITE_BELOW = "no white cube below"
 ENCLOSED = "enclosed"
 CAPACITY = "capacity"
@@ -70,6 +74,8 @@ class SupportProblem:
         ``(ny, nx)`` bool: plate squares under a white cube.
     edge_capacity, node_capacity
         Paths that may share an edge, a square; 0 means unbounded. A red square's own supply is 1.
+    escalation
+        What gives way when the capacities leave out red squares that have a way.
     costs
         Integer cost of one unit over a vertical and over an oblique edge.
     material
@@ -86,6 +92,7 @@ class SupportProblem:
     node_capacity: int = 0
     costs: tuple[int, int] = (1, 2)
     material: tuple[float, float] = (1.0, 1.0)
+    escalation: Escalation = "none"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
@@ -115,8 +122,12 @@ class SupportPlan:
         ``(n,)`` uint8, index into `DIRECTIONS`.
     flow, capacity
         ``(n,)`` int32, paths on the edge and the edge's final capacity (at least the flow).
+    raised
+        The most that escalation has added to a capacity; 0 without.
     bound
         What the objective cannot beat, or None.
+    notes
+        Sentences for the user: what was chosen and why, how the plan compares.
     """
 
     plane: Ints
@@ -130,6 +141,8 @@ class SupportPlan:
     stop_reason: str = "finished"
     objective: float | None = None
     bound: float | None = None
+    raised: int = 0
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("plane", "y", "x", "flow", "capacity"):

@@ -44,7 +44,8 @@ def task_of(problem: SupportProblem) -> Task:
     measure(network, straight, oblique, distance)
     ways = distance[start[:, None] - network.stride + network.offset] + [straight, *[oblique] * 4]
     distance[start] = np.minimum(ways.min(axis=1, initial=UNREACHED), UNREACHED)
-    room = Room(problem.node_capacity or len(start), problem.edge_capacity or len(start))
+    square, edge = problem.node_capacity or len(start), problem.edge_capacity or len(start)
+    room = Room(np.array([square], np.int32), np.array([edge], np.int32), 0)
     return Task(problem, network, start, distance, distance[start] < UNREACHED, room)
 
 

@@ -12,6 +12,8 @@ from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of
 
+_GREATEST = np.iinfo(np.int32).max - 1
+
 
 class MinCostFlow(NamedTuple):
     """A flow with the potentials that prove it.
@@ -79,31 +81,25 @@ class _Routing:
         self.potential = np.repeat(task.distance, 2)
         self.connected = np.zeros(len(task.start), np.bool_)
         self.prices = Prices(*task.problem.costs)
-        states = self.potential.size
-        self.work = Search(
-            seen=np.zeros(states, np.int32),
-            mark=np.zeros((states, 4), np.int32),
-            stack=np.empty(states, np.int32),
-            arc=np.empty(states, np.uint8),
-            done=np.empty(states, np.int32),
-        )
-        self.number = 0
-        self.heads = np.empty(4 * task.network.box.shape[0] * max(task.problem.costs) + 16, np.int32)
+        self.work = _work(self.potential.size, 4 * task.network.box.shape[0] * max(task.problem.costs) + 16)
+        self.number, self._last = 0, 0
 
     def connect(self, stop: Stop, report: Report) -> str:
         """Send units to the plate until no more can get there; return why it ended."""
         exits = self._exits(np.arange(self.task.network.stride), 0, once=False)
         left = np.flatnonzero(self.task.open)
         left = left[np.argsort(self.task.start[left], kind="stable")]
-        while left.size:
-            ends = self._augment(exits, left)
-            self.connected[left] = ends >= 0
-            left = left[ends < 0]
+        distance = 1
+        while left.size and distance != NO_EXIT:
+            if distance:
+                left = self._augment(exits, left)
+            if left.size:
+                distance, left = self._search(exits, left)
+            self.connected = self.task.open.copy()
+            self.connected[left] = False
             if stop():
                 return stop.reason
             report(1.0 - left.size / self.connected.size, "connecting red squares")
-            if (ends < 0).all() and self._search(exits, left) == NO_EXIT:
-                break
         return "finished"
 
     def exchange(self, stop: Stop, report: Report) -> str:
@@ -114,15 +110,16 @@ class _Routing:
             return "finished"
         before = Carried(self.carried.flow.copy(), self.carried.through.copy())
         exits = self._exits(self.task.start[self.task.open], self._highest(), once=True)
+        distance = 1
         while left.size:
-            ends = self._augment(exits, left)
-            left = left[ends < 0]
+            if distance:
+                left = self._augment(exits, left)
+            if left.size:
+                distance, left = self._search(exits, left)
             if stop():
                 self.carried = before
                 return stop.reason
             report(1.0 - left.size / count, "choosing what to leave out")
-            if (ends < 0).all():
-                self._search(exits, left)
         self.connected = self.task.open & (exits.open[self.task.start] == 1)
         return "finished"
 
@@ -136,18 +133,43 @@ class _Routing:
         return int(self.potential[2 * self.task.start[self.task.open]].max())
 
     def _augment(self, exits: Exits, left: Longs) -> Longs:
-        self.number += 1
+        """Send units over ways of no reduced cost; return the red squares that are left."""
+        self._number(1)
         ends = np.empty(left.size, np.int64)
         state = (self.task.network, self.carried, self.task.room, self.prices, self.potential)
         augment(*state, exits, self.task.start[left], ends, self.work, self.number)
-        return ends
+        return left[ends < 0]
 
-    def _search(self, exits: Exits, left: Longs) -> int:
+    def _search(self, exits: Exits, left: Longs) -> tuple[int, Longs]:
+        """Send one unit the shortest way; return its reduced cost and the red squares that are left."""
         state = (self.task.network, self.carried, self.task.room, self.prices, self.potential)
+        start, lift = self.task.start[left], self._highest() + 1
         while True:
-            self.number += 1
-            start, lift = self.task.start[left], self._highest() + 1
-            found: int = search(*state, exits, start, self.heads, lift, self.work, self.number)
-            if found != TOO_FAR:
-                return found
-            self.heads = np.empty(4 * self.heads.size, np.int32)
+            self._number(self.work.heads.size)
+            distance, served = search(*state, exits, start, lift, self.work, self.number)
+            if distance != TOO_FAR:
+                return distance, left[start != served]
+            work = _work(0, 4 * self.work.heads.size, 2 * self.work.entry.size)
+            self.work = self.work._replace(heads=work.heads, entry=work.entry, below=work.below)
+
+    def _number(self, span: int) -> None:
+        """Take the next number that no entry of ``work.seen`` reaches; it and `span` more are free."""
+        self.number = self._last + 1
+        self._last = self.number + span
+        if self._last > _GREATEST:
+            self.work.seen[:] = 0
+            self.number, self._last = 1, 1 + span
+
+
+def _work(states: int, buckets: int, entries: int | None = None) -> Search:
+    """Return work arrays; a search may put a state in buckets more than once."""
+    entries = 2 * states + 16 if entries is None else entries
+    return Search(
+        seen=np.zeros(states, np.int32),
+        stack=np.empty(states, np.int32),
+        arc=np.empty(states, np.uint8),
+        done=np.empty(states, np.int32),
+        heads=np.empty(buckets, np.int32),
+        entry=np.empty(entries, np.int32),
+        below=np.empty(entries, np.int32),
+    )

@@ -16,7 +16,7 @@ from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of
 
-_EFFORT = 6
+_EFFORT = 14
 """Arcs looked at for each square of the network until all labels are set anew."""
 
 
