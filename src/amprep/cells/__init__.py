@@ -14,6 +14,7 @@ A lattice package needs no more than this::
         yield cell_offer("pin", "A round pin along every edge.", pin)
 """
 
+from amprep.cells.files import CellFile, cells_in, read_cell
 from amprep.cells.offers import GraphParams, cell_offer, estimate
 
-__all__ = ["GraphParams", "cell_offer", "estimate"]
+__all__ = ["CellFile", "GraphParams", "cell_offer", "cells_in", "estimate", "read_cell"]

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, plugins, printers, run, support, verify
+from amprep.cli import bench, cells, plugins, printers, run, support, verify
 
 app = typer.Typer(
     name="amprep",
@@ -19,6 +19,7 @@ app.command("run")(run.run)
 app.command("support")(support.support)
 app.command("verify")(verify.verify)
 app.add_typer(plugins.app, name="plugins")
+app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")
 app.add_typer(bench.app, name="bench")
 

@@ -12,6 +12,7 @@ from amprep.host import typed
 from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
+from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import Cells
 from amprep.model.packing import Packing, PackingProblem
 from amprep.model.part import Part
@@ -182,6 +183,19 @@ class Host:
             return pitch * pitch * step, pitch * pitch * step
         vertical, oblique = self._guarded(listed, _two_floats, listed.offer.material, pitch, step, params)
         return vertical, oblique
+
+    def declared(self, listed: Listed[CellEmitter], pitch: float, step: float, params: Any) -> DeclaredCell:
+        """Return how a cell that has a declaration is declared in a grid.
+
+        Raises
+        ------
+        PluginError
+            When the declaration fails or is something else.
+        """
+        cell = self._guarded(listed, listed.offer.declare, pitch, step, params)
+        if not isinstance(cell, DeclaredCell):
+            raise PluginError(f"{listed.title} declares {type(cell).__name__}, expected DeclaredCell")
+        return cell
 
     def refuse_mismatch(self, listed: Listed[Packer], problem: PackingProblem) -> None:
         """Refuse a packer that cannot handle `problem`, with the names of those that can.

@@ -20,7 +20,7 @@ from amprep.model.rotations import parse_rotations
 LARGEST_COUNT = 1_000_000
 """Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""
 
-_PATH_OF_CELL = re.compile(r"[/\\]|\.(3mf|stl|obj|ply|off|glb|step|stp)$", re.IGNORECASE)
+_PATH_OF_CELL = re.compile(r"[/\\]|\.(toml|3mf|stl|obj|ply|off|glb|step|stp)$", re.IGNORECASE)
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 Box = tuple[float, float, float, float, float, float]
@@ -129,7 +129,7 @@ class CellSettings:
     Attributes
     ----------
     strategy
-        Name of a lattice cell, or the path of a mesh file that holds one.
+        Name of a lattice cell, or the path of a file that declares one: TOML, or a mesh.
     """
 
     strategy: str = "x-wall"
@@ -142,7 +142,7 @@ class CellSettings:
 
     @property
     def file(self) -> Path | None:
-        """The mesh file that holds the cell, or None when `strategy` is a name."""
+        """The file that declares the cell, or None when `strategy` is a name."""
         return Path(self.strategy) if _PATH_OF_CELL.search(self.strategy) else None
 
 

@@ -1,69 +1,65 @@
-"""Chooses the job's lattice cell: by name, or a shape that an engineer drew, from a mesh file."""
+"""Chooses the job's lattice cell: by name, or from a file that declares one."""
 
-from collections.abc import Callable
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from amprep.checks.templates import check_template
+from amprep.cells import cell_offer, read_cell
 from amprep.errors import MeshError
-from amprep.hookspecs import CellEmitter, EmitCells, NoParams
+from amprep.hookspecs import CellEmitter
 from amprep.host import Host, Listed
-from amprep.job import Job
-from amprep.model import CellRequest, Cells, Mesh, Report, Stop, Template
+from amprep.job import Job, apply_sets, job_from_inputs
+from amprep.model import Mesh
 
 
 def choose_cell(host: Host, job: Job) -> Listed[CellEmitter]:
-    """Return the lattice cell that the job names, or one made of the mesh file it names.
+    """Return the lattice cell that the job names, or the one that the file it names declares.
 
     Raises
     ------
     PluginError
         When no cell has that name.
     InputError
-        When the file is not one closed mesh in the unit cube.
+        When the file declares no cell.
     """
     if job.cells.file is None:
         return host.choose("cell", job.cells.strategy)
-    template = read_template(host, job, job.cells.file)
-    emitter = CellEmitter(
-        template.name, "A shape from a file.", run=_repeated(template), material=_material(template.mesh)
-    )
-    return Listed("cell", emitter, str(job.cells.file))
+    path = job.cells.file
+
+    def read(file: Path) -> Mesh:
+        return _one_mesh(host, file, job.reading.readers, job.reading.params)
+
+    found = read_cell(path, read)
+    return Listed("cell", cell_offer(found.name, found.summary, found.cell), str(path))
 
 
-def read_template(host: Host, job: Job, path: Path) -> Template:
-    """Return the one shape in a mesh file as a template.
+def cell_named(host: Host, cell: str, sets: Sequence[str] = ()) -> tuple[Listed[CellEmitter], dict[str, Any]]:
+    """Return the cell of a name or path, and its parameters given as ``key=value``.
+
+    Raises
+    ------
+    PluginError, InputError, JobError
+        As for a job that names the cell.
+    """
+    job = job_from_inputs(["part.stl"])
+    wanted = [f"cells.strategy={json.dumps(cell)}", *(f"cells.params.{each}" for each in sets)]
+    job = apply_sets(job, wanted)
+    return choose_cell(host, job), dict(job.cells.params)
+
+
+def _one_mesh(
+    host: Host, path: Path, readers: Mapping[str, str], params: Mapping[str, Mapping[str, Any]]
+) -> Mesh:
+    """Return the one mesh in a file.
 
     Raises
     ------
     InputError
-        When the file is not one closed mesh in the unit cube.
+        When it cannot be read or holds several.
     """
-    reader = host.reader_for(path, job.reading.readers)
-    params = host.params(reader, job.reading.params.get(reader.offer.name, {}))
-    parts = host.call(reader, path, params=params)
+    reader = host.reader_for(path, readers)
+    parts = host.call(reader, path, params=host.params(reader, params.get(reader.offer.name, {})))
     if len(parts) != 1:
         raise MeshError(f"{path}: expected one mesh, the cell, got {len(parts)}")
-    template = Template(path.stem, parts[0].mesh)
-    for violation in check_template(template):
-        raise MeshError(f"{path}: a cell is a closed mesh in the unit cube, z up; {violation.message}")
-    return template
-
-
-def _repeated(template: Template) -> EmitCells:
-    def emit(request: CellRequest, *, params: NoParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
-        count = len(request.plane)
-        return Cells(
-            (template,), np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices
-        )
-
-    return emit
-
-
-def _material(mesh: Mesh) -> Callable[[float, float, NoParams], tuple[float, float]]:
-    def material(pitch: float, step: float, params: NoParams) -> tuple[float, float]:  # noqa: ARG001
-        volume = mesh.signed_volume * pitch * pitch * step
-        return volume, volume
-
-    return material
+    return parts[0].mesh

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from amprep.model.arrays import Floats, Ints
 from amprep.model.build import Build
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
@@ -10,6 +11,13 @@ from amprep.model.part import Part
 def read_parts(path: Path) -> list[Part]:
     """Read the parts of a 3MF job; see `amprep.threemf.reading.read_parts`."""
     from amprep.threemf.reading import read_parts as run
+
+    return run(path)
+
+
+def read_beams(path: Path) -> tuple[Floats, Ints, Floats] | None:
+    """Read the beam lattice of a 3MF file; see `amprep.threemf.reading_beams.read_beams`."""
+    from amprep.threemf.reading_beams import read_beams as run
 
     return run(path)
 
@@ -35,4 +43,4 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     run(mesh, path)
 
 
-__all__ = ["read_build", "read_parts", "write_build", "write_stl"]
+__all__ = ["read_beams", "read_build", "read_parts", "write_build", "write_stl"]

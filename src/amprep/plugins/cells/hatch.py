@@ -26,22 +26,23 @@ class HatchParams:
     Attributes
     ----------
     hatch_mm
-        Distance of parallel walls; rounded so that a whole number of them fits the pitch.
+        Distance of parallel walls; rounded so that a whole number of them fits the pitch. Left out, it is half of
+        the pitch.
     wall_mm
         Thickness of the walls.
     window_mm
         Width of the diamond-shaped openings in the walls of straight edges, through which powder leaves; 0: none.
     tooth_pitch_mm, tooth_width_mm, tooth_height_mm
-        Teeth along the top of the walls: their distance (0: none), their width where they meet the part, and
-        how far down the notches between them reach below the support's end.
+        Teeth along the top of the walls: their distance (left out, that of the walls; 0: none), their width
+        where they meet the part, and how far down the notches between them reach below the support's end.
     fragment_every, fragment_gap_mm
         Every n-th cell begins a new block, the walls interrupted by the gap; 0: one block.
     """
 
-    hatch_mm: float = 1.0
+    hatch_mm: float | None = None
     wall_mm: float = 0.25
     window_mm: float = 0.5
-    tooth_pitch_mm: float = 1.0
+    tooth_pitch_mm: float | None = None
     tooth_width_mm: float = 0.5
     tooth_height_mm: float = 0.8
     fragment_every: int = 6
@@ -49,13 +50,16 @@ class HatchParams:
 
     def __post_init__(self) -> None:
         for name in ("hatch_mm", "wall_mm", "tooth_width_mm", "tooth_height_mm", "fragment_gap_mm"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be more than 0, got {getattr(self, name)}")
+            _require(name, getattr(self, name), above=True)
         for name in ("window_mm", "tooth_pitch_mm", "fragment_every"):
-            if not 0.0 <= getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be 0 or more, got {getattr(self, name)}")
+            _require(name, getattr(self, name), above=False)
         if self.tooth_pitch_mm and self.tooth_width_mm > self.tooth_pitch_mm:
             raise ValueError(f"tooth_width_mm is at most tooth_pitch_mm, got {self.tooth_width_mm}")
+
+
+def _require(name: str, value: float | None, *, above: bool) -> None:
+    if value is not None and not (0.0 < value < np.inf or (value == 0.0 and not above)):
+        raise ValueError(f"{name} must be {'more than 0' if above else '0 or more'}, got {value}")
 
 
 def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
@@ -68,7 +72,7 @@ def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, report:
     starts = straight & (request.role != Role.CONNECTOR)
     every = params.fragment_every or 1
     cut = [starts & (place % every == 0) & bool(params.fragment_every) for place in (request.x, request.y)]
-    end = np.where(request.role == Role.CONNECTOR, 2, _is_end(request)) * bool(params.tooth_pitch_mm)
+    end = np.where(request.role == Role.CONNECTOR, 2, _is_end(request)) * (params.tooth_pitch_mm != 0.0)
     rows = np.column_stack([request.direction, end, *cut]).astype(np.int64)
     kinds, template = np.unique(rows, axis=0, return_inverse=True)
     templates = tuple(hatch_template(_walls(pitch, step, params, *kind)) for kind in kinds.tolist())
@@ -96,7 +100,7 @@ def _walls(
     cut_x, cut_y
         Whether a new block begins here.
     """
-    count = max(1, round(pitch / params.hatch_mm))
+    count = max(1, round(pitch / (params.hatch_mm or pitch / 2.0)))
     thickness = params.wall_mm / pitch - HAIR * direction
     span = 1.0 / count - params.wall_mm / pitch
     if span < 0.1 / count or thickness <= 0.0:
@@ -111,7 +115,7 @@ def _walls(
             f"its first wall, {span / 2.0 * pitch:.3g} mm"
         )
     window = (0.0, 0.0) if direction else _window(pitch, step, params, span)
-    teeth = max(1, round(pitch / params.tooth_pitch_mm)) if end else 0
+    teeth = max(1, round(pitch / (params.tooth_pitch_mm or pitch / count))) if end else 0
     tooth = min(params.tooth_width_mm / pitch, 0.95 / teeth) if teeth else 0.0
     root = 1.0 if end == 2 else min(params.tooth_height_mm / step, 0.9)
     return Walls(

@@ -1,0 +1,163 @@
+"""Cells given as files: a graph in TOML or as beams in 3MF, a closed mesh with an optional TOML beside it."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from amprep.cells.offers import cell_offer
+from amprep.cells.tables import graph_of, number, read_cell_table, text, variants_of, when_of
+from amprep.checks.templates import check_template
+from amprep.errors import InputError, MeshError
+from amprep.geometry.cell_ports import snapped
+from amprep.hookspecs import CellEmitter
+from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Shape, Template, Variant
+
+MESH_SUFFIXES = (".stl", ".obj", ".3mf", ".ply", ".off", ".glb", ".step", ".stp")
+
+ReadMesh = Callable[[Path], Mesh]
+"""Reads the one mesh of a file."""
+
+
+class CellFile(NamedTuple):
+    """A cell from a file, with its name and its line for lists."""
+
+    name: str
+    summary: str
+    cell: DeclaredCell
+
+
+def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
+    """Return the cell that a file declares.
+
+    Parameters
+    ----------
+    path
+        TOML, or a mesh file; of a mesh file the TOML of the same name beside it is read too, if there is one.
+
+    Raises
+    ------
+    InputError
+        When a file is not what a cell needs: saying which, and why.
+    """
+    beside = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
+    table = read_cell_table(beside) if beside.is_file() else {}
+    size = number(table, "size_mm", str(beside), 1.0) or 0.0
+    if not 0.0 < size < 1e6:
+        raise InputError(f"{beside}: size_mm is the side of the cube as it is drawn, above 0, got {size:g}")
+    if path != beside:
+        table = {**table, "mesh": path.name}
+    variants = [
+        Variant(_shape(each, beside, size, read_mesh), when_of(each, beside))
+        for each in variants_of(table, beside)
+    ]
+    if any(key in table for key in ("mesh", "points")) or not variants:
+        variants.append(Variant(_shape(table, beside, size, read_mesh)))
+    cell = DeclaredCell(
+        tuple(variants),
+        text(table, "author", str(beside)),
+        text(table, "licence", str(beside)),
+        number(table, "smallest_feature_mm", str(beside)),
+        number(table, "least_angle_deg", str(beside)),
+    )
+    name = text(table, "name", str(beside)) or path.stem
+    return CellFile(name, text(table, "summary", str(beside)) or "A cell from a file.", cell)
+
+
+def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[CellEmitter]:
+    """Yield the offers of all cells in a folder, in the order of their names.
+
+    Each TOML file is a cell, and so is each STL, OBJ or 3MF file without a TOML that names it.
+
+    Parameters
+    ----------
+    folder
+        Or a file in it: a plugin passes its ``__file__``.
+
+    Raises
+    ------
+    InputError
+        When one of the files is not what a cell needs.
+    """
+    place = Path(folder)
+    place = place.parent if place.is_file() else place
+    files = sorted(place.glob("*.toml"))
+    tables = [read_cell_table(path) for path in files]
+    shapes = [
+        shape
+        for table, path in zip(tables, files, strict=True)
+        for shape in (table, *variants_of(table, path))
+    ]
+    named = {str(shape.get("mesh", "")) for shape in shapes}
+    for path in sorted(place.iterdir()):
+        alone = path.suffix.lower() in (".stl", ".obj", ".3mf") and path.name not in named
+        if path in files or (alone and path.with_suffix(".toml") not in files):
+            found = read_cell(path, read_mesh or _plain_mesh)
+            yield cell_offer(_slug(found.name), found.summary, found.cell)
+
+
+def _shape(table: Mapping[str, Any], path: Path, size: float, read_mesh: ReadMesh) -> Shape:
+    """Return the shape a table declares: the mesh it names, or its graph."""
+    if "mesh" not in table:
+        return graph_of(table, path)
+    file = path.parent / text(table, "mesh", str(path))
+    if file.suffix.lower() not in MESH_SUFFIXES or not file.is_file():
+        raise InputError(f"{path}: mesh names a mesh file beside it, found none at {file}")
+    if file.suffix.lower() == ".3mf":
+        graph = _beams(file, size)
+        if graph is not None:
+            return graph
+    return MeshCell(closed_cell(read_mesh(file), file, size))
+
+
+def closed_cell(mesh: Mesh, path: Path, size: float = 1.0) -> Mesh:
+    """Return the mesh of a cell drawn in a cube of `size` mm; corners close to the sides are put onto them.
+
+    Raises
+    ------
+    MeshError
+        When it is no closed solid in the cube.
+    """
+    shrunk = Mesh(snapped(mesh.vertices / size), mesh.triangles)
+    for violation in check_template(Template(path.stem, shrunk)):
+        raise MeshError(f"{path}: a cell is a closed mesh in the unit cube, z up; {violation.message}")
+    return shrunk
+
+
+def _beams(path: Path, size: float) -> GraphCell | None:
+    """Return the beam lattice of a 3MF file as a graph, or None when it has none."""
+    from amprep.threemf import read_beams
+
+    lattice = read_beams(path)
+    if lattice is None:
+        return None
+    nodes, struts, radii = lattice
+    try:
+        return GraphCell(np.clip(snapped(nodes / size), *_slack(nodes / size)), struts, radii)
+    except ValueError as error:
+        raise InputError(f"{path}: {str(error)[:200]}; give size_mm in a TOML beside it") from error
+
+
+def _slack(points: np.ndarray) -> tuple[float, float]:
+    """Return bounds that put points on the cube which rounding left just outside, and no others."""
+    close = bool((points > -1e-5).all() and (points < 1.0 + 1e-5).all())
+    return (0.0, 1.0) if close else (-np.inf, np.inf)
+
+
+def _plain_mesh(path: Path) -> Mesh:
+    """Read a mesh file of an installed package."""
+    import trimesh
+
+    from amprep.geometry.merging import merge_equal
+
+    loaded = trimesh.load_mesh(path, process=False)
+    points, triangles = merge_equal(
+        np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
+    )
+    return Mesh(points, triangles.astype(np.int32))
+
+
+def _slug(name: str) -> str:
+    return re.sub(r"[^a-z0-9_.-]+", "-", name.lower()).strip("-") or "cell"
