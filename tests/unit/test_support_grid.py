@@ -308,3 +308,14 @@ def test_the_same_build_gives_the_same_layout():
     first, second = layout(two_balls()), layout(two_balls())
     for name in ("red", "plane", "y", "x", "direction", "flow", "edge_part", "red_group"):
         assert getattr(first, name).tolist() == getattr(second, name).tolist()
+
+
+def test_the_automatic_pitch_keeps_to_the_memory_allowed_and_a_given_one_is_refused_with_advice():
+    part, space = placed(box((300, 300, 300), (50, 50, 20))), BuildVolume([400, 400, 400])
+    pitches = [choose_pitch(part, space, memory_mb=memory) for memory in (60, 150, 2000)]
+    assert pitches[0] > pitches[1] > pitches[2] == 2.0
+    layout(part, space=space, pitch=pitches[0], memory_mb=60)
+    with pytest.raises(JobError, match=r"supports.memory_mb = 60.*--set supports.pitch_mm=") as refused:
+        layout(part, space=space, pitch=0.5, memory_mb=60)
+    advised = float(str(refused.value).partition("pitch_mm=")[2].split(")")[0])
+    layout(part, space=space, pitch=advised, memory_mb=60)

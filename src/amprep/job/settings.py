@@ -102,6 +102,7 @@ class SupportSettings:
     least_length_mm: float = 0.5
     reach_mm: float | None = None
     gap_mm: float = 0.0
+    memory_mb: int = 2000
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
 
@@ -116,7 +117,7 @@ class SupportSettings:
         require(self.slender >= 1, "slender is at least 1", self.slender)
         for name in ("least_area_mm2", "least_length_mm", "gap_mm"):
             require(getattr(self, name) >= 0, f"{name} is at least 0", getattr(self, name))
-        least = {"capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}
+        least = {"memory_mb": 1, "capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}
         for name, low in least.items():
             value = getattr(self, name)
             require(low <= value <= LARGEST_COUNT, f"{name} is between {low} and {LARGEST_COUNT}", value)

@@ -27,6 +27,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         density=build_density(build),
         height_mm=build_height(build),
         support_volume_mm3=support_volume(build),
+        advice=supported.advice,
         columns=tuple(measure_columns(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),
@@ -59,10 +60,14 @@ def run_record(
         status=packing.status,
         stop_reason=packing.stop_reason,
         bound=packing.bound,
-        warnings=(*host.warnings, *left),
+        warnings=(*host.warnings, *left, *_advice(builds)),
         notes=tuple(f"{part.name}: {note}" for part in parts for note in part.notes),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )
+
+
+def _advice(builds: Sequence[BuildRecord]) -> list[str]:
+    return [f"{entry.build.settings.build_id}: {words}" for entry in builds for words in entry.advice]
 
 
 def unplaced_records(

@@ -17,28 +17,43 @@ from amprep.model.supports import Cube, GridFrame
 FINEST_PITCH, USUAL_PITCH = 0.8, 2.0
 """mm; the bounds of the automatic pitch, before memory."""
 
+MEMORY_MB = 2000
+"""Default budget of a support grid."""
+
 _SQUARES_PER_PART = 12
-_MOST_CUBES = 48_000_000
-_TOO_MANY_MILLIONS = 400
+_BYTES_PER_CUBE = 40
+"""At the peak, measured with the exact routers; `shortest-paths` takes half."""
 
 
-def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_deg: float = 45.0) -> float:
+def usual_pitch(parts: Sequence[PlacedPart]) -> float:
     """Return a pitch that suits the parts, in mm.
 
-    The median part gets 12 squares along the geometric mean of its three extents, within 0.8 to 2.0 mm. The
-    pitch is then raised until the box around all parts, from the plate up, has at most 48 million cubes.
+    The median part gets 12 squares along the geometric mean of its three extents, within 0.8 to 2.0 mm.
     """
     bounds = [placed.mesh.bounds for placed in parts]
     if not bounds:
         return USUAL_PITCH
     sizes = [float(np.prod(hi - lo)) ** (1 / 3) for lo, hi in bounds]
-    pitch = min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), FINEST_PITCH), USUAL_PITCH)
-    lo, hi = _common_bounds(bounds)
-    extent = np.minimum(hi, space.size) - np.append(np.maximum(lo[:2], 0.0), 0.0)
-    volume = float(np.prod(np.maximum(extent, 0.0)))
-    while volume / (pitch**3 * np.tan(np.radians(strut_angle_deg))) > _MOST_CUBES:
-        pitch = round(pitch + 0.1, 1)
+    return min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), FINEST_PITCH), USUAL_PITCH)
+
+
+def choose_pitch(
+    parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_deg: float = 45.0, memory_mb: int = MEMORY_MB
+) -> float:
+    """Return the usual pitch, or the least larger one (by tenths of a mm) whose grid keeps to the memory.
+
+    The grid is taken to be as high as the parts.
+    """
+    bounds = [placed.mesh.bounds for placed in parts]
+    pitch, slope = usual_pitch(parts), float(np.tan(np.radians(strut_angle_deg)))
+    height = float(_common_bounds(bounds)[1][2])
+    while _megabytes(_extent(bounds, height, space, pitch, pitch * slope)[1]) > memory_mb:
+        pitch = round(pitch * 1.05 + 0.05, 1)
     return pitch
+
+
+def _megabytes(count: Sequence[int]) -> float:
+    return float(np.prod(np.array(count, np.float64))) * _BYTES_PER_CUBE / 1e6
 
 
 def highest_need(meshes: Sequence[Mesh], overhangs: Sequence[Overhangs]) -> float:
@@ -57,6 +72,7 @@ def frame_of(
     *,
     pitch: float,
     strut_angle_deg: float,
+    memory_mb: int = MEMORY_MB,
 ) -> GridFrame:
     """Lay the grid around the parts, within the build volume, up to the highest overhang.
 
@@ -67,12 +83,29 @@ def frame_of(
     Raises
     ------
     JobError
-        When that takes more than 400 million cubes.
+        When that takes more memory than `memory_mb`.
     """
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))
-    top = min(_whole(highest_need(meshes, overhangs) / step) + 1, _whole(space.size[2] / step))
-    lo, hi = _common_bounds([mesh.bounds for mesh in meshes])
-    origin, count = np.zeros(3), [max(top, 1), 1, 1]
+    bounds = [mesh.bounds for mesh in meshes]
+    origin, count = _extent(bounds, highest_need(meshes, overhangs), space, pitch, step)
+    megabytes = _megabytes(count)
+    if megabytes > memory_mb:
+        fitting = max(round(pitch * (megabytes / memory_mb) ** (1 / 3) + 0.05, 1), 0.1)
+        raise JobError(
+            f"the support grid of {pitch:g} x {pitch:g} x {step:.3g} mm takes about {megabytes:.0f} MB, more than "
+            f"supports.memory_mb = {memory_mb}: choose a larger pitch (--set supports.pitch_mm={fitting:g}) or allow "
+            "more memory"
+        )
+    return GridFrame(origin, pitch, step, (count[0], count[1], count[2]))
+
+
+def _extent(
+    bounds: Sequence[tuple[Floats, Floats]], height: float, space: BuildVolume, pitch: float, step: float
+) -> tuple[Floats, list[int]]:
+    """Return the origin, and the numbers of cubes (z, y, x), of a grid for overhangs up to `height` mm."""
+    top = max(min(_whole(height / step) + 1, _whole(space.size[2] / step)), 1)
+    lo, hi = _common_bounds(bounds)
+    origin, count = np.zeros(3), [top, 1, 1]
     for axis in (0, 1):
         whole = _whole(space.size[axis] / pitch)
         spare = float(space.size[axis]) - whole * pitch
@@ -81,13 +114,7 @@ def frame_of(
         last = min(int(np.ceil((hi[axis] - shift) / pitch)) + top, whole)
         origin[axis] = shift + first * pitch
         count[2 - axis] = max(last - first, 1)
-    millions = count[0] * count[1] * count[2] / 1e6
-    if millions > _TOO_MANY_MILLIONS:
-        raise JobError(
-            f"the support grid must have at most {_TOO_MANY_MILLIONS} million cubes, got {millions:.0f} "
-            f"million of {pitch:g} x {pitch:g} x {step:.3g} mm: choose a larger pitch"
-        )
-    return GridFrame(origin, pitch, step, (count[0], count[1], count[2]))
+    return origin, count
 
 
 def _whole(count: float) -> int:

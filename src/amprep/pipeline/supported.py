@@ -1,5 +1,6 @@
 """Supports one build: overhangs and grid, routing, cells, and what stays unsupported."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,18 +17,21 @@ from amprep.model import (
     SupportPlan,
     SupportProblem,
 )
+from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW
 from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.stages import Clock
+from amprep.pipeline.support_grid import usual_pitch
 from amprep.pipeline.supports import SupportLayout, choose_pitch, plan_supports
 
 
 @dataclass(frozen=True, eq=False)
 class SupportedBuild:
-    """A build with its supports, and the layout they came from (None when the job wants no supports)."""
+    """A build with its supports, the layout they came from (None when the job wants none), and advice."""
 
     build: Build
     layout: SupportLayout | None = None
+    advice: tuple[str, ...] = ()
 
 
 def support_build(
@@ -43,7 +47,10 @@ def support_build(
     """Return build `number` with supports for everything that needs some, or listed with its reason."""
     if not job.supports.enabled:
         return SupportedBuild(Build(build_settings(job, build_id, pitch=1.0), parts))
-    pitch = job.supports.pitch_mm or choose_pitch(parts, job.printer.space, job.supports.strut_angle_deg)
+    wishes = job.supports
+    pitch = wishes.pitch_mm or choose_pitch(
+        parts, job.printer.space, wishes.strut_angle_deg, wishes.memory_mb
+    )
     settings = build_settings(job, build_id, pitch)
     with clock.stage("route") as report:
         layout = _plan(job, host, parts, number, pitch, stop, report)
@@ -63,7 +70,29 @@ def support_build(
         )
     with clock.stage("judge"):
         unsupported = find_unsupported(parts, bodies, settings, layout.reason_at)
-    return SupportedBuild(Build(settings, parts, bodies, unsupported), layout)
+    build = Build(settings, parts, bodies, unsupported)
+    return SupportedBuild(build, layout, tuple(_advice(job, build, pitch)))
+
+
+def _advice(job: Job, build: Build, pitch: float) -> Iterator[str]:
+    """Say where another grid would serve the build better."""
+    usual = usual_pitch(build.parts)
+    if job.supports.pitch_mm is None and pitch > usual:
+        yield (
+            f"the support grid was coarsened from {usual:g} to {pitch:g} mm to keep to supports.memory_mb = "
+            f"{job.supports.memory_mb}"
+        )
+    narrow = [each for each in build.unsupported if each.reason in (NO_WHITE_BELOW, CONNECTOR_BLOCKED)]
+    count = sum(not each.minor for each in narrow)
+    if count:
+        yield (
+            f"{count} regions are unsupported for want of room below them in a grid of {pitch:g} mm; a finer one may "
+            f"reach them: --set supports.pitch_mm={_finer(pitch):g}"
+        )
+
+
+def _finer(pitch: float) -> float:
+    return round(pitch / 2, 1) if pitch >= 0.4 else pitch / 2
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -105,6 +134,7 @@ def _plan(
         strut_angle_deg=angle,
         pitch=pitch,
         gap=wishes.gap_mm,
+        memory_mb=wishes.memory_mb,
         edge_capacity=wishes.capacity,
         node_capacity=wishes.node_capacity,
         costs=(wishes.vertical_cost, wishes.oblique_cost),

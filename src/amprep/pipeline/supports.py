@@ -10,7 +10,7 @@ from amprep.model.arrays import Bools, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
-from amprep.pipeline.support_grid import choose_pitch, coloured, cubes_of, frame_of
+from amprep.pipeline.support_grid import MEMORY_MB, choose_pitch, coloured, cubes_of, frame_of
 from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_layout import SupportLayout
 from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
@@ -36,6 +36,7 @@ def plan_supports(
     strut_angle_deg: float = 45.0,
     pitch: float | None = None,
     gap: float = 0.0,
+    memory_mb: int = MEMORY_MB,
     edge_capacity: int = 0,
     node_capacity: int = 0,
     costs: tuple[int, int] = (1, 2),
@@ -57,6 +58,8 @@ def plan_supports(
         mm; None chooses one by `choose_pitch`.
     gap
         Least distance between supports and parts sideways, mm; 0 for none.
+    memory_mb
+        What the grid may take.
     share_between_parts
         ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
         one network.
@@ -65,6 +68,8 @@ def plan_supports(
 
     Raises
     ------
+    JobError
+        When the grid takes more memory than allowed.
     PluginError
         When the router returns a plan that breaks its promise.
     """
@@ -76,8 +81,8 @@ def plan_supports(
     found = [needs_of(placed, **limits) for placed in parts]
     meshes, needs = [each.mesh for each in found], [each.overhangs for each in found]
     report(0.05, "overhangs found")
-    pitch = pitch or choose_pitch(parts, space, strut_angle_deg)
-    frame = frame_of(meshes, needs, space, pitch=pitch, strut_angle_deg=strut_angle_deg)
+    pitch = pitch or choose_pitch(parts, space, strut_angle_deg, memory_mb)
+    frame = frame_of(meshes, needs, space, pitch=pitch, strut_angle_deg=strut_angle_deg, memory_mb=memory_mb)
     blocks = [
         cubes_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
         for placed, mesh, own in zip(parts, meshes, needs, strict=True)

@@ -102,6 +102,8 @@ class BuildRecord:
         Supports that hold several parts, one sentence each.
     overhangs
         Everything that needs support.
+    advice
+        What to try for a better build, one sentence each.
     columns
         How slender each of the build's support bodies is.
     """
@@ -120,6 +122,7 @@ class BuildRecord:
     shared: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
     columns: tuple[Columns, ...] = ()
+    advice: tuple[str, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
