@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from amprep.checks.supports import check_plan
 from amprep.model.control import Stop, silent
-from amprep.model.supports import CAPACITY, DIRECTIONS, ENCLOSED, Cube, GridFrame, SupportProblem
-from amprep.plugins.supports import push_relabel
+from amprep.model.support_graph import to_networkx
+from amprep.model.supports import CAPACITY, ENCLOSED, Cube, GridFrame, SupportProblem
+from amprep.plugins.supports import pushing
 from amprep.plugins.supports.min_cost_flow import route_min_cost_flow, solve_min_cost_flow
 from amprep.plugins.supports.min_cost_flow_proof import find_gaps
 from amprep.plugins.supports.push_relabel import route_push_relabel
@@ -47,29 +48,6 @@ def random_problem(seed):
     edge, node = rng.integers(0, 4, 2)
     costs = [(1, 2), (0, 1), (3, 4), (1, 7)][rng.integers(4)]
     return problem(cubes, red, edge_capacity=int(edge), node_capacity=int(node), costs=costs)
-
-
-def as_networkx(task):
-    """The problem edge by edge, with squares split in two for their capacity."""
-    graph = nx.DiGraph()
-    nz, ny, width = task.cubes.shape
-    white, plenty = task.cubes == Cube.WHITE, len(task.red) + 1
-    graph.add_nodes_from(["source", "sink"])
-    for p, y, x in np.ndindex(nz + 1, ny, width):
-        room = task.node_capacity if p and task.node_capacity else plenty
-        graph.add_edge(("in", p, y, x), ("out", p, y, x), capacity=room, weight=0)
-        if p == 0:
-            if task.green[y, x]:
-                graph.add_edge(("out", p, y, x), "sink", capacity=plenty, weight=0)
-            continue
-        for d, (dy, dx) in enumerate(DIRECTIONS):
-            v, w = y + dy, x + dx
-            if 0 <= v < ny and 0 <= w < width and white[p - 1, y, x] and white[p - 1, v, w]:
-                limit = {"capacity": task.edge_capacity or plenty, "weight": task.costs[d > 0]}
-                graph.add_edge(("out", p, y, x), ("in", p - 1, v, w), **limit)
-    for p, y, x in task.red.tolist():
-        graph.add_edge("source", ("in", p, y, x), capacity=1, weight=0)
-    return graph
 
 
 def route(router, task, stop=None):
@@ -148,7 +126,7 @@ def test_high_costs_need_no_more_than_larger_buckets():
 def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
     task = random_problem(seed)
     plan = route("min-cost-flow", task)
-    graph = as_networkx(task)
+    graph = to_networkx(task)
     flow = nx.max_flow_min_cost(graph, "source", "sink")
     assert len(task.red) - len(plan.unconnected) == sum(flow["source"].values())
     assert plan.objective == nx.cost_of_flow(graph, flow)
@@ -192,12 +170,12 @@ def crowd():
 
 def test_relabelling_all_at_any_time_changes_nothing_in_the_value(monkeypatch):
     assert len(route("push-relabel", crowd()).unconnected) == 72
-    monkeypatch.setattr(push_relabel, "_EFFORT", 0.01)
+    monkeypatch.setattr(pushing, "_EFFORT", 0.01)
     assert len(route("push-relabel", crowd()).unconnected) == 72
 
 
 def test_a_stopped_run_is_a_legal_plan(monkeypatch):
-    monkeypatch.setattr(push_relabel, "_EFFORT", 0.01)
+    monkeypatch.setattr(pushing, "_EFFORT", 0.01)
     stop = Stop()
     stop.cancelled.set()
     plan = route("push-relabel", crowd(), stop)
@@ -208,9 +186,9 @@ def test_a_stopped_run_is_a_legal_plan(monkeypatch):
 @given(st.integers(0, 100_000), st.sampled_from([6, 0.05]))
 def test_as_many_are_connected_as_networkx_connects(seed, effort):
     task = random_problem(seed)
-    usual, push_relabel._EFFORT = push_relabel._EFFORT, effort
+    usual, pushing._EFFORT = pushing._EFFORT, effort
     try:
         plan = route("push-relabel", task)
     finally:
-        push_relabel._EFFORT = usual
-    assert len(task.red) - len(plan.unconnected) == nx.maximum_flow_value(as_networkx(task), "source", "sink")
+        pushing._EFFORT = usual
+    assert len(task.red) - len(plan.unconnected) == nx.maximum_flow_value(to_networkx(task), "source", "sink")

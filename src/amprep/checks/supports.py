@@ -3,7 +3,8 @@
 import numpy as np
 
 from amprep.checks.violation import Violation
-from amprep.model.arrays import Bools
+from amprep.model.arrays import Bools, Floats
+from amprep.model.support_graph import support_graph
 from amprep.model.supports import CAPACITY, DIRECTIONS, ENCLOSED, Cube, SupportPlan, SupportProblem
 
 PROMISE = "support plan"
@@ -12,9 +13,10 @@ PROMISE = "support plan"
 def check_plan(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     """Judge a plan: legal edges, integral flow conserved from red to green, capacities, true reasons.
 
-    Capacities bind edges and squares above the plate; squares on the plate are unbounded. Every red square is
-    connected or listed exactly once, as ``enclosed`` only when no white way leads to the plate at all, as
-    ``capacity`` only when there is one and the problem sets capacities.
+    Capacities bind edges and squares above the plate; squares on the plate are unbounded. They are exceeded
+    only when the problem allows it, by no more than the plan says. Every red square is connected or listed
+    exactly once, as ``enclosed`` only when no white way leads to the plate at all, as ``capacity`` only when
+    there is one and the problem sets capacities that bind.
     """
     found = _check_edges(problem, plan)
     if found:
@@ -46,7 +48,14 @@ def _check_edges(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     found += _first(plan.flow < 1, plan, "carries no flow")
     found += _first(plan.flow > plan.capacity, plan, "carries more than its reported capacity")
     if problem.edge_capacity > 0:
-        found += _first(plan.flow > problem.edge_capacity, plan, f"exceeds capacity {problem.edge_capacity}")
+        limit = problem.edge_capacity + plan.raised
+        found += _first(plan.flow > limit, plan, f"exceeds capacity {limit}")
+        found += _first(
+            plan.capacity > np.maximum(plan.flow, limit), plan, "reports a capacity nobody asked for"
+        )
+        if problem.escalation != "uniform":
+            idle = (plan.capacity > problem.edge_capacity) & (plan.flow < plan.capacity)
+            found += _first(idle, plan, "has a raised capacity that it does not use")
     key = ((plane.astype(np.int64) * ny + y) * nx + x) * len(DIRECTIONS) + direction
     if len(np.unique(key)) < len(key):
         found.append(_violation("plan", "an edge is listed twice"))
@@ -102,11 +111,49 @@ def _check_flow(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     grounded = problem.green.reshape(-1)[squares[on_plate]]
     if not grounded[arriving[on_plate] > 0].all():
         found.append(_violation("plate", "flow arrives on a square that is not green"))
-    full = np.flatnonzero(~on_plate & (arriving > problem.node_capacity))
+    limit = problem.node_capacity + plan.raised
+    full = np.flatnonzero(~on_plate & (arriving > limit))
     if problem.node_capacity > 0 and full.size:
-        message = f"{arriving[full[0]]:.0f} paths exceed the node capacity {problem.node_capacity}"
+        message = f"{arriving[full[0]]:.0f} paths exceed the node capacity {limit}"
         found.append(_violation(_square(int(squares[full[0]]), ny, nx), message))
+    return found + _check_raised(problem, plan, arriving[~on_plate])
+
+
+def _check_raised(problem: SupportProblem, plan: SupportPlan, through: Floats) -> list[Violation]:
+    """Judge what escalation has raised: only when asked to, no more than is used, and for everybody."""
+    edge = int(plan.flow.max(initial=0)) - problem.edge_capacity if problem.edge_capacity else 0
+    node = int(through.max(initial=0)) - problem.node_capacity if problem.node_capacity else 0
+    found = []
+    if plan.raised != max(edge, node, 0):
+        message = f"says that capacities are raised by {plan.raised}, but {max(edge, node, 0)} is used"
+        found.append(_violation("plan", message))
+    if plan.raised and problem.escalation == "none":
+        found.append(_violation("plan", "raises capacities, though the problem forbids it"))
+    left = sum(each.reason == CAPACITY for each in plan.unconnected)
+    if left and problem.escalation != "none" and plan.stop_reason == "finished":
+        found.append(_violation("plan", f"leaves out {left} red squares, though capacities may be raised"))
     return found
+
+
+def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
+    """Judge whether what escalation has raised was needed, by a greatest flow that scipy finds.
+
+    With the capacities asked for (``cut``), or with one less than those of the plan (``uniform``), it must not
+    be possible to connect every red square that has a way. Takes about 300 bytes a square.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import maximum_flow
+
+    if not plan.raised:
+        return []
+    graph = support_graph(problem, raised=plan.raised - 1 if problem.escalation == "uniform" else 0)
+    nodes = graph.sink + 1
+    matrix = csr_array((graph.capacity, (graph.tail, graph.head)), shape=(nodes, nodes))
+    possible = maximum_flow(matrix, graph.source, graph.sink).flow_value
+    wanted = int(has_way(problem).sum())
+    if possible < wanted:
+        return []
+    return [_violation("plan", f"raises capacities, though without that all {wanted} could be connected")]
 
 
 def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:

@@ -16,6 +16,7 @@ from amprep.model.build import Target
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
+from amprep.model.supports import Escalation
 
 LARGEST_COUNT = 1_000_000
 """Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""
@@ -93,6 +94,7 @@ class SupportSettings:
     pitch_mm: float | None = None
     capacity: int = 0
     node_capacity: int = 0
+    escalation: Escalation = "cut"
     vertical_cost: int = 1
     oblique_cost: int = 2
     share_between_parts: Literal["avoid", "allow"] = "avoid"

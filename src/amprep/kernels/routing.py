@@ -64,7 +64,7 @@ class Flows(NamedTuple):
         ``(squares,)`` int32, number of the batch that found no way down from the square.
     """
 
-    flow: Bytes
+    flow: Shorts
     through: Shorts
     special: Bytes
     rows: Bytes

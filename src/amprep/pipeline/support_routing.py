@@ -10,19 +10,29 @@ from amprep.errors import PluginError
 from amprep.geometry.overhangs import Longs
 from amprep.model.arrays import Bytes, Ints
 from amprep.model.control import Report, Stop, silent
-from amprep.model.supports import CAPACITY, DIRECTIONS, ENCLOSED, Cube, GridFrame, SupportPlan, SupportProblem
+from amprep.model.supports import (
+    CAPACITY,
+    DIRECTIONS,
+    ENCLOSED,
+    Cube,
+    Escalation,
+    GridFrame,
+    SupportPlan,
+    SupportProblem,
+)
 from amprep.pipeline.support_red import RedSquares
 
 Route = Callable[[SupportProblem, Stop, Report], SupportPlan]
 
 
 class Rules(NamedTuple):
-    """What holds for every network: capacities (0: none), costs and material as in `SupportProblem`."""
+    """What holds for every network: capacities (0: none) and the rest as in `SupportProblem`."""
 
     edge_capacity: int
     node_capacity: int
     costs: tuple[int, int]
     material: tuple[float, float]
+    escalation: Escalation = "none"
 
 
 class Routed(NamedTuple):
@@ -106,6 +116,7 @@ class Network:
             rules.node_capacity,
             rules.costs,
             rules.material,
+            rules.escalation,
         )
 
 
@@ -150,6 +161,23 @@ def route_apart(network: Network, report: Report) -> Routed:
 def _share(network: Network, edges: Ints) -> Ints:
     """Connect the red squares left over through the cubes of other supports, within the capacities.
 
+    What these leave out exceeds them at last, when escalation is allowed.
+    """
+    rules = network.rules
+    network.rules = rules._replace(escalation="none")
+    more = _share_within(network, edges)
+    network.rules = rules
+    left = np.flatnonzero([reason == CAPACITY for reason in network.reasons]).astype(np.int32)
+    if rules.escalation == "none" or not left.size:
+        return more
+    rest = network.connect(left, _no_cubes(), silent)
+    rest[:, 6] = _part_of_edges(rest, network.red, left)
+    return np.concatenate([more, rest])
+
+
+def _share_within(network: Network, edges: Ints) -> Ints:
+    """Connect the red squares left over through the cubes of other supports, with no capacity exceeded.
+
     The router does not know the flow that is there already, so squares where both together exceed a capacity
     are closed and the rest is routed again, until nothing is exceeded.
     """
@@ -164,6 +192,7 @@ def _share(network: Network, edges: Ints) -> Ints:
             if network.reasons[red] and int(red) not in enclosed:
                 network.reasons[red] = CAPACITY
         full = _exceeded(np.concatenate([edges, more]), network.rules)
+        full = full[np.isin(_keys(full), _keys(_below(more[:, :3])))]
         if not len(full):
             return more
         closed = np.concatenate([closed, full])

@@ -137,6 +137,7 @@ def _plan(
         memory_mb=wishes.memory_mb,
         edge_capacity=wishes.capacity,
         node_capacity=wishes.node_capacity,
+        escalation=wishes.escalation,
         costs=(wishes.vertical_cost, wishes.oblique_cost),
         material=host.material(
             emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)

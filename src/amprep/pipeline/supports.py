@@ -10,6 +10,7 @@ from amprep.model.arrays import Bools, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
+from amprep.model.supports import Escalation
 from amprep.pipeline.support_grid import MEMORY_MB, choose_pitch, coloured, cubes_of, frame_of
 from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_layout import SupportLayout
@@ -41,6 +42,7 @@ def plan_supports(
     node_capacity: int = 0,
     costs: tuple[int, int] = (1, 2),
     material: tuple[float, float] = (1.0, 1.0),
+    escalation: Escalation = "none",
     least_area: float = 0.5,
     least_length: float = 0.5,
     share_between_parts: Literal["avoid", "allow"] = "avoid",
@@ -92,7 +94,8 @@ def plan_supports(
     if gap > 0:
         close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=overhang_angle_deg)
     report(0.15, "grid laid")
-    network = Network(frame, cubes, red, Rules(edge_capacity, node_capacity, costs, material), route, stop)
+    rules = Rules(edge_capacity, node_capacity, costs, material, escalation)
+    network = Network(frame, cubes, red, rules, route, stop)
 
     def routing(share: float, words: str) -> None:
         report(0.15 + 0.85 * share, words)

@@ -10,6 +10,7 @@ from amprep.kernels.routing import Ints, Longs
 from amprep.model.arrays import Bools
 from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.plugins.supports.escalation import escalate
 from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of
 
 _GREATEST = np.iinfo(np.int32).max - 1
@@ -64,9 +65,16 @@ def solve_min_cost_flow(problem: SupportProblem, *, stop: Stop, report: Report) 
     are in a region from where the plate is out of reach, and share it with connected ones that would perhaps
     better be left out in their place: there the exits are the connected red squares, at the price of what
     each saves. This is the same problem as with an arc of high cost from every red square to the plate.
+    When capacities may be raised, a greatest flow says first which ones, and all starts anew with these.
     """
     routing = _Routing(task_of(problem))
     stop_reason = routing.connect(stop, report)
+    if stop_reason == "finished":
+        first = Carried(*(each.copy() for each in routing.carried))
+        task, _, stop_reason = escalate(routing.task, first, routing.connected, stop=stop, report=report)
+        if task.room is not routing.task.room and stop_reason == "finished":
+            routing = _Routing(task)
+            stop_reason = routing.connect(stop, report)
     if stop_reason == "finished":
         stop_reason = routing.exchange(stop, report)
     return MinCostFlow(routing.task, routing.carried, routing.potential, routing.connected, stop_reason)

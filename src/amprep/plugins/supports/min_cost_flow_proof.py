@@ -22,14 +22,17 @@ def find_gaps(solved: MinCostFlow) -> list[str]:
     red[task.start[task.open]] = True
     usable = red | ((network.via == 1) & (inward < UNREACHED))
     upper = np.flatnonzero(usable & (np.arange(usable.size) >= network.stride))
-    faults = _ascents("into squares", outward[upper] - inward[upper], through[upper] < room.square)
+    faults = _ascents(
+        "into squares", outward[upper] - inward[upper], through[upper] < room.square[upper * room.each]
+    )
     faults += _ascents("out of squares", inward[upper] - outward[upper], through[upper] > 0)
     for direction, step in enumerate(network.offset):
         lower = upper - network.stride + step
         cost = oblique if direction else straight
+        limit = room.edge[(5 * upper + direction) * room.each]
         legal = (network.via[lower] == 1) & (inward[lower] < UNREACHED)
         rise = cost + inward[lower] - outward[upper]
-        faults += _ascents("down edges", rise, legal & (flow[upper, direction] < room.edge))
+        faults += _ascents("down edges", rise, legal & (flow[upper, direction] < limit))
         faults += _ascents("up edges", -rise, legal & (flow[upper, direction] > 0))
     distance = inward[task.start]
     left = task.open & ~solved.connected

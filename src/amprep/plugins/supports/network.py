@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from amprep.kernels.flow_network import Carried
-from amprep.kernels.routing import FAR, UNBOUNDED, Flows, Limits, Longs, Network
+from amprep.kernels.flow_network import Carried, Flowing
+from amprep.kernels.routing import FAR, UNBOUNDED, Flows, Ints, Limits, Longs, Network
 from amprep.model.arrays import Bools
 from amprep.model.supports import DIRECTIONS, Cube, SupportPlan, SupportProblem, Unconnected
 
@@ -66,7 +66,11 @@ def plan_of(
     *,
     stop_reason: str,
 ) -> SupportPlan:
-    """Read the plan from the flows; its objective is the material of the edges in use, mm3."""
+    """Read the plan from the flows; its objective is the material of the edges in use, mm3.
+
+    Capacities are reported as the least ones that carry it: those asked for, and the flow where escalation
+    has raised them; with ``uniform`` all edges are raised alike.
+    """
     used = np.flatnonzero(flows.through)
     row, direction = np.nonzero(flows.flow[used])
     square = used[row]
@@ -75,14 +79,24 @@ def plan_of(
     y, x = np.divmod(rest, network.width)
     straight: Bools = direction == 0
     vertical, oblique = problem.material
+    raised = _raised(problem, flow, flows.through[used[used >= network.stride]])
+    asked = problem.edge_capacity + (raised if problem.escalation == "uniform" else 0)
     return SupportPlan(
         plane=plane,
         y=y - 1,
         x=x - 1,
         direction=direction.astype(np.uint8),
         flow=flow,
-        capacity=np.maximum(flow, problem.edge_capacity),
+        capacity=np.maximum(flow, asked if problem.edge_capacity else 0),
         unconnected=tuple(Unconnected(red, reason) for red, reason in reasons),
         stop_reason=stop_reason,
         objective=float(straight.sum() * vertical + (~straight).sum() * oblique),
+        raised=raised,
     )
+
+
+def _raised(problem: SupportProblem, flow: Ints, through: Flowing) -> int:
+    """Return by how much flow exceeds the capacities asked for, at most."""
+    edge = int(flow.max(initial=0)) - problem.edge_capacity if problem.edge_capacity else 0
+    node = int(through.max(initial=0)) - problem.node_capacity if problem.node_capacity else 0
+    return max(edge, node, 0)

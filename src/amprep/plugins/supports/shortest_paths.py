@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from amprep.kernels.flow_network import Carried
 from amprep.kernels.routing import (
     FAR,
     UNBOUNDED,
@@ -19,6 +20,8 @@ from amprep.kernels.routing import (
 )
 from amprep.model.control import Report, Stop
 from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem
+from amprep.plugins.supports.escalation import escalate
+from amprep.plugins.supports.exact import task_of
 from amprep.plugins.supports.network import hard_limits, network_of, no_flows, plan_of
 from amprep.plugins.supports.params import ShortestPathsParams
 
@@ -42,8 +45,10 @@ def route_shortest_paths(
     often: the rounds go through random orders of all of them.
 
     Capacities are never exceeded: full edges and squares are closed to further paths, and red squares that
-    find no way are connected by augmenting paths, so that the flow is maximal. Without capacities in the
-    problem, `paths_per_square` acts as one that grows until every red square with a way is connected.
+    find no way are connected by augmenting paths, so that the flow is maximal. When capacities may be raised
+    for those that are left, all grow alike before the first round (``uniform``), or those of a minimum cut
+    after the last one (``cut``). Without capacities in the problem, `paths_per_square` acts as one that grows
+    until every red square with a way is connected.
 
     Every red square is drawn in ``O(squares)`` a round. Deterministic for one state of `rng`, unless a time
     limit ends it.
@@ -58,6 +63,8 @@ def route_shortest_paths(
             break
         drawing.redraw(chosen)
         report((done + 1) / params.rounds, "redrawing paths")
+    if stop_reason == "finished":
+        stop_reason = drawing.escalate(stop, report)
     return drawing.plan(stop_reason)
 
 
@@ -95,9 +102,8 @@ class _Drawing:
     def connect_all(self) -> None:
         """Draw the first paths, by the plain costs; raise soft limits until every open red square has one."""
         self._draw(self.open, self.plain)
-        while self._lost().size and self.soft:
-            grown = self.limits.square + max(1, self.limits.square // 4)
-            self.limits = Limits(grown, grown, UNBOUNDED)
+        while self._lost().size and (self.soft or self.problem.escalation == "uniform"):
+            self.limits = _grown(self.limits, self.soft)
             self._draw(self._lost(), self.plain)
 
     def choices(self, rng: np.random.Generator) -> Iterator[Longs]:
@@ -156,3 +162,21 @@ class _Drawing:
         left = np.flatnonzero(self.drawn == 0)
         reasons = [(int(red), CAPACITY if way[red] else ENCLOSED) for red in left]
         return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
+
+    def escalate(self, stop: Stop, report: Report) -> str:
+        """Connect red squares left over by capacities that `problem.escalation` raises; return why it ended."""
+        if self.problem.escalation == "none" or not self._lost().size:
+            return "finished"
+        task, flowing = task_of(self.problem), Carried(self.flows.flow, self.flows.through)
+        _, connected, stop_reason = escalate(task, flowing, self.drawn == 1, stop=stop, report=report)
+        self.drawn[:] = connected
+        return stop_reason
+
+
+def _grown(limits: Limits, soft: bool) -> Limits:
+    """Return limits that grow by a quarter when they are soft, else by one."""
+    if soft:
+        square = limits.square + max(1, limits.square // 4)
+        return Limits(square, square, UNBOUNDED)
+    square, edge = (min(limit + 1, UNBOUNDED) for limit in (limits.square, limits.edge))
+    return Limits(square, limits.ground, edge)
