@@ -48,7 +48,7 @@ def test_an_unknown_scene_is_named():
 
 @pytest.mark.parametrize("router", sorted(THESIS_SECONDS))
 def test_every_router_of_the_thesis_is_measured(router):
-    result = run_scene(router, "ball", "A", capacity=0, seed=1)
+    (result,) = run_scene([router], "ball", "A", capacity=0, seed=1)
     assert result.validated
     assert result.flow == result.reds
     assert result.thesis_seconds == THESIS_SECONDS[router]["A"]
@@ -56,9 +56,7 @@ def test_every_router_of_the_thesis_is_measured(router):
 
 
 def test_min_cost_flow_serves_as_many_as_push_relabel_at_no_greater_cost():
-    costly, cheap = (
-        run_scene(router, "plate", "A", capacity=1, seed=0) for router in ("push-relabel", "min-cost-flow")
-    )
+    costly, cheap = run_scene(["push-relabel", "min-cost-flow"], "plate", "A", capacity=1, seed=0)
     assert costly.flow == cheap.flow
     assert cheap.cost <= costly.cost
 
@@ -84,3 +82,29 @@ def test_the_command_prints_lines_and_refuses_unknown_routers():
     line = bench("--size A --scene ball --router min-cost-flow")
     assert "thesis 0.017 s" in line.stdout
     assert bench("--size A --router nonsense").exit_code != 0
+
+
+def test_shortest_paths_tells_how_many_squares_its_first_paths_took():
+    (result,) = run_scene(["shortest-paths"], "ball", "B", capacity=0, seed=0)
+    assert result.squares_final < 0.6 * result.squares_first
+    assert result.most_in_a_square <= 9
+
+
+def test_rivals_find_the_same_values_or_say_why_they_did_not_run():
+    routers = ["push-relabel", "min-cost-flow"]
+    results = list(run_scene(routers, "plate", "A", capacity=1, seed=0, rivals=True))
+    assert {"or-tools max-flow", "scipy max-flow", "networkx min-cost-flow"} < {e.router for e in results}
+    for each in results:
+        assert each.validated or each.notes == ("not installed",)
+        assert each.router in each.line
+
+
+def test_escalation_is_asked_for():
+    run = bench("--size A --scene plate --router push-relabel --capacity 1 --escalate cut --json")
+    (result,) = json.loads(run.stdout)["results"]
+    assert result["validated"]
+    assert result["flow"] >= bench_flow("--size A --scene plate --router push-relabel --capacity 1 --json")
+
+
+def bench_flow(options):
+    return json.loads(bench(options).stdout)["results"][0]["flow"]

@@ -115,4 +115,4 @@ def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():
     wide = replace(task, edge_capacity=7)
     assert "without that all 7" in check_raises(wide, plan)[0].message
     left = route("push-relabel", replace(task, escalation="none"))
-    assert "leaves out 5" in check_plan(task, left)[0].message
+    assert "leaves out 5" in check_raises(task, left)[0].message

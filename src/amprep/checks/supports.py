@@ -129,14 +129,11 @@ def _check_raised(problem: SupportProblem, plan: SupportPlan, through: Floats) -
         found.append(_violation("plan", message))
     if plan.raised and problem.escalation == "none":
         found.append(_violation("plan", "raises capacities, though the problem forbids it"))
-    left = sum(each.reason == CAPACITY for each in plan.unconnected)
-    if left and problem.escalation != "none" and plan.stop_reason == "finished":
-        found.append(_violation("plan", f"leaves out {left} red squares, though capacities may be raised"))
     return found
 
 
 def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
-    """Judge whether what escalation has raised was needed, by a greatest flow that scipy finds.
+    """Judge whether escalation left nobody out and was needed, by a greatest flow that scipy finds.
 
     With the capacities asked for (``cut``), or with one less than those of the plan (``uniform``), it must not
     be possible to connect every red square that has a way. Takes about 300 bytes a square.
@@ -144,6 +141,9 @@ def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import maximum_flow
 
+    left = sum(each.reason == CAPACITY for each in plan.unconnected)
+    if left and problem.escalation != "none" and plan.stop_reason == "finished":
+        return [_violation("plan", f"leaves out {left} red squares, though capacities may be raised")]
     if not plan.raised:
         return []
     graph = support_graph(problem, raised=plan.raised - 1 if problem.escalation == "uniform" else 0)

@@ -2,15 +2,21 @@
 
 import sys
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from amprep.checks.supports import check_plan
+from amprep.checks.supports import check_plan, check_raises
+from amprep.geometry.overhangs import Longs
 from amprep.host import Host
 from amprep.model import Stop, silent
-from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.model.supports import DIRECTIONS, Escalation, SupportPlan, SupportProblem
+from amprep.pipeline.bench_supports_rivals import RIVALS, Rival
 from amprep.pipeline.bench_supports_scenes import SIDES, count_graph, scene
 
 if TYPE_CHECKING:
@@ -24,27 +30,38 @@ THESIS_SECONDS = {
 }
 """Router -> size -> seconds, of the table in chapter 4."""
 
+_MOST_FOR_RAISES = 100_000
+"""Squares up to which it is judged whether what escalation has raised was needed."""
+
 
 @dataclass(frozen=True)
 class Result:
-    """What a router made of one scene.
+    """What a router, or a rival, made of one scene.
 
     Attributes
     ----------
     nodes, edges
         All squares of the grid, and the edges that exist between them.
     seconds
-        Of routing alone, after one run to warm up.
+        Of routing alone, after one run to warm up; of a rival's solving alone. None when it did not run.
     flow
         Number of red squares connected, of `reds`.
     cost
         Sum over all edges of flow times the problem's cost.
-    squares
-        Number of squares in use.
+    squares_first, squares_final
+        Number of squares in use; `squares_first` before any path was redrawn, None for other routers.
+    most_in_a_square
+        Greatest number of paths in any square, those on the plate included.
+    raised
+        The most that escalation has added to a capacity.
     peak_mb
-        Peak memory of the whole process so far; None where the system does not tell.
+        Peak memory of the whole process while it ran; None where the system does not tell.
     validated
-        Whether the judge found nothing.
+        Whether the judge found nothing; for a rival, whether its value equals ours.
+    times_ours
+        Seconds of a rival over those of our router.
+    notes
+        What the router says, or why a rival did not run.
     """
 
     router: str
@@ -54,34 +71,63 @@ class Result:
     nodes: int
     edges: int
     reds: int
-    seconds: float
-    thesis_seconds: float | None
-    flow: int
-    cost: int
-    squares: int
-    status: str
-    peak_mb: int | None
-    validated: bool
+    seconds: float | None
+    thesis_seconds: float | None = None
+    flow: int | None = None
+    cost: int | None = None
+    squares_first: int | None = None
+    squares_final: int | None = None
+    most_in_a_square: int | None = None
+    raised: int | None = None
+    material: float | None = None
+    status: str | None = None
+    peak_mb: int | None = None
+    validated: bool | None = None
+    times_ours: float | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def record(self) -> dict[str, Any]:
         """The result as JSON can hold it."""
-        return asdict(self) | {"seconds": round(self.seconds, 4)}
+        seconds = {} if self.seconds is None else {"seconds": round(self.seconds, 4)}
+        return asdict(self) | seconds
 
     @property
     def line(self) -> str:
         """The result in a line."""
-        thesis = "" if self.thesis_seconds is None else f" (thesis {self.thesis_seconds:g} s)"
-        memory = "memory unknown" if self.peak_mb is None else f"{self.peak_mb} MB"
-        verdict = "valid" if self.validated else "INVALID"
-        return (
-            f"{self.router}, {self.scene} {self.size}: {self.seconds:.3f} s{thesis}, {self.flow} of "
-            f"{self.reds} connected, cost {self.cost}, {self.squares} squares, {memory}, {verdict}"
+        name = f"{self.router}, {self.scene} {self.size}"
+        if self.seconds is None:
+            return f"{name}: {', '.join(self.notes)}"
+        said = [f"{self.seconds:.3f} s" + _maybe(" (thesis {:g} s)", self.thesis_seconds)]
+        said.append(_maybe("{:.1f} times ours", self.times_ours))
+        said.append(f"{self.flow} of {self.reds} connected")
+        said.append(
+            _maybe("cost {}", self.cost) + _maybe(", capacities raised by up to {}", self.raised or None)
         )
+        first = _maybe(" after {}", self.squares_first)
+        said.append(_maybe("{} squares" + first, self.squares_final))
+        said.append(_maybe("at most {} paths in one", self.most_in_a_square))
+        said.append(_maybe("material {:g}", self.material))
+        said.append(_maybe("{} MB", self.peak_mb))
+        said.append({True: "valid", False: "INVALID", None: ""}[self.validated])
+        return f"{name}: " + ", ".join(filter(None, said)) + "".join(f"\n  {note}" for note in self.notes)
 
 
-def run_scene(router: str, name: str, size: str, *, capacity: int, seed: int) -> Result:
-    """Run a router on a scene, twice; the second run counts.
+def _maybe(words: str, value: float | None) -> str:
+    return "" if value is None else words.format(value)
+
+
+def run_scene(
+    routers: Sequence[str],
+    name: str,
+    size: str,
+    *,
+    capacity: int,
+    seed: int,
+    escalation: Escalation = "none",
+    rivals: bool = False,
+) -> Iterator[Result]:
+    """Run routers on a scene, each twice; the second run counts. Rivals follow, each once.
 
     Parameters
     ----------
@@ -94,35 +140,72 @@ def run_scene(router: str, name: str, size: str, *, capacity: int, seed: int) ->
         For an unknown router, or one that fails.
     """
     host = Host.load()
-    listed = host.choose("router", router)
-    problem = scene(name, SIDES[size], capacity=capacity)
-    _route(host, listed, problem, seed)
+    chosen = [host.choose("router", router) for router in routers]
+    problem = replace(scene(name, SIDES[size], capacity=capacity), escalation=escalation)
+    nodes, edges = count_graph(problem)
+    blank = Result("", name, size, capacity, nodes, edges, len(problem.red), None)
+    ours = {}
+    for listed in chosen:
+        result = _run(host, listed, problem, seed, blank)
+        ours[result.router] = result
+        yield result
+    for rival in RIVALS if rivals else ():
+        if rival.router in ours:
+            yield _run_rival(rival, problem, ours[rival.router], replace(blank, router=rival.name))
+
+
+def _run(
+    host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, blank: Result
+) -> Result:
+    name, size = listed.offer.name, blank.size
+    first = _route(host, listed, problem, seed, {"rounds": 0}) if name == "shortest-paths" else None
+    _route(host, listed, problem, seed, {})
+    _forget_peak()
     start = time.monotonic()
-    plan = _route(host, listed, problem, seed)
+    plan = _route(host, listed, problem, seed, {})
     took = time.monotonic() - start
     peak = _peak_mb()
-    nodes, edges = count_graph(problem)
-    return Result(
-        router,
-        name,
-        size,
-        capacity,
-        nodes,
-        edges,
-        len(problem.red),
-        took,
-        THESIS_SECONDS.get(router, {}).get(size),
-        len(problem.red) - len(plan.unconnected),
-        _cost(problem, plan),
-        _squares(problem, plan),
-        plan.status,
-        peak,
-        not check_plan(problem, plan),
+    wrong = check_plan(problem, plan)
+    if blank.nodes <= _MOST_FOR_RAISES:
+        wrong += check_raises(problem, plan)
+    return replace(
+        blank,
+        router=name,
+        seconds=took,
+        thesis_seconds=THESIS_SECONDS.get(name, {}).get(size),
+        flow=len(problem.red) - len(plan.unconnected),
+        cost=_cost(problem, plan),
+        squares_first=first and _squares(problem, first),
+        squares_final=_squares(problem, plan),
+        most_in_a_square=_most_in_a_square(problem, plan),
+        raised=plan.raised,
+        material=_material(problem, plan),
+        status=plan.status,
+        peak_mb=peak,
+        validated=not wrong,
+        notes=plan.notes,
     )
 
 
-def _route(host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int) -> SupportPlan:
-    rng, params = np.random.default_rng(seed), host.params(listed, {})
+def _run_rival(rival: Rival, problem: SupportProblem, ours: Result, blank: Result) -> Result:
+    if problem.escalation != "none":
+        return replace(blank, notes=("raises no capacities",))
+    if blank.nodes > rival.most_squares:
+        return replace(blank, notes=(f"left out: takes minutes over {rival.most_squares} squares",))
+    if find_spec(rival.package) is None:
+        return replace(blank, notes=("not installed",))
+    _forget_peak()
+    flow, cost, took = rival.solve(problem)
+    same = flow == ours.flow and cost in (None, ours.cost)
+    times = took / ours.seconds if ours.seconds else None
+    peak = _peak_mb()
+    return replace(blank, seconds=took, flow=flow, cost=cost, peak_mb=peak, validated=same, times_ours=times)
+
+
+def _route(
+    host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, table: dict[str, Any]
+) -> SupportPlan:
+    rng, params = np.random.default_rng(seed), host.params(listed, table)
     return host.call(listed, problem, params=params, rng=rng, stop=Stop(), report=silent)
 
 
@@ -130,14 +213,44 @@ def _cost(problem: SupportProblem, plan: SupportPlan) -> int:
     return int((np.array(problem.costs)[np.minimum(plan.direction, 1)] * plan.flow.astype(np.int64)).sum())
 
 
+def _material(problem: SupportProblem, plan: SupportPlan) -> float:
+    """Return the material of all edges in use, mm3 in the chosen cell."""
+    return float(np.array(problem.material)[np.minimum(plan.direction, 1)].sum())
+
+
 def _squares(problem: SupportProblem, plan: SupportPlan) -> int:
     """Count the squares from which an edge in use leads down."""
+    return len(np.unique(_number(problem, plan, 0)))
+
+
+def _most_in_a_square(problem: SupportProblem, plan: SupportPlan) -> int:
+    """Return the greatest number of paths that leave a square, or that arrive at one."""
+    most = 0
+    for end in (0, 1):
+        _, square = np.unique(_number(problem, plan, end), return_inverse=True)
+        most = max(most, int(np.bincount(square, weights=plan.flow).max(initial=0)))
+    return most
+
+
+def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Longs:
+    """Return the number of each edge's upper (0) or lower (1) square."""
     _, ny, nx = problem.cubes.shape
-    return len(np.unique((plan.plane.astype(np.int64) * ny + plan.y) * nx + plan.x))
+    step = end * np.array(DIRECTIONS, np.int64)[plan.direction]
+    plane = plan.plane.astype(np.int64) - end
+    return np.asarray((plane * ny + plan.y + step[:, 0]) * nx + plan.x + step[:, 1])
+
+
+def _forget_peak() -> None:
+    """Let the peak of this process start anew, where Linux can do that."""
+    with suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 
 
 def _peak_mb() -> int | None:
-    """Return the greatest memory this process has held; Linux counts in KiB, macOS in bytes."""
+    """Return the greatest memory of this process since the last reset; None where the system does not tell."""
+    with suppress(OSError):
+        status = Path("/proc/self/status").read_text(encoding="ascii")
+        return int(status.split("VmHWM:")[1].split()[0]) // 2**10
     if sys.platform == "win32":
         return None
     import resource
