@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
+from amprep.cli.bench_support_volume import support_volume
 from amprep.cli.bench_supports import supports
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ app = typer.Typer(
     no_args_is_help=True, help="Benchmarks: rerun published instances; every answer is judged anew."
 )
 app.command("supports")(supports)
+app.command("support-volume")(support_volume)
 
 TimeLimit = Annotated[float, typer.Option("--time-limit", metavar="S", min=0.0, help="Seconds an instance.")]
 PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to run.")]

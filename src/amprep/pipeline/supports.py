@@ -1,12 +1,12 @@
 """Plans the supports of a build: needs, grid, red squares, routing, groups (thesis 3.2)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
 
 from amprep.checks.needs import needs_of
-from amprep.model.arrays import Bools, Ints
+from amprep.model.arrays import Bools, Bytes, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
@@ -47,6 +47,7 @@ def plan_supports(
     least_length: float = 0.5,
     share_between_parts: Literal["avoid", "allow"] = "avoid",
     slender: float | None = None,
+    only: Callable[[Bytes, RedSquares], Bools] | None = None,
     stop: Stop,
     report: Report,
 ) -> SupportLayout:
@@ -67,6 +68,8 @@ def plan_supports(
         one network.
     slender
         Columns higher than so many times their width are joined to others; None joins none.
+    only
+        Tells from the cubes which red squares to connect; the others are left out. None connects all.
 
     Raises
     ------
@@ -91,6 +94,9 @@ def plan_supports(
     ]
     cubes, meeting = coloured(frame, space, blocks)
     red = red_squares(cubes, meeting, blocks)
+    if only is not None:
+        keep = only(cubes, red)
+        red = RedSquares(*(each[keep] for each in red))
     if gap > 0:
         close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=overhang_angle_deg)
     report(0.15, "grid laid")
