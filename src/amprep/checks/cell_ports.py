@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 PORTS = "ports match"
 SIDE_NAMES = ("left", "right", "front", "back", "bottom", "top")
 
-LEAST_SHARED = 0.02
-"""Share of the larger port by which two may differ: polygons are no circles."""
+MOST_DIFFERENT = 0.05
+"""Share of the larger port by which two may differ: struts that come at a flat angle leave the ball a little."""
 
 LEAST_HELD = 0.25
 """Share of the smaller port that has to stand on the other one where the way bends or the cell changes."""
@@ -88,7 +88,7 @@ class _Ports:
         ours, theirs = self.section(low, 2 * axis + 1), self.section(high, 2 * axis)
         areas = float(ours.area()), float(theirs.area())
         common = float((ours ^ theirs).area())
-        if same and sum(areas) - 2.0 * common > LEAST_SHARED * max(*areas, 1e-12) + SNAP:
+        if same and sum(areas) - 2.0 * common > MOST_DIFFERENT * max(*areas, 1e-12) + SNAP:
             return [self._differs(axis, low, high, areas, common)]
         if (axis == 2 and common < LEAST_HELD * min(areas) - SNAP) or (axis == 2 and min(areas) < SNAP):
             names = self.templates[high].name, self.templates[low].name

@@ -18,6 +18,9 @@ SIDES = 8
 """Corners of a strut's cross-section; it has the area of the circle."""
 
 _BALL_SEGMENTS = 8
+_SQUARE = 0.999
+"""Sine; from there on a strut meets a side squarely, its cut is its cross-section."""
+
 _FLATTEST = 0.5
 """Sine; where struts meet a side flatter than that, balls at the ports no longer grow (30 degrees)."""
 
@@ -72,22 +75,26 @@ def angles_deg(points: Floats, struts: Ints, linear: Floats) -> Floats:
 
 
 def _balls(graph: Graph, linear: Floats) -> list[tuple[int, float]]:
-    """Return the radius of the ball at each point, mm."""
+    """Return the points that need a ball, and its radius in mm: all but ports where one strut ends squarely."""
     normals = np.linalg.inv(linear)  # row k is normal to the mapped sides across axis k
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     radius = np.zeros(len(graph.points))
+    squarely = np.bincount(graph.struts.ravel(), minlength=len(radius)) == 1
     for (a, b), radii in zip(graph.struts.tolist(), graph.radii.tolist(), strict=True):
         along = linear @ (graph.points[b] - graph.points[a])
         slope = np.abs(normals @ along) / np.linalg.norm(along)
         for end, own in ((a, radii[0]), (b, radii[1])):
             flush = (graph.points[end] == 0.0) | (graph.points[end] == 1.0)
             crossed = slope[flush & (slope > 1e-9)]
-            widest = own / max(float(crossed.min(initial=1.0)), _FLATTEST)
-            radius[end] = max(radius[end], widest)
+            steepest = float(crossed.min(initial=1.0))
+            squarely[end] &= len(crossed) == 1 and steepest > _SQUARE
+            radius[end] = max(radius[end], own / max(steepest, _FLATTEST))
+    # a port is one place with its images on the opposite sides
     place = first_of_equal_rows(np.where(graph.points == 1.0, 0.0, graph.points))
-    largest = np.zeros(len(radius))
-    np.maximum.at(largest, place, radius)  # a port is one place with its images on the opposite sides
-    return list(enumerate(largest[place].tolist()))
+    largest, plain = np.zeros(len(radius)), np.ones(len(radius), np.bool_)
+    np.maximum.at(largest, place, radius)
+    np.logical_and.at(plain, place, squarely)
+    return [(i, float(largest[place[i]])) for i in np.flatnonzero(~plain[place]).tolist()]
 
 
 def _ball(centre: Floats, radius: float) -> "Manifold":

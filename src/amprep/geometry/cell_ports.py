@@ -17,7 +17,7 @@ SNAP = 1e-5
 PLANE_AXES = ((1, 2), (2, 0), (0, 1))
 """The two other axes u, v of each axis, so that u, v and the axis are right-handed."""
 
-_MOST_ROUNDS = 8
+_MOST_ROUNDS = 32
 
 
 class Outlines(NamedTuple):
@@ -107,26 +107,30 @@ def _share_corners(points: Floats, triangles: Ints) -> tuple[Floats, Ints, bool]
             nearest, near = known[gap.argmin(axis=1)], gap.min(axis=1) < SNAP
             points = points.copy()
             points[np.ix_(nearest[near], [u, v])] = points[np.ix_(wanted[near], [u, v])]
-            for vertex in wanted[~near]:
-                edge = _edge_at(points, borders[1], points[vertex], (u, v))
-                if edge is not None:
-                    place = points[vertex].copy()
-                    place[axis] = float(there)
-                    points, triangles = _split(points, triangles, edge, place)
-                    changed = True
-                    break  # the border has changed
+            found = _on_edge(points, borders[1], points[wanted[~near]], (u, v))
+            if found is not None:
+                vertex, edge = found
+                place = points[wanted[~near][vertex]].copy()
+                place[axis] = float(there)
+                points, triangles = _split(points, triangles, edge, place)
+                changed = True
     return points, triangles, changed
 
 
-def _edge_at(points: Floats, border: Ints, place: Floats, plane: tuple[int, int]) -> tuple[int, int] | None:
-    """Return the border edge inside which a place lies, seen along the axis."""
+def _on_edge(
+    points: Floats, border: Ints, places: Floats, plane: tuple[int, int]
+) -> tuple[int, tuple[int, int]] | None:
+    """Return the first place ``(k, 3)`` that lies inside a border edge seen along the axis, and that edge."""
     start, end = points[border[:, 0]][:, plane], points[border[:, 1]][:, plane]
-    along, to = end - start, place[list(plane)] - start
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-300)
-    share = np.einsum("ij,ij->i", along, to) / length**2
-    away = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / length
-    found = np.flatnonzero((away < SNAP) & (share > 0.0) & (share < 1.0))
-    return (int(border[found[0], 0]), int(border[found[0], 1])) if len(found) else None
+    along, to = (end - start)[None], places[:, None, list(plane)] - start[None]
+    length = np.maximum(np.linalg.norm(along, axis=2), 1e-300)
+    share = (along * to).sum(axis=2) / length**2
+    away = np.abs(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]) / length
+    found = np.argwhere((away < SNAP) & (share > 0.0) & (share < 1.0))
+    if not len(found):
+        return None
+    vertex, edge = found[0].tolist()
+    return vertex, (int(border[edge, 0]), int(border[edge, 1]))
 
 
 def _split(points: Floats, triangles: Ints, edge: tuple[int, int], place: Floats) -> Arrays:

@@ -22,10 +22,8 @@ _CORNER = 1.75
 """A ball in the corner of a cube leaves points up to the root of three times its radius from its centre."""
 
 
-def feature_and_hole(
-    meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats, steps: int
-) -> tuple[float | None, float | None, float]:
-    """Return the smallest feature and the narrowest way out sideways, mm, and the share that is closed in.
+def feature(meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats, steps: int) -> float | None:
+    """Return the smallest feature of a block, mm, to within a voxel; None when it is empty.
 
     Parameters
     ----------
@@ -38,14 +36,28 @@ def feature_and_hole(
     steps
         Voxels along each side of a cube.
     """
+    return _thinnest(_block(meshes, template, place, steps), size / steps)
+
+
+def way_out(
+    meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats, steps: int
+) -> tuple[float | None, float]:
+    """Return the diameter of the largest ball that gets out sideways from most of the void, mm, and closed pockets.
+
+    The plate lies below, the part above: the ways out are the four sides. Pockets are a share of the block's
+    volume; without any void there is no ball. The parameters are those of `feature`.
+    """
+    return _way_out(~_block(meshes, template, place, steps), size / steps)
+
+
+def _block(meshes: Sequence[Arrays], template: Ints, place: Ints, steps: int) -> Bools:
+    """Tell which voxels of the block are solid."""
     cubes = [_voxels(mesh, steps) for mesh in meshes]
     extent = place.max(axis=0) + 1
     block = np.zeros(tuple((extent * steps).tolist()), np.bool_)
     for index, (x, y, z) in zip(template.tolist(), (place * steps).tolist(), strict=True):
         block[x : x + steps, y : y + steps, z : z + steps] |= cubes[index]
-    spacing = size / steps
-    hole, pocket = _way_out(~block, spacing)
-    return _feature(block, spacing), hole, pocket
+    return block
 
 
 def _voxels(mesh: Arrays, steps: int) -> Bools:
@@ -58,7 +70,7 @@ def _voxels(mesh: Arrays, steps: int) -> Bools:
     return found.reshape(steps, steps, steps)
 
 
-def _feature(solid: Bools, spacing: Floats) -> float | None:
+def _thinnest(solid: Bools, spacing: Floats) -> float | None:
     """Return the largest diameter of a ball that, rolled inside, leaves nothing out but corners."""
     from scipy.ndimage import distance_transform_edt
 
@@ -76,14 +88,11 @@ def _feature(solid: Bools, spacing: Floats) -> float | None:
         reached = distance_transform_edt(~centres, sampling=spacing) <= _CORNER * radius + half
         missed = (solid & ~reached).sum() / solid.sum()
         low, high = (radius, high) if missed <= _SHARE_THIN else (low, radius)
-    return max(2.0 * (low - half), 0.0)  # distances are those of the middles of voxels
+    return max(2.0 * low - half, 0.0)  # k voxels from middle to middle: 2 k - 1 or 2 k across
 
 
 def _way_out(void: Bools, spacing: Floats) -> tuple[float | None, float]:
-    """Return the diameter of the largest ball that gets out from most of the void, and the share of closed pockets.
-
-    The plate lies below, the part above: the ways out are the four sides.
-    """
+    """Return what `way_out` does."""
     from scipy.ndimage import distance_transform_edt
 
     open_ = _reaching_sides(void)
@@ -109,7 +118,7 @@ def _way_out(void: Bools, spacing: Floats) -> tuple[float | None, float]:
         )
         stays = (deepest & ~reached).sum() / max(int(deepest.sum()), 1)
         low, high = (radius, high) if stays <= _SHARE_LEFT else (low, radius)
-    return max(2.0 * (low - half), 0.0), pocket
+    return max(2.0 * low - half, 0.0), pocket
 
 
 def _reaching_sides(free: Bools) -> Bools:

@@ -1,5 +1,6 @@
 """The crossing walls of the hatch as a template in the unit cube, with windows, teeth and gaps cut into them."""
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -42,6 +43,7 @@ class Walls(NamedTuple):
     gap: tuple[float, float] = (0.0, 0.0)
 
 
+@lru_cache(64)
 def hatch_template(walls: Walls) -> Template:
     """Return the walls as one closed mesh; opposite sides have the same triangles where no gap is."""
     from manifold3d import Manifold, OpType

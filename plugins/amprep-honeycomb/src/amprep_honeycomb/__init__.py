@@ -1,0 +1,14 @@
+"""Lattice cells that are nothing but files: every TOML and mesh file in this folder is one."""
+
+from collections.abc import Iterator
+
+from amprep.cells import cells_in
+from amprep.hookspecs import CellEmitter, hookimpl
+
+amprep_api = 1
+
+
+@hookimpl
+def amprep_cell_emitters() -> Iterator[CellEmitter]:
+    """Yield the cells in this folder."""
+    yield from cells_in(__file__)
