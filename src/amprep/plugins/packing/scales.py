@@ -39,7 +39,8 @@ def measures(length: Floats) -> Floats:
 
 def _cuts(length: Floats) -> Floats:
     """Return thresholds up to a half at which something changes, evenly chosen."""
-    cuts = np.unique(np.round(np.concatenate((length, 1.0 - length)), 12))
+    cuts = np.concatenate((length, 1.0 - length))
+    cuts = cuts[np.unique(np.round(cuts, 12), return_index=True)[1]]
     cuts = cuts[(cuts > 1e-6) & (cuts <= 0.5 + ROUNDING)]
     if len(cuts) > MOST_CUTS:
         cuts = cuts[np.linspace(0, len(cuts) - 1, MOST_CUTS).astype(int)]
@@ -47,10 +48,13 @@ def _cuts(length: Floats) -> Floats:
 
 
 def _rounded(length: Floats, cut: Floats) -> Floats:
-    """Return f_2 for each cut ``(c, 1)``: small lengths in whole cuts, large ones as what they leave."""
-    cuts = np.floor(1.0 / cut + 1e-9)
-    large = 2.0 * (cuts - np.floor((1.0 - length) / cut + 1e-9))
-    small = 2.0 * np.floor(length / cut + 1e-9)
+    """Return f_2 for each cut ``(c, 1)``: small lengths in whole cuts, large ones as what they leave.
+
+    What limits is rounded up from further below than what is limited, so that rounding never proves too much.
+    """
+    cuts = np.floor(1.0 / cut + 1e-7)
+    large = 2.0 * (cuts - np.floor((1.0 - length) / cut + 1e-7))
+    small = 2.0 * np.floor(length / cut + 1e-10)
     half = np.abs(length - 0.5) <= ROUNDING
     return np.asarray(np.where(half, cuts, np.where(length > 0.5, large, small)) / (2.0 * cuts))
 
