@@ -13,7 +13,7 @@ GRID = -1
 MOST_KINDS = 6
 """Kinds of boxes in one block, at most."""
 
-MOST_PAIRS = 20_000_000
+MOST_PAIRS = 10_000_000
 """Pairs of blocks looked at, at most; some 0.1 s."""
 
 

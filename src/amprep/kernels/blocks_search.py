@@ -10,11 +10,14 @@ import numpy as np
 from numba import njit
 
 from amprep.kernels.blocks_making import MOST_KINDS
-from amprep.kernels.blocks_spaces import anchor, contact, cut, measure_reach, nearest, neighbours, put
+from amprep.kernels.blocks_spaces import anchor, contact, cut, measure_reach, nearest, neighbours, put, sift
 from amprep.kernels.box_places import Array, Indices, helper
 
-SPACES, PLACED, ALIVE = 0, 1, 2
+SPACES, PLACED, ALIVE, SMALL = 0, 1, 2, 3
 """Places in the counts of a state."""
+
+MOST_SMALL = 32
+"""Small boxes kept for telling which spaces are of no use."""
 
 STOP, WORK, LIMIT, LENGTH, MET, MORE = 0, 1, 2, 3, 4, 5
 """Places in the control: told to stop; work done and allowed; blocks in the best, work done when it was found;
@@ -40,6 +43,8 @@ class Blocks(NamedTuple):
         ``(b,)`` what its boxes are worth.
     base
         ``(b,)`` its merit if it touched something all around and wasted nothing.
+    single
+        ``(s,)`` int64 which blocks are single boxes, least volume first.
     """
 
     size: Indices
@@ -47,6 +52,7 @@ class Blocks(NamedTuple):
     number: Indices
     value: Array
     base: Array
+    single: Indices
 
 
 class Room(NamedTuple):
@@ -56,8 +62,6 @@ class Room(NamedTuple):
     ----------
     box
         ``(6,)`` int64 corners of the room.
-    least
-        ``(3,)`` int64 least sides of any box.
     sides, starts
         The sides of boxes in steps of ``1 << shift``, see `measure_reach`.
     margin
@@ -71,7 +75,6 @@ class Room(NamedTuple):
     """
 
     box: Indices
-    least: Indices
     sides: Indices
     starts: Indices
     margin: Indices
@@ -96,8 +99,10 @@ class States(NamedTuple):
         ``(w, 3, l)`` int64, see `measure_reach`.
     alive
         ``(w, b)`` int32 blocks of which there may be enough boxes.
+    small
+        ``(w, MOST_SMALL, 3)`` int64 sides: a space in which none of these fits is of no use.
     counts
-        ``(w, 3)`` int64 numbers of spaces, placed boxes and such blocks.
+        ``(w, 4)`` int64 numbers of spaces, placed boxes, such blocks and small boxes.
     value
         ``(w,)``.
     """
@@ -107,6 +112,7 @@ class States(NamedTuple):
     stock: Indices
     reach: Indices
     alive: np.ndarray
+    small: Indices
     counts: Indices
     value: Array
 
@@ -116,8 +122,9 @@ class Scratch(NamedTuple):
 
     Attributes
     ----------
-    fresh, near, box, words
-        ``(f, 8)`` cut spaces, ``(p,)`` neighbours, ``(6,)`` a box, uint64 bits of `measure_reach`.
+    fresh, touching, near, box, words
+        ``(f, 8)`` cut spaces, ``(s,)`` spaces beside a cut, ``(p,)`` neighbours, ``(6,)`` a box, and the
+        bits of `measure_reach`.
     block, merit
         ``(m,)`` the best blocks for a space.
     parent, child, space, worth
@@ -125,6 +132,7 @@ class Scratch(NamedTuple):
     """
 
     fresh: Indices
+    touching: Indices
     near: Indices
     box: Indices
     words: np.ndarray
@@ -147,7 +155,10 @@ def _copy(states, source, target):
             states.placed[target, p, c] = states.placed[source, p, c]
     for k in range(states.stock.shape[1]):
         states.stock[target, k] = states.stock[source, k]
-    for c in range(3):
+    for k in range(states.counts[source, SMALL]):
+        for a in range(3):
+            states.small[target, k, a] = states.small[source, k, a]
+    for c in range(4):
         states.counts[target, c] = states.counts[source, c]
     states.value[target] = states.value[source]
 
@@ -239,8 +250,9 @@ def _place(states, row, s, b, blocks, room, scratch, control):
     states.value[row] += blocks.value[b]
     count = states.counts[row, SPACES]
     control[WORK] += 4 * count
+    small, number = states.small[row], states.counts[row, SMALL]
     states.counts[row, SPACES] = cut(
-        states.spaces[row], count, box, room.box, room.least, room.flat, scratch.fresh
+        states.spaces[row], count, box, room.box, small, number, room.flat, scratch.fresh, scratch.touching
     )
 
 
@@ -254,8 +266,38 @@ def _drop(states, row, s):
 
 
 @helper
+def _find_small(states, row, blocks):
+    """Write the smallest boxes in stock: every other is at least as long as one of them along each axis."""
+    small, number = states.small[row], 0
+    for k in range(blocks.single.size):
+        b = blocks.single[k]
+        if states.stock[row, blocks.kind[b, 0]] == 0:
+            continue
+        covered = False
+        for i in range(number):
+            inside = True
+            for a in range(3):
+                inside = inside and small[i, a] <= blocks.size[b, a]
+            covered = covered or inside
+        if covered:
+            continue
+        if number < MOST_SMALL:
+            for a in range(3):
+                small[number, a] = blocks.size[b, a]
+            number += 1
+        else:
+            for a in range(3):
+                small[number - 1, a] = min(small[number - 1, a], blocks.size[b, a])
+    states.counts[row, SMALL] = number
+
+
+@helper
 def _prune(states, source, living, row, blocks, target):
-    """Write the blocks for which there are enough boxes, and no side is too long; return their number."""
+    """Sort out spaces of no use, and write the blocks that may still be placed; return their number."""
+    _find_small(states, row, blocks)
+    states.counts[row, SPACES] = sift(
+        states.spaces[row], states.counts[row, SPACES], states.small[row], states.counts[row, SMALL]
+    )
     spaces, x, y, z = states.spaces, 0, 0, 0
     for s in range(states.counts[row, SPACES]):
         x = max(x, spaces[row, s, 3] - spaces[row, s, 0])
@@ -329,24 +371,24 @@ def _expand(states, first, count, most, blocks, room, scratch, best, best_value,
 
 
 @helper
-def _start(states, row, standing, columns, room, fresh):
+def _start(states, row, standing, columns, blocks, room, scratch):
     """Write the spaces beside what stands into a state; from `columns` on it stands alone when flat."""
     spaces, count, kept = states.spaces[row], np.int64(1), 0
+    _find_small(states, row, blocks)
+    small, number = states.small[row], states.counts[row, SMALL]
     for c in range(6):
         spaces[0, c] = room.box[c]
-    anchor(spaces[0], room.box, room.flat)
     for j in range(standing.shape[0]):
         column = room.flat and j >= columns
-        count = cut(spaces, count, standing[j], room.box, room.least, column, fresh)
+        count = cut(
+            spaces, count, standing[j], room.box, small, number, column, scratch.fresh, scratch.touching
+        )
         for c in range(6):
             states.placed[row, j, c] = standing[j, c]
         states.placed[row, j, 6] = -1
     for s in range(count):
-        fits = not (room.flat and spaces[s, 2] > room.box[2])
-        for a in range(3):
-            fits = fits and spaces[s, 3 + a] - spaces[s, a] >= room.least[a]
-        if fits:
-            for c in range(8):
+        if not (room.flat and spaces[s, 2] > room.box[2]):
+            for c in range(6):
                 spaces[kept, c] = spaces[s, c]
             anchor(spaces[kept], room.box, room.flat)
             kept += 1
@@ -380,7 +422,7 @@ def search(width, standing, columns, states, blocks, room, scratch, best, best_v
     """
     control[MORE] = 0
     first, other, count = np.int64(FIRST), FIRST + width, np.int64(1)
-    _start(states, first, standing, columns, room, scratch.fresh)
+    _start(states, first, standing, columns, blocks, room, scratch)
     measure_reach(states.reach[first], scratch.words, room.sides, room.starts, states.stock[first])
     while count > 0:
         found = _expand(states, first, count, width, blocks, room, scratch, best, best_value, control)

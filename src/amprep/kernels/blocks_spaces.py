@@ -36,54 +36,94 @@ def _within(one, i, other, j):
 
 
 @helper
-def cut(spaces, count, box, room, least, flat, fresh):
-    """Cut what the box takes out of the spaces (in place); return how many there are then.
+def _holds(spaces, s, small, number):
+    """Whether one of the small boxes fits the space."""
+    x, y, z = spaces[s, 3] - spaces[s, 0], spaces[s, 4] - spaces[s, 1], spaces[s, 5] - spaces[s, 2]
+    k = 0
+    while k < number and (small[k, 0] > x or small[k, 1] > y or small[k, 2] > z):
+        k += 1
+    return k < number
 
-    Each space that the box meets gives way to the up to six that remain beside the box; those in which the
-    least sides ``(3,)`` do not fit, or that lie within another one, are dropped (Lai and Chan 1997). When
-    flat, nothing may lie above the box or below it.
-    """
-    kept, new = 0, 0
+
+@helper
+def sift(spaces, count, small, number):
+    """Drop the spaces in which none of the small boxes fits (in place); return how many are left."""
+    kept = 0
     for s in range(count):
-        apart = False
-        for a in range(3):
-            if not (flat and a == 2):
-                apart = apart or box[a] >= spaces[s, 3 + a] or box[3 + a] <= spaces[s, a]
-        if apart:
+        if _holds(spaces, s, small, number):
             if kept < s:
                 for c in range(8):
                     spaces[kept, c] = spaces[s, c]
             kept += 1
+    return kept
+
+
+@helper
+def cut(spaces, count, box, room, small, number, flat, fresh, touching):
+    """Cut what the box takes out of the spaces (in place); return how many there are then.
+
+    Each space that the box meets gives way to the up to six that remain beside the box; those in which none
+    of the small boxes fits, or that lie within another one, are dropped (Lai and Chan 1997). When flat,
+    nothing may lie above the box or below it. `fresh` ``(f, 8)`` and `touching` ``(s,)`` are scratch.
+    """
+    kept, gone, near = 0, 0, 0
+    for s in range(count):
+        apart, touches = False, False
+        for a in range(3):
+            if not (flat and a == 2):
+                apart = apart or box[a] >= spaces[s, 3 + a] or box[3 + a] <= spaces[s, a]
+                touches = touches or box[a] == spaces[s, 3 + a] or box[3 + a] == spaces[s, a]
+        if not apart:
+            for c in range(6):
+                fresh[gone, c] = spaces[s, c]
+            gone += 1
             continue
-        for side in range(6):
-            a = side % 3
-            left = box[a] - spaces[s, a] if side < 3 else spaces[s, 3 + a] - box[3 + a]
-            if left < least[a] or new == fresh.shape[0] or (flat and a == 2):
+        if kept < s:
+            for c in range(8):
+                spaces[kept, c] = spaces[s, c]
+        if touches:
+            touching[near] = kept
+            near += 1
+        kept += 1
+    for side in range(6):
+        a = side % 3
+        if flat and a == 2:
+            continue
+        # only a space that touches the same side of the box can hold a fresh one
+        first, new = gone, gone
+        for s in range(gone):
+            left = box[a] - fresh[s, a] if side < 3 else fresh[s, 3 + a] - box[3 + a]
+            if left <= 0:
                 continue
             for c in range(6):
-                fresh[new, c] = spaces[s, c]
+                fresh[new, c] = fresh[s, c]
             if side < 3:
                 fresh[new, 3 + a] = box[a]
             else:
                 fresh[new, a] = box[3 + a]
-            new += 1
-    total = kept
-    for i in range(new):
-        inside = False
-        for j in range(kept):
-            if _within(fresh, i, spaces, j):
-                inside = True
-                break
-        j = 0
-        while not inside and j < new:
-            inside = j != i and _within(fresh, i, fresh, j) and (j < i or not _within(fresh, j, fresh, i))
-            j += 1
-        if not inside and total < spaces.shape[0]:
-            for c in range(6):
-                spaces[total, c] = fresh[i, c]
-            anchor(spaces[total], room, flat)
-            total += 1
-    return total
+            inside, j = not _holds(fresh, new, small, number), 0
+            while not inside and j < near:
+                inside = _within(fresh, new, spaces, touching[j])
+                j += 1
+            j = first
+            while not inside and j < new:
+                inside = _within(fresh, new, fresh, j)
+                if not inside and _within(fresh, j, fresh, new):
+                    new -= 1
+                    for c in range(6):
+                        fresh[j, c] = fresh[new, c]
+                        fresh[new, c] = fresh[new + 1, c]
+                else:
+                    j += 1
+            if not inside:
+                new += 1
+        for s in range(first, new):
+            if kept < spaces.shape[0]:
+                for c in range(6):
+                    spaces[kept, c] = fresh[s, c]
+                anchor(spaces[kept], room, flat)
+                kept += 1
+    return kept
 
 
 @helper

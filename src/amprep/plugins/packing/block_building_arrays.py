@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.kernels.blocks_search import Room, Scratch, States
+from amprep.kernels.blocks_search import MOST_SMALL, Room, Scratch, States
 from amprep.plugins.packing.block_building_scene import Whole
 
 STEPS = 2048
@@ -60,7 +60,6 @@ def room_of(whole: Whole, sizes: Sizes, *, margin: float, power: int, flat: bool
     ]
     return Room(
         box=whole.room,
-        least=whole.singles.min(axis=0),
         sides=np.concatenate(sides),
         starts=np.cumsum([0, *map(len, sides)]),
         margin=(whole.room[3:] * margin).astype(np.int64),
@@ -79,7 +78,8 @@ def states_of(sizes: Sizes, rows: int) -> States:
         stock=np.zeros((rows, sizes.kinds), np.int64),
         reach=np.zeros((rows, 3, sizes.steps), np.int64),
         alive=np.zeros((rows, sizes.blocks), np.int32),
-        counts=np.zeros((rows, 3), np.int64),
+        small=np.zeros((rows, MOST_SMALL, 3), np.int64),
+        counts=np.zeros((rows, 4), np.int64),
         value=np.zeros(rows),
     )
 
@@ -87,7 +87,8 @@ def states_of(sizes: Sizes, rows: int) -> States:
 def scratch_of(sizes: Sizes, width: int) -> Scratch:
     """Return work arrays for a beam of `width` states with as many successors each."""
     return Scratch(
-        fresh=np.zeros((6 * sizes.spaces, 8), np.int64),
+        fresh=np.zeros((2 * sizes.spaces + 1, 8), np.int64),
+        touching=np.zeros(sizes.spaces, np.int64),
         near=np.zeros(sizes.boxes, np.int64),
         box=np.zeros(6, np.int64),
         words=np.zeros(sizes.steps // 64 + 1, np.uint64),

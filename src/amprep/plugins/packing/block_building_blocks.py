@@ -66,9 +66,10 @@ def build_blocks(
     )  # fmt: skip
     base = making.value[:made] * making.number[:made].sum(axis=1) ** -count_power
     order = np.argsort(-base, kind="stable")
-    blocks = Blocks(
-        making.size[order], making.kind[order], making.number[order], making.value[order], base[order]
-    )
+    size, number = making.size[order], making.number[order]
+    single = np.flatnonzero(number.sum(axis=1) == 1)
+    single = single[np.argsort(size[single].astype(np.float64).prod(axis=1), kind="stable")]
+    blocks = Blocks(size, making.kind[order], number, making.value[order], base[order], single)
     return Built(blocks, making, order, whole.singles)
 
 

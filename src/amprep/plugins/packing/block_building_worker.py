@@ -13,6 +13,12 @@ from amprep.plugins.packing.block_building_arrays import room_of, scratch_of, si
 from amprep.plugins.packing.block_building_blocks import Built, build_blocks
 from amprep.plugins.packing.block_building_scene import Whole
 
+WASTEFUL = 0.98
+"""Least share of a block's box that its boxes take up where blocks are few."""
+
+FEW = 4
+"""Blocks for each single box below which there are too few."""
+
 
 @dataclass(frozen=True)
 class Manner:
@@ -21,7 +27,7 @@ class Manner:
     Attributes
     ----------
     fill
-        Least share of a block's box that its boxes take up.
+        Least share of a block's box that its boxes take up; `WASTEFUL` when that gives too few blocks.
     grids
         Share of the blocks that are grids of equal boxes, at most.
     power
@@ -32,7 +38,7 @@ class Manner:
         Distance that counts as touching, as a share of the room's side.
     """
 
-    fill: float = 0.98
+    fill: float = WASTEFUL
     grids: float = 0.0
     power: int = 4
     count: float = 0.2
@@ -85,14 +91,16 @@ class Worker:
         return self.filling
 
     def _build(self, most: int) -> Built:
+        """Build at most so many blocks."""
+        manner = self.manner
+        built = self._build_with(most, manner.fill)
+        enough = min(FEW * len(self.whole.singles), most)
+        return built if len(built.origin) >= enough else self._build_with(most, min(manner.fill, WASTEFUL))
+
+    def _build_with(self, most: int, fill: float) -> Built:
         manner = self.manner
         return build_blocks(
-            self.whole,
-            most,
-            fill=manner.fill,
-            grids=manner.grids,
-            count_power=manner.count,
-            flat=self.flat,
+            self.whole, most, fill=fill, grids=manner.grids, count_power=manner.count, flat=self.flat
         )
 
     def _search(self, built: Built, width: int, *, refill: bool = False) -> bool:
