@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from amprep.plugins.packing.column_generation_columns import (
     single_columns,
 )
 from amprep.plugins.packing.column_generation_cover import Fractional, fractional_cover, whole_cover
+from amprep.plugins.packing.cover_bound import CoverBound
 from amprep.plugins.packing.extreme_points import pack_extreme_points
 from amprep.plugins.packing.ip import as_packing, pack_ip, settled
 from amprep.plugins.packing.ip_params import ColumnGenerationParams
@@ -49,7 +51,8 @@ def pack_column_generation(
 ) -> Packing:
     """Pack into the fewest builds by column generation (thesis 2.1, last paragraph).
 
-    The master problem covers the items by builds; its dual values are the rewards of a fill problem that
+    First `CoverBound` raises the bound by the same scheme over sets of boxes that are not proved impossible.
+    Then the master problem covers the items by builds; its dual values are the rewards of a fill problem that
     looks for a build worth more than 1, by extreme points and, where that finds none, by the integer program.
     The bound is proved each time the program bounds what a build is worth: by dual values divided by
     max(1, that bound) (Farley 1990, doi:10.1287/opre.38.5.922). Then builds are chosen in whole numbers, by
@@ -59,9 +62,14 @@ def pack_column_generation(
     scene = prepare(problem)
     if settled(scene, known, stop):
         return known
-    demand, least = demand_of(scene), max(1, builds_bound(scene))
     columns = [*columns_of(scene, known), *single_columns(scene)]
     best, most, reason = columns[: len(known.builds)], len(known.builds), "finished"
+    relaxed = CoverBound(scene, max(1, builds_bound(scene)))
+    relaxed.prove(lambda: most, params.proof * 1e6, stop)
+    demand, least = demand_of(scene), relaxed.builds
+    if least >= most:
+        status = known.status if known.unplaced else "optimal"
+        return replace(known, bound=float(least), status=status, stop_reason="bound met")
     cover = fractional_cover(columns, demand, params)
     for number in range(params.rounds):
         report(number / max(params.rounds, 1), f"{least} to {most} builds")

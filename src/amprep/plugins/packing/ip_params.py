@@ -95,15 +95,19 @@ class ColumnGenerationParams(IpParams):
         Of the heuristic that prices before the program does: disturbed copies of its best order.
     roundings
         So many beginnings of the fractional cover are completed by the heuristic.
+    proof
+        Millions of comparisons spent on the bound over sets that may fit; some 170 a second.
     """
 
     effort: float = 0.01
     rounds: int = 60
     restarts: int = 10
     roundings: int = 8
+    proof: float = 400.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         _at_least("rounds", self.rounds, 0)
         _at_least("restarts", self.restarts, 0)
         _at_least("roundings", self.roundings, 0)
+        _at_least("proof", self.proof, 0)
