@@ -26,8 +26,8 @@ LEAST_HELD = 0.25
 def check_ports(request: CellRequest, cells: Cells) -> list[Violation]:
     """Judge every pair of neighbours of the answer, each pair of templates once.
 
-    Side by side under one map, both have to look the same on the common side. One on another, they have to stand
-    on one another; where the way goes on straight and the templates are the same, they have to look the same too.
+    Side by side under one map, both have to look the same on the common side, unless one keeps away from it. One
+    on another, they have to stand on one another; when the templates are the same, they have to look the same too.
     """
     ports = _Ports(cells.templates)
     found = [
@@ -88,7 +88,8 @@ class _Ports:
         ours, theirs = self.section(low, 2 * axis + 1), self.section(high, 2 * axis)
         areas = float(ours.area()), float(theirs.area())
         common = float((ours ^ theirs).area())
-        if same and sum(areas) - 2.0 * common > MOST_DIFFERENT * max(*areas, 1e-12) + SNAP:
+        apart = axis != 2 and min(areas) < SNAP
+        if same and not apart and sum(areas) - 2.0 * common > MOST_DIFFERENT * max(*areas, 1e-12) + SNAP:
             return [self._differs(axis, low, high, areas, common)]
         if (axis == 2 and common < LEAST_HELD * min(areas) - SNAP) or (axis == 2 and min(areas) < SNAP):
             names = self.templates[high].name, self.templates[low].name

@@ -115,7 +115,8 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> Measures:
     hole, pocket = way_out(meshes, template[chosen], place[chosen], size, steps)
     few = chosen & (place < (2, 2, 3)).all(axis=1)
     thinnest = feature(meshes, template[few], place[few], size, FINER * steps)
-    return Measures(density, thinnest, hole, pocket)
+    # what no voxel's middle lies in is thinner than a voxel
+    return Measures(density, thinnest or 0.0, hole, pocket)
 
 
 def check_measures(measures: Measures, limits: Limits, accuracy: float) -> list[Violation]:

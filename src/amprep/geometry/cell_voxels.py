@@ -82,13 +82,13 @@ def _thinnest(solid: Bools, spacing: Floats) -> float | None:
     inner = distance_transform_edt(np.pad(solid, 1, mode="edge"), sampling=spacing)[1:-1, 1:-1, 1:-1]
     half = float(spacing.max()) / 2.0
     low, high = half, float(inner.max())
-    while high - low > half / 2.0:
+    while high - low > half / 4.0:
         radius = (low + high) / 2.0
         centres = inner >= radius
         reached = distance_transform_edt(~centres, sampling=spacing) <= _CORNER * radius + half
         missed = (solid & ~reached).sum() / solid.sum()
         low, high = (radius, high) if missed <= _SHARE_THIN else (low, radius)
-    return max(2.0 * low - half, 0.0)  # k voxels from middle to middle: 2 k - 1 or 2 k across
+    return max(2.0 * low - half / 2.0, 0.0)  # k voxels from middle to middle: 2 k - 1 or 2 k across
 
 
 def _way_out(void: Bools, spacing: Floats) -> tuple[float | None, float]:
@@ -106,7 +106,7 @@ def _way_out(void: Bools, spacing: Floats) -> tuple[float | None, float]:
     deepest = void & middle
     half = float(spacing.max()) / 2.0
     low, high = 0.0, float(clear.max()) + half
-    while high - low > half / 2.0:
+    while high - low > half / 4.0:
         radius = (low + high) / 2.0
         free = clear >= radius
         leaves = _reaching_sides(free)
@@ -118,7 +118,7 @@ def _way_out(void: Bools, spacing: Floats) -> tuple[float | None, float]:
         )
         stays = (deepest & ~reached).sum() / max(int(deepest.sum()), 1)
         low, high = (radius, high) if stays <= _SHARE_LEFT else (low, radius)
-    return max(2.0 * low - half, 0.0), pocket
+    return max(2.0 * low - half / 2.0, 0.0), pocket
 
 
 def _reaching_sides(free: Bools) -> Bools:

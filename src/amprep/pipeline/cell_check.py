@@ -72,6 +72,7 @@ def check_cell(
     pitch: float = 2.0,
     strut_angle_deg: float = 45.0,
     limits: Limits | None = None,
+    steps: int = STEPS,
 ) -> CellReport:
     """Judge one cell on a grid.
 
@@ -81,6 +82,8 @@ def check_cell(
         Parameters of the cell, as in a job.
     limits
         Left out: what the cell itself promises, or else the usual.
+    steps
+        Voxels along each side of a cell when it is measured.
 
     Raises
     ------
@@ -108,8 +111,8 @@ def check_cell(
     first = answers["upright edges"]
     measures = Measures(0.0, None, None, 0.0)
     if not found or all(violation.promise not in _UNSOUND for violation in found):
-        measures = measure(requests["upright edges"], first, STEPS)
-        found += check_measures(measures, limits, max(pitch, step) / STEPS)
+        measures = measure(requests["upright edges"], first, steps)
+        found += check_measures(measures, limits, max(pitch, step) / steps)
     templates = [template for cells in answers.values() for template in cells.templates]
     return CellReport(
         listed.offer.name,

@@ -1,0 +1,166 @@
+"""A cell judged by itself: each promise is broken by a cell made for it; the commands list and check."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from amprep.cells import cell_offer
+from amprep.checks.cell_ports import PORTS
+from amprep.checks.cell_print import FEATURE, HOLE, POCKET, STEEP, Limits
+from amprep.cli.cells import app
+from amprep.geometry.cell_voxels import feature, way_out
+from amprep.host import Host, Listed
+from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
+from amprep.pipeline.cell_check import check_cell
+from amprep.pipeline.trial_problems import box_mesh
+
+HOST = Host.load(plugins_enabled=False)
+PIN = GraphCell([[0.5, 0.5, 0], [0.5, 0.5, 1]], [[0, 1]], 0.4)
+
+
+def box(lo, hi):
+    return box_mesh(np.array(lo, np.float64), np.array(hi, np.float64))
+
+
+def both(one, other):
+    triangles = np.vstack([one.triangles, other.triangles + len(one.vertices)])
+    return Mesh(np.vstack([one.vertices, other.vertices]), triangles)
+
+
+def hollow(lo, hi):
+    inner = box(lo, hi)
+    return both(box((0, 0, 0), (1, 1, 1)), Mesh(inner.vertices, inner.triangles[:, ::-1]))
+
+
+def broken(cell, steps=12, **options):
+    listed = Listed("cell", cell_offer("x", "A cell.", cell), "test")
+    return {
+        violation.promise for violation in check_cell(HOST, listed, {}, steps=steps, **options).violations
+    }
+
+
+@pytest.mark.parametrize("name", ["prism", "x-wall", "strut", "bcc", "hatch"])
+def test_built_in_cells_keep_every_promise(name):
+    assert check_cell(HOST, HOST.choose("cell", name), {}).violations == ()
+
+
+def test_a_wall_without_gap_traps_powder_and_one_with_gap_does_not():
+    """Thesis 3.5: walls that touch their neighbours all the way up leave powder no way out."""
+    listed = HOST.choose("cell", "x-wall")
+    closed = check_cell(HOST, listed, {"join_every": 1}, steps=12)
+    assert {violation.promise for violation in closed.violations} == {POCKET, HOLE}
+    assert closed.measures.pocket > 0.3
+
+
+def test_an_open_mesh_is_not_closed_and_a_large_one_not_in_the_cube():
+    post = box((0.25, 0.25, 0), (0.75, 0.75, 1))
+    assert broken(MeshCell(Mesh(post.vertices, post.triangles[1:]))) == {"closed"}
+    assert broken(MeshCell(box((0.25, 0.25, 0), (0.75, 0.75, 1.5)))) == {"unit cube"}
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        MeshCell(box((0.25, 0.25, 0), (0.75, 0.75, 0.9))),  # does not reach the top
+        MeshCell(both(box((0, 0.2, 0), (0.4, 0.4, 1)), box((0.6, 0.6, 0), (1, 0.8, 1)))),
+        GraphCell([[0.2, 0.2, 0], [0.8, 0.8, 1]], [[0, 1]], 0.2),  # ends elsewhere than it begins
+    ],
+    ids=["too low", "sides differ", "strut ends elsewhere"],
+)
+def test_ports_that_do_not_match_are_found(cell):
+    assert PORTS in broken(cell)
+
+
+def test_a_variant_that_does_not_stand_on_the_other_is_found():
+    foot = MeshCell(box((0.0, 0.0, 0), (0.2, 0.2, 1)))
+    trunk = MeshCell(box((0.5, 0.5, 0), (0.9, 0.9, 1)))
+    assert PORTS in broken(DeclaredCell((Variant(foot, When(roles={"foot"})), Variant(trunk))))
+
+
+def test_struts_that_shear_makes_too_flat_are_found():
+    """A strut at 45 degrees against the way of an oblique edge is at atan(1 / 2) on it."""
+    points = [[0.5, 0.5, 0], [0.5, 0.5, 1], [0.0, 0.5, 0.5], [1.0, 0.5, 0.5]]
+    cell = GraphCell(points, [[0, 1], [0, 2], [0, 3]], 0.2)
+    assert broken(cell, limits=Limits(angle_deg=40)) == {STEEP}
+    assert broken(cell, limits=Limits(angle_deg=26)) == set()
+
+
+def test_wide_ceilings_are_found_and_narrow_ones_are_not():
+    def table(width):
+        post, top = box((0.4, 0.4, 0), (0.6, 0.6, 0.8)), box((0, 0.5 - width, 0.8), (1, 0.5 + width, 1))
+        from manifold3d import Manifold, Mesh64
+
+        solids = [Manifold(Mesh64(np.array(m.vertices), m.triangles.astype(np.uint64))) for m in (post, top)]
+        mesh = (solids[0] + solids[1]).to_mesh64()
+        return MeshCell(Mesh(mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int32)))
+
+    assert STEEP in broken(table(0.3))
+    assert STEEP not in broken(table(0.11))
+
+
+def test_thin_walls_and_narrow_gaps_are_found():
+    assert FEATURE in broken(MeshCell(box((0.48, 0, 0), (0.52, 1, 1))), limits=Limits(feature=0.2))
+    assert HOLE in broken(MeshCell(box((0.03, 0.0, 0), (0.97, 1.0, 1))), limits=Limits(hole=0.4), steps=24)
+
+
+def test_what_a_cell_promises_about_itself_counts():
+    strict = DeclaredCell((Variant(PIN),), smallest_feature=1.5, least_angle_deg=50)
+    assert broken(strict) == {STEEP, FEATURE}
+
+
+def test_a_closed_pocket_is_measured():
+    mesh = hollow((0.25, 0.25, 0.25), (0.75, 0.75, 0.75))
+    place = np.array([[x, y, 0] for x in range(3) for y in range(3)])
+    arrays = [(mesh.vertices, mesh.triangles.astype(np.int64))]
+    _, pocket = way_out(arrays, np.zeros(9, np.int64), place, np.full(3, 2.0), 16)
+    assert pocket == pytest.approx(0.125)
+
+
+@pytest.mark.parametrize("width", [0.2, 0.3, 0.5])
+def test_walls_and_gaps_are_measured_to_within_a_voxel(width):
+    mesh = box((0.5 - width / 2, 0, 0), (0.5 + width / 2, 1, 1))
+    place = np.array([[x, y, z] for x in range(3) for y in range(3) for z in range(2)])
+    arrays = (
+        [(mesh.vertices, mesh.triangles.astype(np.int64))],
+        np.zeros(18, np.int64),
+        place,
+        np.full(3, 2.0),
+    )
+    assert feature(*arrays, 24) == pytest.approx(2 * width, abs=2 / 24 * 1.5)
+    assert way_out(*arrays, 24)[0] == pytest.approx(2 - 2 * width, abs=2 / 24 * 1.5)
+
+
+TOML = """
+name = "tripod"
+summary = "A pin on three legs."
+author = "A. N. Engineer"
+licence = "CC0-1.0"
+points = [[0.5, 0.5, 0], [0.5, 0.5, 1]]
+struts = [[0, 1, 0.4]]
+"""
+
+
+def test_the_commands_list_and_check(tmp_path):
+    run = CliRunner().invoke
+    rows = {row["name"]: row for row in json.loads(run(app, ["list", "--json"]).output)}
+    assert rows["bcc"]["kinds"] == ["graph"]
+    assert rows["x-wall"]["kinds"] == ["code"]
+    assert rows["hatch"]["params"]["wall_mm"] == 0.25
+    assert "strut" in run(app, ["list"]).output
+
+    path, picture = tmp_path / "tripod.toml", tmp_path / "tripod.png"
+    path.write_text(TOML)
+    done = run(app, ["check", str(path), "--picture", str(picture), "--json"])
+    found = json.loads(done.output)
+    assert (done.exit_code, found["violations"], found["kinds"]) == (0, [], ["graph"])
+    assert (found["name"], found["author"], found["licence"]) == ("tripod", "A. N. Engineer", "CC0-1.0")
+    assert found["measures"]["density"] == pytest.approx(np.pi * 0.16 / 4, rel=1e-3)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+    flat = run(app, ["check", str(path), "--angle", "60"])
+    assert flat.exit_code == 1
+    assert "steep enough" in flat.output
+    thick = json.loads(run(app, ["check", "strut", "--set", "diameter_mm=1", "--json"]).output)
+    assert thick["measures"]["feature"] == pytest.approx(1.0, abs=0.1)
