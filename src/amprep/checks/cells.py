@@ -1,5 +1,6 @@
 """The promise of finished supports: closed, inside, on the plate, in no part deeper than allowed."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from amprep.geometry.inside import inside
 from amprep.geometry.merging import merge_equal
 from amprep.geometry.shells import label_shells
 from amprep.geometry.solids import as_manifold
-from amprep.model.arrays import Floats
+from amprep.model.arrays import Bools, Floats
 from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody
 from amprep.model.control import Stop
 from amprep.model.space import BuildVolume
@@ -53,7 +54,7 @@ def check_bodies(build: Build, stop: Stop) -> list[Violation]:
         found += faults
         if faults:
             continue
-        found += [*_inside(body, build.settings.space), *_standing(body)]
+        found += [*_inside(body, build.settings.space), *_standing(body, build)]
         for index, placed in enumerate(build.parts):
             if stop.cancelled.is_set():
                 return found
@@ -106,10 +107,11 @@ def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
     return bool(common.volume() > NEGLIGIBLE_VOLUME)
 
 
-def _standing(body: Body) -> list[Violation]:
+def _standing(body: Body, build: Build) -> list[Violation]:
     """Judge that every connected piece reaches the plate; pieces that meet in a point are connected.
 
-    A shell of negative volume bounds a void inside a piece and is none itself.
+    A shell of negative volume bounds a void inside a piece and is none itself. Where the build allows it, a
+    piece may stand on a part that the body holds instead.
     """
     points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
     count, shell = label_shells(triangles, len(points))
@@ -119,6 +121,10 @@ def _standing(body: Body) -> list[Violation]:
         a, b, c = (points[triangles[:, i]] - points[triangles[:, 0]].mean(axis=0) for i in range(3))
         volume = np.bincount(shell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0, count)
         lowest[volume <= NEGLIGIBLE_VOLUME] = 0.0
+    if build.settings.grounding == "anywhere" and (lowest > TOLERANCE).any():
+        held = [build.parts[index] for index in body.support.parts]
+        on_part = _rest_on(points, held, build.settings.overlap)
+        lowest[shell[on_part[triangles].any(axis=1)]] = 0.0
     floating = int((lowest > TOLERANCE).sum())
     if not floating:
         return []
@@ -128,8 +134,23 @@ def _standing(body: Body) -> list[Violation]:
     return [Violation(STANDING, body.name, message)]
 
 
+def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Bools:
+    """Tell which points are at or just below an upper surface of a part: in it, and out of it a little higher."""
+    found = np.zeros(len(points), np.bool_)
+    for placed in parts:
+        mesh = placed.mesh
+        below = inside(points - (0.0, 0.0, TOLERANCE), mesh.vertices, mesh.triangles)
+        above = inside(points + (0.0, 0.0, overlap + 2 * TOLERANCE), mesh.vertices, mesh.triangles)
+        found |= below & ~above
+    return found
+
+
 def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, holds: bool) -> list[Violation]:
-    """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all."""
+    """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all.
+
+    Where supports may stand on parts, those that the body holds may be entered downwards as well.
+    """
+    feet = holds and settings.grounding == "anywhere"
     depth = (settings.overlap if holds else 0.0) + TOLERANCE
     (lo, hi), (part_lo, part_hi) = body.support.mesh.bounds, placed.mesh.bounds
     if ((lo > part_hi) | (hi < part_lo)).any() or not placed.part.is_solid:
@@ -138,17 +159,22 @@ def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, hol
         deep = _sheet_enters(body, placed, depth)
         found = f"a wall runs more than {depth:.4g} mm into it" if deep else ""
     else:
-        volume = _volume_deeper(body, placed, depth)
+        volume = _volume_deeper(body, placed, depth, feet=feet)
         found = f"{volume:.3g} mm3 lie more than {depth:.4g} mm deep" if volume > NEGLIGIBLE_VOLUME else ""
     return [Violation(PENETRATION, body.name, f"enters {placed.label}: {found}")] if found else []
 
 
-def _volume_deeper(body: Body, placed: PlacedPart, depth: float) -> float:
-    """Return the volume of the body's points in the part with the point `depth` below them in the part too."""
+def _volume_deeper(body: Body, placed: PlacedPart, depth: float, *, feet: bool) -> float:
+    """Return the volume of the body's points in the part with the point `depth` below them in the part too.
+
+    With `feet`, only of those with the point `depth` above them in the part as well.
+    """
     part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
     below = body.solid ^ part.translate((0.0, 0.0, depth))
     if below.is_empty() or below.volume() <= NEGLIGIBLE_VOLUME:
         return 0.0
+    if feet:
+        below ^= part.translate((0.0, 0.0, -depth))
     return float(sum(piece.volume() for piece in (below ^ part).decompose() if _thickness(piece) > TOLERANCE))
 
 

@@ -27,6 +27,13 @@ def support(
     center: Annotated[
         bool, typer.Option("--center", help="First move everything to the middle of the plate, onto it.")
     ] = False,
+    grounding: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WHERE",
+            help="plate, or anywhere: supports without a way to the plate may stand on parts.",
+        ),
+    ] = None,
     router: running.Router = None,
     cell: running.Cell = None,
     target: running.Target = None,
@@ -55,7 +62,7 @@ def support(
     job = override(
         running.job_of(inputs), printer=printer, router=router, cell=cell, target=target, seed=seed
     )
-    job = apply_sets(job, sets or [])
+    job = apply_sets(job, [*(sets or []), *([f"supports.grounding={grounding}"] if grounding else [])])
     console = Console(stderr=True, quiet=quiet)
     folder = output or running.beside(inputs[0])
 

@@ -12,7 +12,7 @@ from amprep.errors import JobError
 from amprep.job.printers import Printer
 from amprep.job.tables import require
 from amprep.model.arrays import Floats, frozen
-from amprep.model.build import Target
+from amprep.model.build import Grounding, Target
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
@@ -25,6 +25,7 @@ _PATH_OF_CELL = re.compile(r"[/\\]|\.(toml|3mf|stl|obj|ply|off|glb|step|stp)$", 
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 Box = tuple[float, float, float, float, float, float]
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -104,6 +105,7 @@ class SupportSettings:
     least_length_mm: float = 0.5
     reach_mm: float | None = None
     gap_mm: float = 0.0
+    grounding: Grounding = "plate"
     memory_mb: int = 2000
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
@@ -159,6 +161,7 @@ class PartSettings:
     value: float | None = None
     rotations: str | tuple[Matrix, ...] | None = None
     boxes: tuple[Box, ...] | None = None
+    fixed: tuple[Point, ...] = ()
     supports: bool | None = None
     overhang_angle_deg: float | None = None
     blockers: tuple[str, ...] = ()

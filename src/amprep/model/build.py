@@ -10,6 +10,7 @@ from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
 from amprep.model.space import BuildVolume
 
+Grounding = Literal["plate", "anywhere"]
 Target = Literal["generic", "prusaslicer", "cura"]
 TARGETS: tuple[Target, ...] = ("generic", "prusaslicer", "cura")
 
@@ -30,6 +31,8 @@ class BuildSettings:
         mm2 and mm; overhangs smaller than that need no support.
     supported
         False when the job asked for no supports.
+    grounding
+        ``plate``: all supports stand on it; ``anywhere``: some may stand on the parts they hold.
     """
 
     build_id: str
@@ -46,6 +49,7 @@ class BuildSettings:
     least_area: float = 0.5
     least_length: float = 0.5
     supported: bool = True
+    grounding: Grounding = "plate"
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,10 +27,13 @@ class Obstacles:
         mesh = dict(self._parts)[index]
         return mesh.vertices, mesh.triangles.astype(np.int64)
 
-    def carve(self, connectors: "Manifold", held: tuple[int, ...], overlap: float) -> "Manifold":
+    def carve(
+        self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False
+    ) -> "Manifold":
         """Return what of the connectors lies at most `overlap` mm deep in parts they hold, and in no other.
 
-        Depth is measured upwards: a point is too deep when the point `overlap` below it lies in the part too.
+        Depth is measured upwards, or `down` for feet: a point is too deep when the point `overlap` before it
+        lies in the part too.
         """
         lo, hi = (np.array(corner) for corner in np.split(np.array(connectors.bounding_box()), 2))
         for index, mesh in self._parts:
@@ -38,12 +41,21 @@ class Obstacles:
                 continue
             depth = overlap if index in held else 0.0
             # half the tolerance apart, so that faces which should just meet do not cut each other
-            connectors -= self._solid(index).translate((0.0, 0.0, depth + CONTACT_TOLERANCE / 2))
+            shift = depth + CONTACT_TOLERANCE / 2
+            connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
         return connectors
 
 
-def standing_only(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Return the pieces of a closed mesh that reach the plate, with the voids inside them."""
+def standing_only(
+    points: Floats, triangles: Ints, feet: tuple[Floats, Floats] | None = None
+) -> tuple[Floats, Ints]:
+    """Return the pieces of a closed mesh that reach the plate or a foot, with the voids inside them.
+
+    Parameters
+    ----------
+    feet
+        Least and greatest corners ``(k, 3)`` of boxes: a piece with a vertex in one of them stands there.
+    """
     count, shell = label_shells(triangles, len(points))
     corners = points[triangles]
     lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
@@ -53,6 +65,8 @@ def standing_only(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
         shell, np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])), count
     )
     stays = (lo[:, 2] <= CONTACT_TOLERANCE) | (volume < 0.0)
+    for low, high in zip(*(feet or ()), strict=True):
+        stays[shell[((corners >= low) & (corners <= high)).all(axis=2).any(axis=1)]] = True
     for void in np.flatnonzero(volume < 0.0):
         around = (volume > 0.0) & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
         stays[void] = (stays & around).any()

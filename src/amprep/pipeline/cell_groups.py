@@ -15,6 +15,7 @@ from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, 
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
 from amprep.pipeline.cell_carving import Obstacles, standing_only
 from amprep.pipeline.cell_connectors import Ways
+from amprep.pipeline.cell_feet import foot_boxes, make_feet
 from amprep.pipeline.support_layout import SupportLayout
 
 if TYPE_CHECKING:
@@ -100,10 +101,21 @@ def solid_of(
         ups = [union(ups) ^ union(ends)] if ups and ends else []
     if ups:
         ups = [obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))]
+    ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     trunks = _trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
     solids = [as_manifold(*mesh) for mesh in trunks] + ups + _extras(emitted, group)
-    return Mesh(*standing_only(*finish(solids))) if solids else None
+    boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
+    return Mesh(*standing_only(*finish(solids), boxes)) if solids else None
+
+
+def _feet(layout: SupportLayout, group: int, obstacles: Obstacles, overlap: float) -> list["Manifold"]:
+    """Return the feet of a group that stands on parts, none where it does not."""
+    feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=min(SEAT, layout.frame.step / 4))
+    if not feet:
+        return []
+    stood = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
+    return [obstacles.carve(stood, layout.group_parts[group], overlap, down=True)]
 
 
 def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:

@@ -1,5 +1,6 @@
 """From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
 
+from amprep.errors import JobError
 from amprep.model import PlacedPart, Report, Stop, SupportBody
 from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_connectors import find_ways
@@ -56,6 +57,10 @@ def build_supports(
         request = make_request(layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=True)
         cells = checked(request, emit(request))
     emitted = sort_out(request, cells)
+    if emitted.sheet.any() and len(layout.feet):
+        raise JobError(
+            "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
+        )
     ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts)
     bodies: list[SupportBody] = []
     count = len(layout.group_parts)

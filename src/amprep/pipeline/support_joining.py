@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.model.arrays import Bytes, Ints
 from amprep.model.supports import DIRECTIONS, Cube, GridFrame
-from amprep.pipeline.support_routing import components, lower_squares
+from amprep.pipeline.support_routing import components, cube_users, lower_squares
 
 FARTHEST_MM = 15.0
 """mm sideways; struts are no longer than this."""
@@ -36,20 +36,16 @@ def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) ->
     """
     piece, _ = components(edges, np.empty((0, 3), np.int32))
     squares = np.concatenate([edges[:, :3], lower_squares(edges)])
-    owner = _Owners(squares, np.concatenate([piece, piece]), np.concatenate([edges[:, 6], edges[:, 6]]))
-    used = [(edges[:, :3] - (1, 0, 0)), lower_squares(edges)]
-    for cube, part in zip(
-        np.concatenate(used).tolist(), np.concatenate([edges[:, 6]] * 2).tolist(), strict=True
-    ):
-        owner.cube_part[tuple(cube)] = part
+    pieces, parts = np.concatenate([piece, piece]), np.concatenate([edges[:, 6], edges[:, 6]])
+    owners = _Owners(squares, pieces, parts, cube_users(edges))
     struts: list[list[int]] = []
     braced = alone = 0
     for number in range(int(piece.max(initial=-1)) + 1):
-        own = squares[np.concatenate([piece, piece]) == number]
+        own = squares[pieces == number]
         count, slim = 0, False
         for square in _levels(own, frame, slender):
             slim = True
-            strut = _strut(square, number, owner, cubes, round(FARTHEST_MM / frame.pitch))
+            strut = _strut(square, number, owners, cubes, round(FARTHEST_MM / frame.pitch))
             struts += strut
             count += bool(strut)
         braced += count > 0
@@ -60,13 +56,11 @@ def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) ->
 class _Owners:
     """Which column and part each square belongs to, and which part's supports use each cube."""
 
-    def __init__(self, squares: Ints, pieces: Ints, parts: Ints) -> None:
-        self.piece: dict[Square, int] = {}
-        self.part: dict[Square, int] = {}
-        self.cube_part: dict[Square, int] = {}
-        for (plane, y, x), piece, part in zip(squares.tolist(), pieces.tolist(), parts.tolist(), strict=True):
-            self.piece[plane, y, x] = piece
-            self.part[plane, y, x] = part
+    def __init__(self, squares: Ints, pieces: Ints, parts: Ints, cubes: dict[Square, int]) -> None:
+        names = [(plane, y, x) for plane, y, x in squares.tolist()]
+        self.piece: dict[Square, int] = dict(zip(names, pieces.tolist(), strict=True))
+        self.part: dict[Square, int] = dict(zip(names, parts.tolist(), strict=True))
+        self.cube_part = cubes
 
 
 def _levels(own: Ints, frame: GridFrame, slender: float) -> Iterator[Square]:

@@ -1,6 +1,6 @@
 """The support layout: what was planned for a whole build, ready to be turned into cells."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,6 +39,9 @@ class SupportLayout:
         appears once.
     edge_part
         ``(n,)`` int32: the part whose red square the edge was routed for first.
+    feet
+        ``(k, 5)`` int32: where columns end on a part instead of the plate; see
+        `amprep.pipeline.support_grounding.Grounded`.
     red_group, edge_group
         ``(m,)``, ``(n,)`` int32: support group, -1 for red squares that are not connected; one
         group per part, merged where parts share squares.
@@ -69,6 +72,7 @@ class SupportLayout:
     edge_group: Ints
     group_parts: tuple[tuple[int, ...], ...]
     notes: tuple[str, ...] = ()
+    feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
 
     def __post_init__(self) -> None:
         for name in ("plane", "y", "x", "flow", "capacity", "edge_part", "edge_group"):
@@ -76,6 +80,7 @@ class SupportLayout:
         for name in ("red_part", "red_region", "red_rise", "red_group"):
             object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
         object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
+        object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
         object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
         object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))

@@ -65,6 +65,7 @@ class Network:
             stop,
         )
         self.reasons = [""] * len(red.part)
+        self.notes: list[str] = []
 
     def connect(self, reds: Ints, closed: Ints, report: Report) -> Ints:
         """Route the red squares numbered `reds` with the cubes ``closed[:, :3]`` (k, y, x) closed for once.
@@ -95,6 +96,7 @@ class Network:
             raise PluginError(
                 f"the support router broke its promise: {broken[0].subject} {broken[0].message}"
             )
+        self.notes += [note for note in plan.notes if note not in self.notes]
         reason = {each.red: each.reason for each in plan.unconnected}
         for red, i in zip(reds, number, strict=True):
             self.reasons[red] = reason.get(int(i), "")
@@ -236,6 +238,12 @@ def lower_squares(edges: Ints) -> Ints:
 def _cubes_used(edges: Ints) -> Ints:
     """Return the two cubes (k, y, x) of each edge: below its upper square, above its lower one."""
     return np.stack([edges[:, :3] - (1, 0, 0), lower_squares(edges)], axis=1).reshape(-1, 3).astype(np.int32)
+
+
+def cube_users(edges: Ints) -> dict[tuple[int, int, int], int]:
+    """Return the cubes (k, y, x) that edges (rows as in `Routed.edges`) use, each with a part whose they are."""
+    parts = np.repeat(edges[:, 6], 2).tolist()
+    return {(k, y, x): part for (k, y, x), part in zip(_cubes_used(edges).tolist(), parts, strict=True)}
 
 
 def _below(square: Ints) -> Ints:

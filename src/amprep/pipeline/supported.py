@@ -112,6 +112,7 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         least_area=job.supports.least_area_mm2,
         least_length=job.supports.least_length_mm,
         supported=job.supports.enabled,
+        grounding=job.supports.grounding,
     )
 
 
@@ -134,6 +135,7 @@ def _plan(
         strut_angle_deg=angle,
         pitch=pitch,
         gap=wishes.gap_mm,
+        grounding=wishes.grounding,
         memory_mb=wishes.memory_mb,
         edge_capacity=wishes.capacity,
         node_capacity=wishes.node_capacity,

@@ -7,11 +7,12 @@ import numpy as np
 
 from amprep.checks.needs import needs_of
 from amprep.model.arrays import Bools, Bytes, Ints
-from amprep.model.build import PlacedPart
+from amprep.model.build import Grounding, PlacedPart
 from amprep.model.control import Report, Stop
 from amprep.model.space import BuildVolume
 from amprep.model.supports import Escalation
 from amprep.pipeline.support_grid import MEMORY_MB, choose_pitch, coloured, cubes_of, frame_of
+from amprep.pipeline.support_grounding import stand_on_parts
 from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_layout import SupportLayout
 from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
@@ -37,6 +38,7 @@ def plan_supports(
     strut_angle_deg: float = 45.0,
     pitch: float | None = None,
     gap: float = 0.0,
+    grounding: Grounding = "plate",
     memory_mb: int = MEMORY_MB,
     edge_capacity: int = 0,
     node_capacity: int = 0,
@@ -61,6 +63,8 @@ def plan_supports(
         mm; None chooses one by `choose_pitch`.
     gap
         Least distance between supports and parts sideways, mm; 0 for none.
+    grounding
+        ``plate``, or ``anywhere``: what finds no way to the plate may stand on the part it belongs to.
     memory_mb
         What the grid may take.
     share_between_parts
@@ -107,15 +111,21 @@ def plan_supports(
         report(0.15 + 0.85 * share, words)
 
     routed = (route_apart if share_between_parts == "avoid" else route_together)(network, routing)
-    edges = merge_edges(routed.edges)
+    connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
+    grounded = stand_on_parts(
+        cubes, meeting, blocks, red, ~connected & (grounding == "anywhere"), routed.edges
+    )
+    edges = merge_edges(np.concatenate([routed.edges, grounded.edges]))
+    connected |= grounded.served
     notes = []
+    if len(grounded.feet):
+        notes.append(f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows")
     if slender is not None:
         joined = join_columns(frame, cubes, edges, slender)
         edges = merge_edges(np.concatenate([edges, joined.edges]))
         notes.append(
             f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
         )
-    connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
     group, edge_group, group_parts = _groups(edges, red, connected, len(parts))
     shared = [group for group in group_parts if len(group) > 1]
     notes += ["share supports: " + ", ".join(parts[part].label for part in group) for group in shared]
@@ -129,7 +139,10 @@ def plan_supports(
         red_region=red.region,
         red_rise=red.rise,
         connected=connected,
-        reasons=routed.reasons,
+        reasons=tuple(
+            "" if done else reason for done, reason in zip(connected.tolist(), routed.reasons, strict=True)
+        ),
+        feet=grounded.feet,
         plane=edges[:, 0],
         y=edges[:, 1],
         x=edges[:, 2],

@@ -6,7 +6,7 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
-from amprep.model.build import TARGETS, BuildSettings, Target, Unsupported
+from amprep.model.build import TARGETS, BuildSettings, Grounding, Target, Unsupported
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
 from amprep.model.space import BuildVolume
@@ -62,7 +62,7 @@ _OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
 
 def settings_record(settings: BuildSettings) -> Record:
     """Return all rules of a build but its build volume."""
-    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported")
+    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "grounding")
     return {name: getattr(settings, name) for name in names}
 
 
@@ -72,7 +72,18 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     texts = {name: text(values, name) for name in _SETTING_TEXTS}
     numbers = {name: number(values, name) for name in _SETTING_NUMBERS}
     target = cast("Target", word(values, "target", TARGETS))
-    return BuildSettings(**texts, **numbers, target=target, supported=flag(values, "supported"), space=space)  # type: ignore[arg-type]
+    grounding = cast(
+        "Grounding", word(values, "grounding", get_args(Grounding)) if "grounding" in values else "plate"
+    )
+    supported = flag(values, "supported")
+    return BuildSettings(
+        **texts,  # type: ignore[arg-type]
+        **numbers,  # type: ignore[arg-type]
+        target=target,
+        supported=supported,
+        grounding=grounding,
+        space=space,
+    )
 
 
 def volume_record(space: BuildVolume) -> Record:
