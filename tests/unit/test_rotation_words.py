@@ -28,6 +28,17 @@ def test_axis_gives_the_24_different_rotations_of_a_cube():
     assert np.array_equal(matrices[0], np.eye(3))
 
 
+def test_each_axis_named_may_point_up_and_is_turned_by_quarters():
+    for word, axes in (("up-z", "z"), ("up-xz", "zx"), ("UP-xyz", "zyx")):
+        matrices = parse_rotations(word).matrices
+        assert ["xyz"[np.argmax(m[2])] for m in matrices[::4]] == list(axes)
+        assert len({tuple(m.ravel()) for m in matrices}) == 4 * len(axes)
+        assert (matrices[:, 2].max(axis=1) == 1).all()
+    assert np.array_equal(parse_rotations("up-z").matrices, parse_rotations("z90").matrices)
+    with pytest.raises(JobError, match="up-xz"):
+        parse_rotations("up-w")
+
+
 @pytest.mark.parametrize("word", ["about-z", "free"])
 def test_continuous_freedoms_have_their_own_word(word):
     assert parse_rotations(word).freedom == word

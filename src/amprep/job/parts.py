@@ -4,8 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from amprep.errors import JobError, nearest_hint
 from amprep.job.settings import Job, PartSettings
+from amprep.model.arrays import Floats, frozen
 from amprep.model.part import Part
 
 
@@ -46,6 +49,23 @@ def _unmatched(entry: PartSettings, parts: Sequence[Part]) -> str:
     return f"no part comes from {file!r}{nearest_hint(file, {Path(part.source).name for part in parts})}"
 
 
+def _fixed(part: Part, entry: PartSettings) -> Floats | None:
+    """Return where the first copies stand already.
+
+    Raises
+    ------
+    JobError
+        When more copies are fixed than wanted.
+    """
+    quantity = entry.quantity or part.quantity
+    if len(entry.fixed) > quantity:
+        raise JobError(
+            f"part {part.name!r}: fixed names {len(entry.fixed)} places, but only {quantity} copies are wanted; "
+            "raise quantity"
+        )
+    return frozen(entry.fixed, np.float64, 3) if entry.fixed else part.fixed
+
+
 def _with_settings(part: Part, entry: PartSettings) -> Part:
     angle = entry.overhang_angle_deg
     overrides = replace(
@@ -59,5 +79,6 @@ def _with_settings(part: Part, entry: PartSettings) -> Part:
         value=part.value if entry.value is None else entry.value,
         orientations=entry.orientations or part.orientations,
         boxes=part.boxes if entry.boxes is None else entry.box_array,
+        fixed=_fixed(part, entry),
         overrides=overrides,
     )

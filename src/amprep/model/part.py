@@ -101,6 +101,9 @@ class Part:
     positions
         ``(k, 3)`` mm, where the file puts the part's origin, once for each time its build asks for it; only
         what supports a plate as it lies looks at them. None: one, at the origin.
+    fixed
+        ``(k, 3)`` mm, least corners of the boxes around the first copies, which stand in the first build already;
+        or None.
     notes
         What reading mended or found, one sentence each, shown to the user.
     metadata
@@ -119,6 +122,7 @@ class Part:
     is_solid: bool = True
     boxes: Floats | None = None
     positions: Floats | None = None
+    fixed: Floats | None = None
     part_number: str = ""
     source: str = ""
     notes: tuple[str, ...] = ()

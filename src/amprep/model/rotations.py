@@ -1,6 +1,7 @@
-"""The words for a part's allowed rotations: none, z90, axis, about-z, free, or a list of matrices."""
+"""The words for a part's allowed rotations: none, z90, up-x, axis, about-z, free, or a list of matrices."""
 
 import json
+import re
 from collections.abc import Callable
 from itertools import permutations, product
 from typing import Any
@@ -13,7 +14,11 @@ from amprep.model.part import Orientations
 
 ROTATION_WORDS = ("none", "z90", "axis", "about-z", "free")
 
-_EXPECTED = f"one of {', '.join(ROTATION_WORDS)}, or a list of 3x3 rotation matrices"
+_EXPECTED = (
+    f"one of {', '.join(ROTATION_WORDS)}, up- and the axes that may stand upright as in up-xz, or a list of 3x3 "
+    "rotation matrices"
+)
+_UPRIGHT = re.compile(r"up-([xyz]{1,3})")
 _WRITTEN_ACCURACY = 1e-3  # people write 0.7071
 
 
@@ -39,6 +44,8 @@ def parse_rotations(words: str | list[Any]) -> Orientations:
         "about-z": lambda: Orientations("about-z"),
         "free": lambda: Orientations("free"),
     }
+    if upright := _UPRIGHT.fullmatch(word.lower()):
+        return Orientations("list", upright_rotations(upright[1]))
     if word.lower() not in allowed:
         hint = nearest_hint(word, ROTATION_WORDS)
         raise JobError(f"rotations: expected {_EXPECTED}; got {word[:80]!r}{hint}")
@@ -49,6 +56,14 @@ def quarter_turns() -> Floats:
     """Return the four turns about z by multiples of 90 degrees, ``(4, 3, 3)``, identity first."""
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     return np.array([np.linalg.matrix_power(turn, k) for k in range(4)]) + 0.0
+
+
+def upright_rotations(axes: str) -> Floats:
+    """Return the rotations after which one of the part's `axes` (of ``xyz``) points up, four each, ``(4 k, 3, 3)``."""
+    every = axis_rotations()
+    return np.concatenate(
+        [every[every[:, 2, axis] == 1.0] for axis in range(2, -1, -1) if "xyz"[axis] in axes]
+    )
 
 
 def axis_rotations() -> Floats:

@@ -15,8 +15,10 @@ from amprep.model import (
     PackingProblem,
     Part,
     PlacedPart,
+    Placement,
     Report,
 )
+from amprep.model.arrays import Floats
 
 TOO_LARGE = "too large"
 
@@ -31,13 +33,28 @@ def packing_problem(
     lift: float,
     stacking: bool,
 ) -> PackingProblem:
-    """Return the problem with one item for every copy of every part, in the job's order."""
+    """Return the problem with one item for every copy of every part, in the job's order.
+
+    What the parts say is fixed stands in the first build where it is.
+    """
     items = tuple(
         Item(index, copy, volume, part.worth, part.orientations)
         for index, (part, volume) in enumerate(zip(parts, volumes, strict=True))
         for copy in range(part.quantity)
     )
-    return PackingProblem(items, space, objective, clearance=clearance, lift=lift, stacking=stacking)
+    fixed = tuple(
+        Placement(number, np.eye(3), place - parts[item.part].mesh.vertices.min(axis=0))
+        for number, item in enumerate(items)
+        for place in _places(parts[item.part])[item.copy : item.copy + 1]
+    )
+    return PackingProblem(
+        items, space, objective, fixed=fixed, clearance=clearance, lift=lift, stacking=stacking
+    )
+
+
+def _places(part: Part) -> Floats:
+    """Return where the first copies of a part stand already, ``(k, 3)``."""
+    return np.empty((0, 3)) if part.fixed is None else part.fixed
 
 
 def make_volumes(
