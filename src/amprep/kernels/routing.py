@@ -62,6 +62,8 @@ class Flows(NamedTuple):
         ``(squares,)`` float32, distance to the plate of a path that enters from above, as of the last sweep.
     dead
         ``(squares,)`` int32, number of the batch that found no way down from the square.
+    used
+        ``(2,)`` int64, how many straight and how many oblique edges are in use.
     """
 
     flow: Shorts
@@ -70,6 +72,7 @@ class Flows(NamedTuple):
     rows: Bytes
     entry: Floats
     dead: Ints
+    used: Longs
 
 
 class Prices(NamedTuple):
@@ -195,6 +198,22 @@ def _use(network: Network, flows: Flows, u: int) -> None:
 
 
 @njit(cache=True)
+def _load(flows: Flows, u: int, d: int) -> None:
+    """Count one more path on an edge."""
+    flows.flow[u, d] += 1
+    if flows.flow[u, d] == 1:
+        flows.used[1 if d else 0] += 1
+
+
+@njit(cache=True)
+def _relieve(flows: Flows, u: int, d: int) -> None:
+    """Count one path less on an edge."""
+    flows.flow[u, d] -= 1
+    if flows.flow[u, d] == 0:
+        flows.used[1 if d else 0] -= 1
+
+
+@njit(cache=True)
 def draw(
     network: Network,
     flows: Flows,
@@ -244,7 +263,7 @@ def draw(
         for i in range(length + 1):
             _use(network, flows, trail[i])
             if i < length:
-                flows.flow[trail[i], ways[first[r] + i]] += 1
+                _load(flows, trail[i], ways[first[r] + i])
     return failed
 
 
@@ -259,10 +278,27 @@ def erase(
         u = start[r]
         for i in range(first[r], first[r + 1]):
             flows.through[u] -= 1
-            flows.flow[u, ways[i]] -= 1
+            _relieve(flows, u, ways[i])
             u = u - network.stride + network.offset[ways[i]]
         flows.through[u] -= 1
         drawn[r] = 0
+
+
+@njit(cache=True)
+def redo(
+    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
+) -> None:
+    """Put paths back where `ways` says, for the chosen red squares without one."""
+    for r in chosen:
+        if drawn[r]:
+            continue
+        u = start[r]
+        for i in range(first[r], first[r + 1]):
+            _use(network, flows, u)
+            _load(flows, u, ways[i])
+            u = u - network.stride + network.offset[ways[i]]
+        _use(network, flows, u)
+        drawn[r] = 1
 
 
 @njit(cache=True)
@@ -369,9 +405,9 @@ def _shift(network: Network, flows: Flows, state: int, to: int) -> None:
     for d in range(5):
         if upper - network.stride + network.offset[d] == lower:
             if state & 1:
-                flows.flow[upper, d] += 1
+                _load(flows, upper, d)
             else:
-                flows.flow[upper, d] -= 1
+                _relieve(flows, upper, d)
 
 
 @njit(cache=True)

@@ -30,6 +30,9 @@ THESIS_SECONDS = {
 }
 """Router -> size -> seconds, of the table in chapter 4."""
 
+_FIRST = {"rounds": 0, "paths_per_square": 0}
+"""Parameters with which `shortest-paths` gives its first paths, shortest by the plain costs."""
+
 _MOST_FOR_RAISES = 100_000
 """Squares up to which it is judged whether what escalation has raised was needed."""
 
@@ -158,7 +161,7 @@ def _run(
     host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, blank: Result
 ) -> Result:
     name, size = listed.offer.name, blank.size
-    first = _route(host, listed, problem, seed, {"rounds": 0}) if name == "shortest-paths" else None
+    first = _route(host, listed, problem, seed, _FIRST) if name == "shortest-paths" else None
     _route(host, listed, problem, seed, {})
     _forget_peak()
     start = time.monotonic()
@@ -175,7 +178,7 @@ def _run(
         thesis_seconds=THESIS_SECONDS.get(name, {}).get(size),
         flow=len(problem.red) - len(plan.unconnected),
         cost=_cost(problem, plan),
-        squares_first=first and _squares(problem, first),
+        squares_first=None if first is None else _squares(problem, first),
         squares_final=_squares(problem, plan),
         most_in_a_square=_most_in_a_square(problem, plan),
         raised=plan.raised,

@@ -85,8 +85,9 @@ def _graph(problem: SupportProblem) -> SupportGraph:
         left = np.bincount(graph.tail[keep], minlength=graph.sink + 1) > 0
         entered[graph.source] = left[graph.sink] = True
         keep &= entered[graph.tail] & left[graph.head]
-    arcs = (each[keep] for each in (graph.tail, graph.head, graph.capacity, graph.cost))
-    return SupportGraph(*arcs, graph.source, graph.sink)
+    return graph._replace(
+        tail=graph.tail[keep], head=graph.head[keep], capacity=graph.capacity[keep], cost=graph.cost[keep]
+    )
 
 
 RIVALS = (

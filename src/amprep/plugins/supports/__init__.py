@@ -7,7 +7,7 @@ import numpy as np
 from amprep.hookspecs import NoParams, SupportRouter, hookimpl
 from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
-from amprep.plugins.supports.params import ShortestPathsParams
+from amprep.plugins.supports.params import ShortestPathsParams, TreeParams
 
 amprep_api = 1
 
@@ -51,6 +51,32 @@ def _push_relabel(
     return route_push_relabel(problem, stop=stop, report=report)
 
 
+def _tree(
+    problem: SupportProblem,
+    *,
+    params: TreeParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.supports.tree import route_tree
+
+    return route_tree(problem, params=params, rng=rng, stop=stop, report=report)
+
+
+def _auto(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.supports.auto import route_auto
+
+    return route_auto(problem, rng=rng, stop=stop, report=report)
+
+
 @hookimpl
 def amprep_support_routers() -> Iterable[SupportRouter]:
     """Yield the built-in support routers."""
@@ -69,4 +95,15 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
         name="push-relabel",
         summary="As many paths as the capacities allow, straight before sideways; the fastest (thesis 3.3).",
         run=_push_relabel,
+    )
+    yield SupportRouter(
+        name="tree",
+        summary="Least material: local search over merges, from shortest paths and from a least-cost flow.",
+        run=_tree,
+        params=TreeParams,
+    )
+    yield SupportRouter(
+        name="auto",
+        summary="Picks one of the others by size and capacities, and says why.",
+        run=_auto,
     )

@@ -50,6 +50,7 @@ def no_flows(network: Network) -> Flows:
         rows=np.zeros(squares // network.width, np.uint8),
         entry=np.full(squares, FAR, np.float32),
         dead=np.zeros(squares, np.int32),
+        used=np.zeros(2, np.int64),
     )
 
 

@@ -8,6 +8,10 @@ from math import isfinite
 class ShortestPathsParams:
     """How `shortest-paths` draws and redraws (thesis 3.4).
 
+    The thesis has g 1, 0, 0, 0, 1, 2, 3, 4, a ratio of 0.1 and 30 rounds. The defaults here let more paths join
+    and leave it to `paths_per_square` that they do not become too many; the small price of joining keeps a
+    batch from moving as a herd, and smaller batches follow each other's trunks.
+
     Attributes
     ----------
     g
@@ -26,11 +30,11 @@ class ShortestPathsParams:
         The problem's own capacities, when set, take its place.
     """
 
-    g: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0)
-    redraw_ratio: float = 0.1
-    rounds: int = 30
+    g: tuple[float, ...] = (1.0, 0.15, 0.02, 0.0, 0.0)
+    redraw_ratio: float = 0.05
+    rounds: int = 60
     seconds: float | None = None
-    neighbour_discount: float = 0.1
+    neighbour_discount: float = 0.2
     paths_per_square: int = 9
 
     def __post_init__(self) -> None:
@@ -49,3 +53,32 @@ class ShortestPathsParams:
             )
         if self.paths_per_square < 0:
             raise ValueError(f"paths_per_square must be 0 or more, got {self.paths_per_square}")
+
+
+@dataclass(frozen=True)
+class TreeParams:
+    """How `tree` searches for the least material.
+
+    Attributes
+    ----------
+    rounds
+        Number of times that neighbours are redrawn; the budget that decides, so that results are reproducible.
+    neighbours
+        Number of red squares, side by side, whose paths are redrawn at a time.
+    seconds
+        Time limit in addition; None for none.
+    paths_per_square
+        As for `shortest-paths`.
+    """
+
+    rounds: int = 400
+    neighbours: int = 12
+    seconds: float | None = None
+    paths_per_square: int = 9
+
+    def __post_init__(self) -> None:
+        for name, least in (("rounds", 0), ("neighbours", 1), ("paths_per_square", 0)):
+            if getattr(self, name) < least:
+                raise ValueError(f"{name} must be {least} or more, got {getattr(self, name)}")
+        if self.seconds is not None and not self.seconds > 0:
+            raise ValueError(f"seconds must be over 0, got {self.seconds}")

@@ -1,32 +1,11 @@
 """The router `shortest-paths`: iterated shortest paths that gather into trunks (thesis 3.4)."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from amprep.kernels.flow_network import Carried
-from amprep.kernels.routing import (
-    FAR,
-    UNBOUNDED,
-    Limits,
-    Longs,
-    Prices,
-    Work,
-    augment,
-    draw,
-    erase,
-    sweep,
-    untangle,
-)
 from amprep.model.control import Report, Stop
-from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem
-from amprep.plugins.supports.escalation import escalate
-from amprep.plugins.supports.exact import task_of
-from amprep.plugins.supports.network import hard_limits, network_of, no_flows, plan_of
+from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.plugins.supports.drawing import Drawing
 from amprep.plugins.supports.params import ShortestPathsParams
-
-_EFFORT = 20_000_000
-"""Arcs that augmenting searches may look at in one go; a fraction of a second."""
 
 
 def route_shortest_paths(
@@ -54,7 +33,7 @@ def route_shortest_paths(
     limit ends it.
     """
     stop = stop.within(params.seconds)
-    drawing = _Drawing(problem, params)
+    drawing = Drawing(problem, params)
     drawing.connect_all()
     stop_reason = "finished"
     for done, chosen in enumerate(drawing.choices(rng)):
@@ -66,117 +45,3 @@ def route_shortest_paths(
     if stop_reason == "finished":
         stop_reason = drawing.escalate(stop, report)
     return drawing.plan(stop_reason)
-
-
-class _Drawing:
-    """The moving state: paths, their flows, and the limits in force."""
-
-    def __init__(self, problem: SupportProblem, params: ShortestPathsParams) -> None:
-        self.problem, self.params = problem, params
-        self.network, self.start = network_of(problem)
-        self.flows = no_flows(self.network)
-        self.first = np.concatenate([[0], np.cumsum(problem.red[:, 0], dtype=np.int64)])
-        self.ways = np.zeros(int(self.first[-1]), np.uint8)
-        self.drawn = np.zeros(len(self.start), np.uint8)
-        self.batch = 0
-        capacities = problem.node_capacity or problem.edge_capacity or not params.paths_per_square
-        self.soft = not capacities
-        soft = Limits(params.paths_per_square, params.paths_per_square, UNBOUNDED)
-        self.limits = soft if self.soft else hard_limits(problem)
-        self.plain = self._prices((1.0,), 0.0)
-        self.shared = self._prices(params.g, params.neighbour_discount)
-        sweep(self.network, self.flows, self.plain, Limits(UNBOUNDED, UNBOUNDED, UNBOUNDED))
-        np.logical_and(self.network.via, self.flows.entry < FAR, out=self.network.via.view(np.bool_))
-        ends = self.start[:, None] - self.network.stride + self.network.offset
-        self.open = np.flatnonzero((self.flows.entry[ends] < FAR).any(axis=1))
-
-    def _prices(self, g: tuple[float, ...], discount: float) -> Prices:
-        """Continue the last slope of `g` for as many paths as there can be."""
-        count = min(len(self.start), UNBOUNDED) + 2
-        slope = g[-1] - g[-2] if len(g) > 1 else 0.0
-        beyond = g[-1] + slope * np.arange(1, max(count - len(g), 0) + 1)
-        table = np.maximum(np.concatenate([g, beyond]), 0.0).astype(np.float32)
-        straight, oblique = self.problem.costs
-        return Prices(table, np.float32(straight), np.float32(oblique), np.float32(1.0 - discount))
-
-    def connect_all(self) -> None:
-        """Draw the first paths, by the plain costs; raise soft limits until every open red square has one."""
-        self._draw(self.open, self.plain)
-        while self._lost().size and (self.soft or self.problem.escalation == "uniform"):
-            self.limits = _grown(self.limits, self.soft)
-            self._draw(self._lost(), self.plain)
-
-    def choices(self, rng: np.random.Generator) -> Iterator[Longs]:
-        """Yield the red squares of each round: slices of random orders of all that are open."""
-        size = max(1, round(len(self.open) * self.params.redraw_ratio))
-        order = np.empty(0, np.int64)
-        for _ in range(self.params.rounds if len(self.open) else 0):
-            while len(order) < size:
-                order = np.concatenate([order, rng.permutation(self.open)])
-            yield order[:size]
-            order = order[size:]
-
-    def redraw(self, chosen: Longs) -> None:
-        """Take the chosen paths back and draw them anew at the present prices."""
-        lost = self._lost()
-        erase(self.network, self.flows, self.start, chosen, self.first, self.ways, self.drawn)
-        self._draw(np.concatenate([lost, chosen]), self.shared)
-
-    def _draw(self, chosen: Longs, prices: Prices) -> None:
-        self.batch += 1
-        sweep(self.network, self.flows, prices, self.limits)
-        failed = draw(
-            self.network,
-            self.flows,
-            prices,
-            self.limits,
-            self.start,
-            chosen,
-            self.first,
-            self.ways,
-            self.drawn,
-            self.batch,
-        )
-        if failed:
-            self._augment()
-
-    def _lost(self) -> Longs:
-        lost: Longs = self.open[self.drawn[self.open] == 0]
-        return lost
-
-    def _augment(self) -> None:
-        states = 2 * self.network.via.size
-        work = Work(
-            np.zeros(states, np.int32),
-            np.empty(states, np.int32),
-            np.empty(states, np.uint8),
-            np.empty(states, np.int32),
-        )
-        augment(self.network, self.flows, self.limits, self.start, self._lost(), self.drawn, work, _EFFORT)
-        untangle(self.network, self.flows, self.start, self.first, self.ways, self.drawn)
-
-    def plan(self, stop_reason: str) -> SupportPlan:
-        """Return the plan as drawn so far."""
-        way = np.zeros(len(self.start), np.bool_)
-        way[self.open] = True
-        left = np.flatnonzero(self.drawn == 0)
-        reasons = [(int(red), CAPACITY if way[red] else ENCLOSED) for red in left]
-        return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
-
-    def escalate(self, stop: Stop, report: Report) -> str:
-        """Connect red squares left over by capacities that `problem.escalation` raises; return why it ended."""
-        if self.problem.escalation == "none" or not self._lost().size:
-            return "finished"
-        task, flowing = task_of(self.problem), Carried(self.flows.flow, self.flows.through)
-        _, connected, stop_reason = escalate(task, flowing, self.drawn == 1, stop=stop, report=report)
-        self.drawn[:] = connected
-        return stop_reason
-
-
-def _grown(limits: Limits, soft: bool) -> Limits:
-    """Return limits that grow by a quarter when they are soft, else by one."""
-    if soft:
-        square = limits.square + max(1, limits.square // 4)
-        return Limits(square, square, UNBOUNDED)
-    square, edge = (min(limit + 1, UNBOUNDED) for limit in (limits.square, limits.edge))
-    return Limits(square, limits.ground, edge)
