@@ -77,7 +77,7 @@ def placed_as_they_lie(
         for copy, position in enumerate(_positions(part))
     )
     for each in placed:
-        _require_inside(each, space)
+        _require_inside(each, space, center)
     return placed
 
 
@@ -101,13 +101,14 @@ def _to_middle(parts: Sequence[Part], space: BuildVolume) -> Floats:
     return np.array([middle[0], middle[1], -lo[2]])
 
 
-def _require_inside(placed: PlacedPart, space: BuildVolume) -> None:
+def _require_inside(placed: PlacedPart, space: BuildVolume, centered: bool) -> None:
     lo, hi = placed.mesh.bounds
     if (lo >= -TOLERANCE).all() and (hi <= space.size + TOLERANCE).all():
         return
     size = " x ".join(f"{value:g}" for value in space.size)
     low, high = (", ".join(f"{value:.6g}" for value in corner) for corner in (lo, hi))
+    advice = "choose a larger --printer" if centered else "move it with --center, choose another --printer"
     raise InputError(
-        f"{placed.label} lies from ({low}) to ({high}) mm, outside the build volume of {size} mm; move it with "
-        "--center, choose another --printer, or let 'amprep run' pack it"
+        f"{placed.label} lies from ({low}) to ({high}) mm, outside the build volume of {size} mm; {advice}, or let "
+        "'amprep run' pack it"
     )
