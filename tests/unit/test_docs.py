@@ -90,3 +90,43 @@ def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
     path.write_text(source, encoding="utf-8")
     (trial,) = try_plugin(str(path))
     assert (trial.kind, trial.violations) == (kind, ())
+
+
+def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
+    from amprep.host import Host
+    from amprep.pipeline.cell_check import check_cell
+
+    text = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
+    (source,) = [
+        block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "ImplicitCell" in block
+    ]
+    path = tmp_path / "page_declared.py"
+    path.write_text(source, encoding="utf-8")
+    host = Host.load_one(str(path))
+    for name in ("footed-pin", "schwarz-p"):
+        assert check_cell(host, host.choose("cell", name), {}, steps=16).violations == ()
+
+
+def test_the_cell_in_the_page_about_cells_passes_its_check(tmp_path):
+    from amprep.host import Host
+    from amprep.pipeline.cell_check import check_cell
+    from amprep.pipeline.cell_file import cell_named
+
+    text = (ROOT / "docs" / "cells.md").read_text(encoding="utf-8")
+    (source,) = [
+        block for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "[[variant]]" in block
+    ]
+    path = tmp_path / "tripod.toml"
+    path.write_text(source, encoding="utf-8")
+    host = Host.load(plugins_enabled=False)
+    assert check_cell(host, cell_named(host, str(path))[0], {}, steps=16).violations == ()
+
+
+def test_every_parameter_of_a_built_in_cell_is_on_the_page():
+    from amprep.host import Host
+
+    text = (ROOT / "docs" / "cells.md").read_text(encoding="utf-8")
+    for name, listed in Host.load(plugins_enabled=False).offers("cell").items():
+        assert f"| `{name}` |" in text
+        for field in fields(listed.offer.params):
+            assert f"`{field.name}`" in text, f"{name}: {field.name}"

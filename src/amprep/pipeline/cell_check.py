@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from amprep.cells.samples import block, single_column
+from amprep.cells.samples import block
 from amprep.checks.cell_ports import check_ports
 from amprep.checks.cell_print import (
     Limits,
@@ -96,7 +96,7 @@ def check_cell(
     declared = declared_cell(host, listed, table, pitch=pitch, strut_angle_deg=strut_angle_deg)
     limits = limits or _promised(declared)
     requests = {"upright edges": block(pitch, step)} | {
-        f"oblique edges to {_WAYS[direction]}": single_column(pitch, step, direction)
+        f"oblique edges to {_WAYS[direction]}": block(pitch, step, width=1, direction=direction)
         for direction in range(1, len(DIRECTIONS))
     }
     found: list[Violation] = []

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from amprep.cells.samples import block, single_column
+from amprep.cells.samples import block
 from amprep.hookspecs import CellEmitter
 from amprep.host import Host, Listed
 from amprep.model import CellRequest, Cells, Mesh, Stop, silent
@@ -36,7 +36,7 @@ def draw_cell(
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))
     params = host.params(listed, table)
     shown = []
-    for request in (block(pitch, step, width=3, layers=3), single_column(pitch, step, 1)):
+    for request in (block(pitch, step, width=3, layers=3), block(pitch, step, width=1, direction=1)):
         lowest = request.plane <= request.plane.min() + 2
         chosen = _only(request, lowest)
         shown.append(_expanded(host.call(listed, chosen, params=params, stop=Stop(), report=silent)))
