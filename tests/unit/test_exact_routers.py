@@ -12,6 +12,7 @@ from amprep.checks.supports import check_plan
 from amprep.model.control import Stop, silent
 from amprep.model.support_graph import to_networkx
 from amprep.model.supports import CAPACITY, ENCLOSED, Cube, GridFrame, SupportProblem
+from amprep.pipeline.bench_supports_rivals import RIVALS
 from amprep.plugins.supports import pushing
 from amprep.plugins.supports.min_cost_flow import route_min_cost_flow, solve_min_cost_flow
 from amprep.plugins.supports.min_cost_flow_proof import find_gaps
@@ -131,6 +132,19 @@ def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
     assert len(task.red) - len(plan.unconnected) == sum(flow["source"].values())
     assert plan.objective == nx.cost_of_flow(graph, flow)
     assert find_gaps(solve_min_cost_flow(task, stop=Stop(), report=silent)) == []
+
+
+def test_values_and_costs_equal_those_of_or_tools_on_hundreds_of_grids():
+    pytest.importorskip("ortools")
+    rivals = {each.name: each.solve for each in RIVALS}
+    for seed in range(300):
+        task = random_problem(seed)
+        if not len(task.red):
+            continue
+        plan, pushed = route("min-cost-flow", task), route("push-relabel", task)
+        value, cost, _ = rivals["or-tools min-cost-flow"](task)
+        assert len(task.red) - len(plan.unconnected) == value == rivals["or-tools max-flow"](task)[0]
+        assert (plan.objective, pushed.objective) == (cost, value)
 
 
 def test_the_proof_fails_for_a_flow_that_costs_too_much():
