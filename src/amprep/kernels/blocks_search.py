@@ -207,7 +207,8 @@ def _choose(states, row, parent, alive, living, s, blocks, room, scratch, most, 
             continue
         used = float(size_x + (reach[0, over_x >> shift] << shift)) / x
         used *= float(size_y + (reach[1, over_y >> shift] << shift)) / y
-        used *= float(size_z + (reach[2, over_z >> shift] << shift)) / z
+        if not room.flat:
+            used *= float(size_z + (reach[2, over_z >> shift] << shift)) / z
         merit *= used
         if merit <= threshold or not _enough(blocks.kind, blocks.number, b, stock):
             continue

@@ -28,11 +28,11 @@ def pack_fill(
     begun, so that a late stop still gives an answer.
     """
     scene = prepare(problem)
-    orders = Orders(scene, params, rng, stop)
     if not is_of_single_boxes(scene):
-        reason = orders.run(stop, params.work)
-        return as_packing(scene, orders.best, reason)
+        orders = Orders(scene, params, rng, stop)
+        return as_packing(scene, orders.best, orders.run(stop, params.work))
     early = stop.within(None if stop.deadline is None else ORDERS_SHARE * stop.remaining())
+    orders = Orders(scene, params, rng, early)
     reason, best = orders.run(early, ORDERS_SHARE * params.work), orders.best
     if reason != "bound met" and not stop():
         work = params.work * (1.0 - ORDERS_SHARE)

@@ -16,7 +16,7 @@ from amprep.plugins.packing.params import BlockBuildingParams
 from amprep.plugins.packing.scene import Scene, prepare
 from amprep.plugins.packing.sortings import Pass
 
-MANNERS = (Manner(), Manner(fill=1.0, power=3, margin=0.0))
+MANNERS = (Manner(), Manner(fill=1.0, power=3, margin=0.0, density=1.0))
 """How the workers differ: blocks that waste little, and such that waste nothing."""
 
 PAUSE = 0.01
@@ -61,8 +61,8 @@ def fill_by_blocks(
     if len(whole.singles):
         _run(workers, stop, report)
     best = min(workers, key=lambda worker: (-worker.filling.value, worker.met))
-    reason = _reason(workers, best, stop)
-    return as_solution(scene, whole, best.settled() if len(whole.singles) else best.filling), reason
+    filling = best.settled() if len(whole.singles) else best.filling
+    return as_solution(scene, whole, filling), _reason(workers, best, stop)
 
 
 def _run(workers: Sequence[Worker], stop: Stop, report: Report) -> None:

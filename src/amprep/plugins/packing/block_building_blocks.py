@@ -43,7 +43,7 @@ class Built:
 
 
 def build_blocks(
-    whole: Whole, most: int, *, fill: float, grids: float, count_power: float, flat: bool
+    whole: Whole, most: int, *, fill: float, grids: float, powers: tuple[float, float], flat: bool
 ) -> Built:
     """Return at least a block for each single box, and up to `most` in all.
 
@@ -53,8 +53,9 @@ def build_blocks(
         Least share of a block's box that its boxes take up.
     grids
         Share of the blocks that are grids of equal boxes, at most.
-    count_power
-        Exponent of the number of boxes that a block's merit is divided by.
+    powers
+        Exponents of the number of boxes, which a block's merit is divided by, and of its value over volume
+        (area when flat).
     """
     most = max(most, len(whole.singles))
     making = _empty(most)
@@ -64,7 +65,9 @@ def build_blocks(
         whole.singles, whole.kind, whole.worth, whole.stock, whole.room[3:],
         int(grids * most), fill, 2 if flat else 3, salt, making,
     )  # fmt: skip
-    base = making.value[:made] * making.number[:made].sum(axis=1) ** -count_power
+    density = making.value[:made] / making.full[:made]
+    base = making.value[:made] * (density / density.max(initial=0.0)) ** powers[1]
+    base *= making.number[:made].sum(axis=1) ** -powers[0]
     order = np.argsort(-base, kind="stable")
     size, number = making.size[order], making.number[order]
     single = np.flatnonzero(number.sum(axis=1) == 1)

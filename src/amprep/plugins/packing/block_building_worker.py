@@ -16,6 +16,12 @@ from amprep.plugins.packing.block_building_scene import Whole
 WASTEFUL = 0.98
 """Least share of a block's box that its boxes take up where blocks are few."""
 
+MOST_REFILLED, REFILL_WORK = 1000, 2_000_000
+"""Boxes around which room is looked for in the end, at most; blocks and spaces looked at to fill it."""
+
+MOST_PAIRS = 50_000_000
+"""Pairs of boxes looked at when they are pushed down, at most."""
+
 FEW = 4
 """Blocks for each single box below which there are too few."""
 
@@ -36,6 +42,9 @@ class Manner:
         Exponent of the number of boxes that a block's merit is divided by.
     margin
         Distance that counts as touching, as a share of the room's side.
+    density
+        Exponent of value over volume that a block's merit is multiplied by; when nothing is stacked, one less
+        than that of value over area.
     """
 
     fill: float = WASTEFUL
@@ -43,6 +52,7 @@ class Manner:
     power: int = 4
     count: float = 0.2
     margin: float = 0.02
+    density: float = 0.0
 
 
 class Filling(NamedTuple):
@@ -83,10 +93,14 @@ class Worker:
             width = max(round(width * math.sqrt(2.0)), width + 1)
 
     def settled(self) -> Filling:
-        """Return the boxes pushed down and to the corner, and what room that gives filled."""
+        """Return the boxes pushed down and to the corner, and what room that gives filled.
+
+        This comes after the end of the search, so it is left out or cut short when there are very many.
+        """
         _push_down(self.filling.boxes, self.whole.obstacles, flat=self.flat)
-        self.control[kernel.STOP], self.control[kernel.LIMIT] = 0, 1 << 60
-        if not self.reached:
+        if not self.reached and len(self.filling.boxes) <= MOST_REFILLED:
+            self.control[kernel.STOP] = 0
+            self.control[kernel.LIMIT] = self.control[kernel.WORK] + REFILL_WORK
             self._search(self._build(0), 1, refill=True)
         return self.filling
 
@@ -100,7 +114,12 @@ class Worker:
     def _build_with(self, most: int, fill: float) -> Built:
         manner = self.manner
         return build_blocks(
-            self.whole, most, fill=fill, grids=manner.grids, count_power=manner.count, flat=self.flat
+            self.whole,
+            most,
+            fill=fill,
+            grids=manner.grids,
+            powers=(manner.count, manner.density + float(self.flat)),
+            flat=self.flat,
         )
 
     def _search(self, built: Built, width: int, *, refill: bool = False) -> bool:
@@ -130,8 +149,9 @@ class Worker:
 
 
 def _push_down(boxes: Indices, obstacles: Indices, *, flat: bool) -> None:
-    """Push boxes ``(n, 6)`` (in place) down, then to the front and the left, until none moves or 4 times."""
-    for _ in range(4):
+    """Push boxes ``(n, 6)`` (in place) down, then to the front and the left, a few times or until none moves."""
+    rounds = MOST_PAIRS // (3 * len(boxes) * (len(boxes) + len(obstacles)) + 1)
+    for _ in range(min(rounds, 4)):
         axes = (1, 0) if flat else (2, 1, 0)
         if not sum(push(boxes, np.argsort(boxes[:, a], kind="stable"), obstacles, a) for a in axes):
             return

@@ -12,6 +12,9 @@ from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.model.packing import Item, PackingProblem, Placement
 from amprep.model.volume import BoundingVolume, Boxes
 
+SAME = 1e-8
+"""mm by which the boxes of two orientations may differ to count as one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Variant:
@@ -132,12 +135,15 @@ def _rotations(item: Item) -> Floats:
 def _variants(boxes: Boxes, rotations: Floats, space: Space) -> tuple[Variant, ...]:
     """Return one variant per rotation that gives different boxes."""
     found: list[Variant] = []
+    seen: set[bytes] = set()
     for rotation in rotations:
         lo, hi = rotated_boxes(boxes.lo, boxes.hi, rotation)
         least = lo.min(axis=0)
         lo, hi = lo - least, hi - least
-        if any(np.allclose(lo, v.lo, atol=1e-9) and np.allclose(hi, v.hi, atol=1e-9) for v in found):
+        key = np.round(np.concatenate((lo, hi)) / SAME).astype(np.int64).tobytes()
+        if key in seen:
             continue
+        seen.add(key)
         home = find_home(lo, hi, space)
         found.append(Variant(rotation, lo, hi, -least, np.full(3, np.nan) if home is None else home))
     return tuple(found)
