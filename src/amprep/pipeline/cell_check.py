@@ -170,6 +170,9 @@ def limits_of(
     _require_grid(pitch, strut_angle_deg)
     declared = declared_cell(host, listed, table, pitch=pitch, strut_angle_deg=strut_angle_deg)
     given = {"angle_deg": angle_deg, "feature": feature, "hole": hole}
+    for name, value in given.items():
+        if value is not None and not 0.0 <= value < 1e6:
+            raise JobError(f"{name} is a number from 0 on, got {value:g}")
     return _promised(declared)._replace(**{name: value for name, value in given.items() if value is not None})
 
 

@@ -2,11 +2,12 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from amprep.cells import cell_offer, read_cell
-from amprep.errors import MeshError
+from amprep.errors import InputError, MeshError
 from amprep.hookspecs import CellEmitter
 from amprep.host import Host, Listed
 from amprep.job import Job, apply_sets, job_from_inputs
@@ -43,6 +44,9 @@ def cell_named(host: Host, cell: str, sets: Sequence[str] = ()) -> tuple[Listed[
         As for a job that names the cell.
     """
     job = job_from_inputs(["part.stl"])
+    path = replace(job.cells, strategy=cell).file
+    if path is not None and not path.is_file():
+        raise InputError(f"{cell}: no such file; expected the name of a lattice cell, or a TOML or mesh file")
     wanted = [f"cells.strategy={json.dumps(cell)}", *(f"cells.params.{each}" for each in sets)]
     job = apply_sets(job, wanted)
     return choose_cell(host, job), dict(job.cells.params)
