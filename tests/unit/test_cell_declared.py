@@ -137,6 +137,15 @@ def test_a_function_of_params_declares_a_cell_for_the_grid_at_hand():
     assert offer.declare(2.0, 2.0, BallParams()).kinds == ("implicit",)
 
 
+def test_a_declaration_that_is_none_or_empty_is_refused():
+    with pytest.raises(PluginError, match="expected a shape or a DeclaredCell, got str"):
+        emitted(cell_offer("x", "Nothing.", lambda pitch, step, params: "bcc"), request([1]))
+    with pytest.raises(JobError, match="nowhere positive"):
+        emitted(
+            cell_offer("x", "Empty.", ImplicitCell(lambda points: -np.ones(len(points)), 8)), request([1])
+        )
+
+
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.errors import JobError
 from amprep.geometry.cell_graph import Graph, graph_solid
 from amprep.geometry.cell_implicit import implicit_solid
 from amprep.geometry.cell_ports import conform
@@ -48,6 +49,8 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
     ------
     ValueError
         When the function of an implicit cell does not give numbers.
+    JobError
+        When it is nowhere positive.
     """
     templates: list[Template] = []
     which, edges = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
@@ -113,7 +116,12 @@ def templates_of(name: str, shape: Shape, linear: Floats, factor: float = 1.0) -
     if isinstance(shape, MeshCell):
         yield Template(f"mesh {name}", _conforming(shape), shape.surface)
     elif isinstance(shape, ImplicitCell):
-        yield Template(f"implicit {name}", _mesh(*implicit_solid(shape.function, shape.resolution)))
+        points, triangles = implicit_solid(shape.function, shape.resolution)
+        if not len(triangles):
+            raise JobError(
+                "the cell is empty: its function is nowhere positive on its grid; raise its resolution"
+            )
+        yield Template(f"implicit {name}", _mesh(points, triangles))
     else:
         if len(shape.struts) or shape.thickness:
             graph = Graph(shape.points, shape.struts, factor * shape.radii, shape.faces, shape.thickness)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +17,8 @@ from amprep.hookspecs import CellEmitter
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Shape, Template, Variant
 
 MESH_SUFFIXES = (".stl", ".obj", ".3mf", ".ply", ".off", ".glb", ".step", ".stp")
+
+_SUMMARY = "A cell from a file."
 
 ReadMesh = Callable[[Path], Mesh]
 """Reads the one mesh of a file."""
@@ -63,7 +66,7 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
         number(table, "least_angle_deg", str(beside)),
     )
     name = text(table, "name", str(beside)) or path.stem
-    return CellFile(name, text(table, "summary", str(beside)) or "A cell from a file.", cell)
+    return CellFile(name, text(table, "summary", str(beside)) or _SUMMARY, cell)
 
 
 def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[CellEmitter]:
@@ -79,7 +82,7 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
     Raises
     ------
     InputError
-        When one of the files is not what a cell needs.
+        When a TOML file is not what a cell needs; a mesh is read, and refused, when its cell is used.
     """
     place = Path(folder)
     place = place.parent if place.is_file() else place
@@ -94,8 +97,18 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
     for path in sorted(place.iterdir()):
         alone = path.suffix.lower() in (".stl", ".obj", ".3mf") and path.name not in named
         if path in files or (alone and path.with_suffix(".toml") not in files):
-            found = read_cell(path, read_mesh or _plain_mesh)
-            yield cell_offer(_slug(found.name), found.summary, found.cell)
+            yield _offer_of(path, read_mesh or _plain_mesh)
+
+
+def _offer_of(path: Path, read_mesh: ReadMesh) -> CellEmitter:
+    """Return the offer of a file; meshes are read when the cell is used, so that loading a plugin stays quick."""
+    table = read_cell_table(path) if path.suffix.lower() == ".toml" else {}
+    name = _slug(text(table, "name", str(path)) or path.stem)
+    summary = text(table, "summary", str(path)) or _SUMMARY
+    if table and not any("mesh" in shape for shape in (table, *variants_of(table, path))):
+        return cell_offer(name, summary, read_cell(path, read_mesh).cell)
+    read = cache(lambda: read_cell(path, read_mesh).cell)
+    return cell_offer(name, summary, lambda _pitch, _step, _params: read())
 
 
 def _shape(table: Mapping[str, Any], path: Path, size: float, read_mesh: ReadMesh) -> Shape:

@@ -73,13 +73,21 @@ def check(
 
     host = Host.load(modules=modules or [])
     listed, table = cell_named(host, cell, sets or [])
-    grid = {"pitch": pitch, "strut_angle_deg": strut_angle}
-    limits = limits_of(host, listed, table, **grid, angle_deg=angle, feature=feature, hole=hole)
-    report = check_cell(host, listed, table, **grid, limits=limits)
+    limits = limits_of(
+        host,
+        listed,
+        table,
+        pitch=pitch,
+        strut_angle_deg=strut_angle,
+        angle_deg=angle,
+        feature=feature,
+        hole=hole,
+    )
+    report = check_cell(host, listed, table, pitch=pitch, strut_angle_deg=strut_angle, limits=limits)
     if picture is not None:
         from amprep.pipeline.cell_picture import draw_cell
 
-        draw_cell(host, listed, table, picture, **grid)
+        draw_cell(host, listed, table, picture, pitch=pitch, strut_angle_deg=strut_angle)
     if as_json:
         typer.echo(json.dumps(_record(report), indent=2))
     else:

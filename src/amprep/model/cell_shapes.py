@@ -179,7 +179,15 @@ class DeclaredCell:
 
     @classmethod
     def of(cls, cell: "Shape | DeclaredCell") -> "DeclaredCell":
-        """Return the cell as it is, or a single shape as a cell."""
+        """Return the cell as it is, or a single shape as a cell.
+
+        Raises
+        ------
+        TypeError
+            For anything else.
+        """
+        if not isinstance(cell, DeclaredCell | GraphCell | MeshCell | ImplicitCell):
+            raise TypeError(f"expected a shape or a DeclaredCell, got {type(cell).__name__}")
         return cell if isinstance(cell, DeclaredCell) else cls((Variant(cell),))
 
     @property
