@@ -164,3 +164,43 @@ def test_support_blocker_volumes_of_prusaslicer_are_no_parts(amprep, tmp_path):
     assert outcome.code == 0
     assert outcome.json["builds"][0]["supports"]["overhangs"] == []
     assert outcome.json["builds"][0]["parts"][0]["triangles"] == 12
+
+
+def test_every_overhang_is_listed_with_its_size_place_and_fate(amprep, fixtures, tmp_path):
+    """A cone on its tip beside a prism on its edge: one tip with its height, one edge with its length."""
+    import trimesh
+
+    cone = trimesh.creation.cone(radius=3, height=12, sections=32)
+    cone.apply_transform(trimesh.transformations.rotation_matrix(3.141592653589793, (1, 0, 0)))
+    cone.apply_translation((30, 30, 20))
+    cone.export(tmp_path / "cone.stl")
+    outcome = amprep(
+        "support", tmp_path / "cone.stl", "--json", "-o", tmp_path, "--set", "supports.pitch_mm=1"
+    )
+    (tip,) = outcome.json["builds"][0]["supports"]["overhangs"]
+    assert (tip["name"], tip["kind"], tip["held"]) == ("overhang 1 of cone", "tip", "whole")
+    assert tip["height_mm"] == pytest.approx(8.0, abs=1e-4)
+    assert tip["position_mm"] == pytest.approx([30, 30, 8], abs=1e-4)
+    assert (tip["area_mm2"], tip["length_mm"]) == (None, None)
+    assert "overhang 1 of cone" in (tmp_path / "cone.supported.report.html").read_text(encoding="utf-8")
+
+    outcome = amprep("run", fixtures / "knife-edge.stl", "--json", "--dry-run", "--set", "packing.lift_mm=5")
+    edges = [each for each in outcome.json["builds"][0]["supports"]["overhangs"] if each["kind"] == "edge"]
+    assert edges
+    assert all(each["length_mm"] > 0 and each["connected"] == each["red"] > 0 for each in edges)
+
+
+def test_a_lack_of_room_is_answered_by_the_advice_of_a_finer_grid(amprep, tmp_path):
+    """Two slabs a millimetre apart: no cube of 2 mm between them is white."""
+    _box(tmp_path / "slabs.stl", (0, 0, 0), (20, 20, 5))
+    import trimesh
+
+    upper = trimesh.creation.box(extents=(20, 20, 5))
+    upper.apply_translation((10, 10, 8.5))
+    both = trimesh.util.concatenate([trimesh.load_mesh(tmp_path / "slabs.stl"), upper])
+    both.export(tmp_path / "slabs.stl")
+    outcome = amprep("run", tmp_path / "slabs.stl", "--json", "--dry-run", "--set", "supports.pitch_mm=2")
+    assert outcome.code == 1
+    (region,) = outcome.json["builds"][0]["supports"]["unsupported"]
+    assert region["reason"] == "no white cube below"
+    assert any("--set supports.pitch_mm=1" in words for words in outcome.json["warnings"])
