@@ -10,10 +10,14 @@ anything else, because they rule out most arcs; the arcs are those of `flow_netw
 
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from amprep.kernels.flow_network import Carried, Room, shift
 from amprep.kernels.routing import Bytes, Ints, Longs, Network
+
+Potentials = NDArray[np.int16] | NDArray[np.int32]
 
 NO_EXIT = -1
 """Answer of `search` when no exit can be reached."""
@@ -23,6 +27,9 @@ TOO_FAR = -2
 
 NO_ARC = 9
 """Stands for the arc by which a search came to where it started."""
+
+TOO_HIGH = -3
+"""Answer of `search` when potentials would no longer fit their type; nothing but labels has been changed."""
 
 _UNKNOWN = 1 << 40
 
@@ -68,7 +75,7 @@ class Search(NamedTuple):
         Buckets as stacks: the last entry of each, and of each entry the state and the entry below it.
     """
 
-    seen: Ints
+    seen: Potentials
     stack: Ints
     arc: Bytes
     done: Ints
@@ -83,7 +90,7 @@ def augment(
     carried: Carried,
     room: Room,
     prices: Prices,
-    potential: Ints,
+    potential: Potentials,
     exits: Exits,
     starts: Longs,
     ends: Longs,
@@ -188,10 +195,11 @@ def search(
     carried: Carried,
     room: Room,
     prices: Prices,
-    potential: Ints,
+    potential: Potentials,
     exits: Exits,
     starts: Longs,
     lift: int,
+    highest_potential: int,
     work: Search,
     base: int,
 ) -> tuple[int, int]:
@@ -200,6 +208,11 @@ def search(
     Buckets are stacks, so that free ways are followed down at once; a state that is found again nearer by
     stays in its old bucket and is passed over there. Without an exit in reach all states that are in reach
     are raised by `lift` beyond the furthest.
+
+    Parameters
+    ----------
+    highest_potential
+        What potentials must not exceed.
 
     Returns
     -------
@@ -281,6 +294,9 @@ def search(
                 entry[count], below[count], heads[reach] = t, heads[reach], count
                 count += 1
     raised = best if best < _UNKNOWN else highest + lift
+    for i in range(settled):
+        if potential[done[i]] + raised - (seen[done[i]] - base) > highest_potential:
+            return TOO_HIGH, -1
     for i in range(settled):
         s = done[i]
         if seen[s] - base < raised:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from amprep.kernels.routing import Ints, Network
 
-Flowing = NDArray[np.uint16] | NDArray[np.int32]
+Flowing = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.int32]
 
 UNREACHED = 1 << 30
 """Distance of a square without a way to the plate."""

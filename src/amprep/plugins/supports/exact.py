@@ -50,9 +50,12 @@ def task_of(problem: SupportProblem) -> Task:
 
 
 def nothing_carried(task: Task) -> Carried:
-    """Return flows of zero, in the narrower type when that many paths fit it."""
-    squares = task.network.via.size
-    kind: type[Any] = np.uint16 if len(task.start) <= np.iinfo(np.uint16).max else np.int32
+    """Return flows of zero, in the narrowest type that holds as many paths as may meet."""
+    squares, most = task.network.via.size, len(task.start)
+    if task.problem.node_capacity and task.problem.escalation == "none":
+        most = min(most, task.problem.node_capacity)
+    kinds: tuple[type[Any], ...] = (np.uint8, np.uint16, np.int32)
+    kind = next(kind for kind in kinds if most <= np.iinfo(kind).max)
     flow, through = np.zeros((squares, 5), kind), np.zeros(squares, kind)
     return Carried(flow, through)
 

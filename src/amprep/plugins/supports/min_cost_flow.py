@@ -4,8 +4,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.kernels.flow_min_cost import NO_EXIT, TOO_FAR, Exits, Prices, Search, augment, search
-from amprep.kernels.flow_network import Carried
+from amprep.kernels.flow_min_cost import (
+    NO_EXIT,
+    TOO_FAR,
+    TOO_HIGH,
+    Exits,
+    Potentials,
+    Prices,
+    Search,
+    augment,
+    search,
+)
+from amprep.kernels.flow_network import UNREACHED, Carried
 from amprep.kernels.routing import Ints, Longs
 from amprep.model.arrays import Bools
 from amprep.model.control import Report, Stop
@@ -13,7 +23,14 @@ from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.escalation import escalate
 from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of
 
-_GREATEST = np.iinfo(np.int32).max - 1
+_CLOSED = 1 << 14
+"""Potential of states without a way, as long as 16 bits are enough for all others."""
+
+_WORTH = 4
+"""Units that are worth another round of augmenting rather than a search for each."""
+
+_FEW = 4000
+"""Buckets up to which 16 bits are enough for the distances of several searches."""
 
 
 class MinCostFlow(NamedTuple):
@@ -77,7 +94,9 @@ def solve_min_cost_flow(problem: SupportProblem, *, stop: Stop, report: Report) 
             stop_reason = routing.connect(stop, report)
     if stop_reason == "finished":
         stop_reason = routing.exchange(stop, report)
-    return MinCostFlow(routing.task, routing.carried, routing.potential, routing.connected, stop_reason)
+    potential = routing.potential.astype(np.int32)
+    potential[np.repeat(routing.task.distance == UNREACHED, 2)] = UNREACHED
+    return MinCostFlow(routing.task, routing.carried, potential, routing.connected, stop_reason)
 
 
 class _Routing:
@@ -86,7 +105,7 @@ class _Routing:
     def __init__(self, task: Task) -> None:
         self.task = task
         self.carried = nothing_carried(task)
-        self.potential = np.repeat(task.distance, 2)
+        self.potential = _narrow(task.distance)
         self.connected = np.zeros(len(task.start), np.bool_)
         self.prices = Prices(*task.problem.costs)
         self.work = _work(self.potential.size, 4 * task.network.box.shape[0] * max(task.problem.costs) + 16)
@@ -97,12 +116,9 @@ class _Routing:
         exits = self._exits(np.arange(self.task.network.stride), 0, once=False)
         left = np.flatnonzero(self.task.open)
         left = left[np.argsort(self.task.start[left], kind="stable")]
-        distance = 1
+        distance = 0
         while left.size and distance != NO_EXIT:
-            if distance:
-                left = self._augment(exits, left)
-            if left.size:
-                distance, left = self._search(exits, left)
+            distance, left = self._serve(exits, left)
             self.connected = self.task.open.copy()
             self.connected[left] = False
             if stop():
@@ -118,12 +134,8 @@ class _Routing:
             return "finished"
         before = Carried(self.carried.flow.copy(), self.carried.through.copy())
         exits = self._exits(self.task.start[self.task.open], self._highest(), once=True)
-        distance = 1
         while left.size:
-            if distance:
-                left = self._augment(exits, left)
-            if left.size:
-                distance, left = self._search(exits, left)
+            _, left = self._serve(exits, left)
             if stop():
                 self.carried = before
                 return stop.reason
@@ -140,6 +152,23 @@ class _Routing:
         """Return the greatest potential of a red square with a way."""
         return int(self.potential[2 * self.task.start[self.task.open]].max())
 
+    def _serve(self, exits: Exits, left: Longs) -> tuple[int, Longs]:
+        """Send units as far away as the last search has found, then search on; return as `_search` does.
+
+        A round of augmenting overlooks ways that it has closed itself: many are worth another round, a few are
+        found one by one by searches, whose answer then is 0.
+        """
+        served = _WORTH
+        while left.size and served >= _WORTH:
+            count = left.size
+            left = self._augment(exits, left)
+            served = count - left.size
+        distance, singles = 0, 0
+        while left.size and distance == 0 and singles < _WORTH:
+            distance, left = self._search(exits, left)
+            singles += 1
+        return distance, left
+
     def _augment(self, exits: Exits, left: Longs) -> Longs:
         """Send units over ways of no reduced cost; return the red squares that are left."""
         self._number(1)
@@ -154,26 +183,38 @@ class _Routing:
         start, lift = self.task.start[left], self._highest() + 1
         while True:
             self._number(self.work.heads.size)
-            distance, served = search(*state, exits, start, lift, self.work, self.number)
+            highest = _CLOSED - 1 if self.potential.dtype == np.int16 else UNREACHED - 1
+            distance, served = search(*state, exits, start, lift, highest, self.work, self.number)
+            if distance == TOO_HIGH:
+                self.potential = self.potential.astype(np.int32)
+                state = (*state[:-1], self.potential)
+                continue
             if distance != TOO_FAR:
                 return distance, left[start != served]
-            work = _work(0, 4 * self.work.heads.size, 2 * self.work.entry.size)
-            self.work = self.work._replace(heads=work.heads, entry=work.entry, below=work.below)
+            self.work = _work(self.potential.size, 4 * self.work.heads.size, 2 * self.work.entry.size)
+            self._last = 0
 
     def _number(self, span: int) -> None:
         """Take the next number that no entry of ``work.seen`` reaches; it and `span` more are free."""
         self.number = self._last + 1
         self._last = self.number + span
-        if self._last > _GREATEST:
+        if self._last >= np.iinfo(self.work.seen.dtype).max:
             self.work.seen[:] = 0
             self.number, self._last = 1, 1 + span
+
+
+def _narrow(distance: Ints) -> Potentials:
+    """Return the distance of both states of each square, in 16 bits when these are enough: they are quicker."""
+    if distance.max(where=distance < UNREACHED, initial=0) < _CLOSED:
+        return np.repeat(np.minimum(distance, _CLOSED).astype(np.int16), 2)
+    return np.repeat(distance, 2)
 
 
 def _work(states: int, buckets: int, entries: int | None = None) -> Search:
     """Return work arrays; a search may put a state in buckets more than once."""
     entries = 2 * states + 16 if entries is None else entries
     return Search(
-        seen=np.zeros(states, np.int32),
+        seen=np.zeros(states, np.int16) if buckets < _FEW else np.zeros(states, np.int32),
         stack=np.empty(states, np.int32),
         arc=np.empty(states, np.uint8),
         done=np.empty(states, np.int32),
