@@ -128,6 +128,6 @@ def test_builds_are_chosen_from_the_pool_or_not_at_all():
     # kinds 0 to 3 once each; two builds hold them all, the first three builds waste one
     pool = Pool(np.array([0, 1, 3, 4, 6, 8]), np.array([0, 1, 2, 3, 0, 1, 2, 3]))
     demand = np.ones(4, np.int64)
-    chosen = choose_builds(pool, demand, np.array([0, 1, 2]), 2, 10.0)
+    chosen = choose_builds(pool, demand, np.array([0, 1, 2]), 2, Stop())
     assert sorted(chosen.tolist()) == [3, 4]
-    assert choose_builds(pool, demand, np.array([0, 1, 2]), 1, 10.0) is None
+    assert choose_builds(pool, demand, np.array([0, 1, 2]), 1, Stop()) is None

@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.kernels.box_places import Indices
 from amprep.model.arrays import Floats
+from amprep.model.control import Stop
 
 MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
 """Builds the whole-number program chooses from; builds added in a round of pricing, and such rounds."""
@@ -32,7 +33,7 @@ class Pool(NamedTuple):
         return np.array([np.bincount(kind, minlength=kinds) for kind in held], np.float64).T
 
 
-def choose_builds(pool: Pool, demand: Indices, first: Indices, most: int, seconds: float) -> Indices | None:
+def choose_builds(pool: Pool, demand: Indices, first: Indices, most: int, stop: Stop) -> Indices | None:
     """Return at most `most` builds of the pool that hold every item, or None if none are found.
 
     The fractional cover over the whole pool comes first: where it needs more builds, no choice does with
@@ -44,19 +45,17 @@ def choose_builds(pool: Pool, demand: Indices, first: Indices, most: int, second
         ``(kinds,)`` items of each kind to be held, each at least 1.
     first
         Builds that together hold every item, numbers in the pool.
-    seconds
-        When to give up at the latest.
     """
-    rows, price, total = _fractional(pool, demand, first)
-    if total > most + MARGIN:
+    rows, price, total = _fractional(pool, demand, first, stop)
+    if total > most + MARGIN or stop():
         return None
     nearest = np.argsort(-pool.worth(price), kind="stable")[:MOST_COLUMNS]
     chosen = np.unique(np.concatenate((rows, nearest)))
-    found = _whole(pool.counts(chosen, len(demand)), demand, seconds)
+    found = _whole(pool.counts(chosen, len(demand)), demand, stop.remaining())
     return None if found is None or found.sum() > most + 0.5 else np.repeat(chosen, found)
 
 
-def _fractional(pool: Pool, demand: Indices, first: Indices) -> tuple[Indices, Floats, float]:
+def _fractional(pool: Pool, demand: Indices, first: Indices, stop: Stop) -> tuple[Indices, Floats, float]:
     """Return the builds used, prices and value of the best fractional cover; builds are priced in as needed."""
     from scipy.optimize import linprog
 
@@ -68,7 +67,7 @@ def _fractional(pool: Pool, demand: Indices, first: Indices) -> tuple[Indices, F
         worth = pool.worth(price)
         new = np.argsort(-worth, kind="stable")[:ADDED]
         new = new[worth[new] > 1.0 + MARGIN]
-        if not len(new):
+        if not len(new) or stop():
             break
         rows = np.unique(np.concatenate((rows, new)))
     return rows, price, float(price @ demand)

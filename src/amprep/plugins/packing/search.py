@@ -91,7 +91,7 @@ class Search:
         start, item, variant, place = self._met()
         pool = Pool(start, of_item[item])
         demand = np.bincount(kind, minlength=len(kinds))
-        chosen = choose_builds(pool, demand, np.arange(self.builds), self.builds - 1, stop.remaining())
+        chosen = choose_builds(pool, demand, np.arange(self.builds), self.builds - 1, stop)
         if chosen is None:
             return False
         build = np.full(len(self.scene.kind), -1, np.int64)
