@@ -1,4 +1,4 @@
-"""How long the stages of support planning take on the scenes of the references; seconds are printed only."""
+"""How long the stages of support planning take on the scenes of the references; ratios are judged."""
 
 import numpy as np
 import pytest
@@ -6,42 +6,53 @@ import pytest
 from amprep.checks.supports import check_plan
 from amprep.geometry.overhangs import find_overhangs
 from amprep.geometry.voxels import Grid, holding_cubes, met_cubes
+from amprep.host import Host
 from amprep.model.control import Stop, silent
-from amprep.model.supports import Cube, GridFrame, SupportProblem
-from amprep.plugins.supports.params import ShortestPathsParams
-from amprep.plugins.supports.shortest_paths import route_shortest_paths
+from amprep.pipeline.bench_supports import run_scene
+from amprep.pipeline.bench_supports_scenes import SIDES, scene
 
-SIZES = {"A": 20, "C": 40, "D": 104, "E": 186}
-BALLS = {"ball": [(0.5, 0.5, 0.65, 0.28)], "two-balls": [(0.5, 0.5, 0.76, 0.20), (0.55, 0.5, 0.32, 0.18)]}
+ROUTERS = ["push-relabel", "min-cost-flow", "shortest-paths"]
 
 
-def scene(balls, side):
-    """Balls ``(x, y, z, radius)`` in units of the cube; red under their faces flatter than 45 degrees."""
-    cubes, needy = np.zeros((side,) * 3, np.uint8), np.zeros((side,) * 3, bool)
-    for *centre, radius in balls:
-        z, y, x = (np.indices(cubes.shape, np.float32) + 0.5) / side - np.reshape(centre[::-1], (3, 1, 1, 1))
-        inside = z**2 + y**2 + x**2 <= radius**2
-        cubes[inside] = Cube.BLACK
-        needy |= inside & (z < 0) & (y**2 + x**2 <= 0.5 * radius**2)
-    needy[0] = False
-    needy[1:] &= cubes[:-1] == Cube.WHITE
-    red = np.argwhere(needy)
-    nothing = np.zeros(len(red), np.int32)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
-    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE)
+def route(router, task, **table):
+    host = Host.load()
+    listed, rng = host.choose("router", router), np.random.default_rng(1)
+    params = host.params(listed, table)
+    return host.call(listed, task, params=params, rng=rng, stop=Stop(), report=silent)
 
 
 @pytest.mark.parametrize("size", ["A", "C", "D", "E"])
-@pytest.mark.parametrize("name", sorted(BALLS))
-def test_shortest_paths(benchmark, name, size):
-    task = scene(BALLS[name], SIZES[size])
-
-    def run():
-        rng = np.random.default_rng(1)
-        return route_shortest_paths(task, params=ShortestPathsParams(), rng=rng, stop=Stop(), report=silent)
-
-    plan = benchmark.pedantic(run, rounds=2, warmup_rounds=1)
+@pytest.mark.parametrize("name", ["ball", "two-balls"])
+@pytest.mark.parametrize("router", ROUTERS)
+def test_route(benchmark, router, name, size):
+    task = scene(name, SIDES[size])
+    plan = benchmark.pedantic(lambda: route(router, task), rounds=2, warmup_rounds=1)
     assert check_plan(task, plan) == []
+
+
+@pytest.mark.parametrize("router", ["push-relabel", "min-cost-flow"])
+@pytest.mark.parametrize("capacity", [1, 4])
+def test_route_a_jam(benchmark, router, capacity):
+    task = scene("plate", SIDES["D"], capacity=capacity)
+    plan = benchmark.pedantic(lambda: route(router, task), rounds=1, warmup_rounds=1)
+    assert check_plan(task, plan) == []
+    assert len(plan.unconnected) == 2
+
+
+@pytest.mark.parametrize("name", ["ball", "two-balls"])
+def test_shortest_paths_gather_without_piling_up(name):
+    (result,) = run_scene(["shortest-paths"], name, "E", capacity=0, seed=0)
+    assert result.squares_final <= 0.45 * result.squares_first
+    assert result.most_in_a_square <= 9
+    assert result.peak_mb is None or result.peak_mb <= 1024
+
+
+def test_many_times_faster_than_or_tools_in_one_run():
+    pytest.importorskip("ortools")
+    results = run_scene(["push-relabel", "min-cost-flow"], "two-balls", "D", capacity=1, seed=0, rivals=True)
+    times = {each.router: each.times_ours for each in results if each.validated}
+    assert times["or-tools max-flow"] >= 10
+    assert times["or-tools min-cost-flow"] >= 50
 
 
 def test_voxelise_a_bumpy_ball_of_200000_triangles(benchmark):
