@@ -85,12 +85,20 @@ class Worker:
 
     def run(self) -> None:
         """Search; at once with single boxes, then with blocks and wider and wider beams."""
-        self._search(self._build(0), 1)
+        self._complete_once()
         built, width = None, 1
         while not (self.finished or self.control[kernel.STOP]):
             built = built or self._build(self.most_blocks)
             self.finished = not self._search(built, width)
             width = max(round(width * math.sqrt(2.0)), width + 1)
+
+    def _complete_once(self) -> None:
+        """Fill the room with single boxes, one after the other."""
+        limit, self.control[kernel.LIMIT] = int(self.control[kernel.LIMIT]), -1
+        self._search(self._build(0), 1)
+        self.control[kernel.LIMIT] = limit
+        # the first successor is all that was asked for; whoever wants an end sets this again
+        self.control[kernel.STOP] = self.reached or self.control[kernel.WORK] > limit
 
     def settled(self) -> Filling:
         """Return the boxes pushed down and to the corner, and what room that gives filled.
