@@ -11,14 +11,12 @@ from amprep.kernels.routing import (
     Limits,
     Longs,
     Prices,
-    Work,
-    augment,
     draw,
     erase,
     redo,
     sweep,
-    untangle,
 )
+from amprep.kernels.routing_augment import Work, augment, untangle
 from amprep.model.arrays import Bools
 from amprep.model.control import Report, Stop
 from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem
