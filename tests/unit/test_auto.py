@@ -116,3 +116,14 @@ def test_parameters_out_of_bounds_are_refused():
     for params in ({"most_ruined": 0}, {"heat": -1.0}, {"patience": -1}, {"work": float("nan")}):
         with pytest.raises(ValueError, match=next(iter(params))):
             AutoParams(**params)
+
+
+def test_a_thousand_sizes_on_plates_end_within_the_time_given():
+    import time
+
+    sizes = np.random.default_rng(8).integers(3, 15, (900, 3)).tolist()
+    task = problem(sizes, room=(100, 100, 20), stacking=False, clearance=1.0)
+    run(task, Stop.after(0.2))  # compiles
+    start = time.process_time()
+    run(task, Stop.after(1.0))
+    assert time.process_time() - start < 4.0

@@ -16,6 +16,7 @@ from amprep.kernels.box_places import Indices
 from amprep.kernels.box_relations import relation_scratch
 from amprep.model.arrays import Floats
 from amprep.model.control import Stop
+from amprep.plugins.packing.partition import MOST_KINDS
 from amprep.plugins.packing.relaxed_boxes import relaxed_boxes
 from amprep.plugins.packing.scales import heavy_scales
 from amprep.plugins.packing.scene import Scene
@@ -23,8 +24,6 @@ from amprep.plugins.packing.scene import Scene
 MOST_CHECKED = 12
 """Boxes up to which sets are looked at exactly."""
 
-MOST_KINDS = 400
-"""Kinds beyond which the fractional cover takes too long to be of use."""
 
 SCALES, COLUMNS, MEMORY, DECISIONS = 12, 10, 1 << 19, 3000
 ENOUGH = 1.05
@@ -37,6 +36,8 @@ SLACK = 1e-6
 class CoverBound:
     """The moving state of the column generation: columns so far, and the bound proved.
 
+    With more than `MOST_KINDS` kinds nothing is tried: the bound stays at what is known.
+
     Attributes
     ----------
     builds
@@ -48,7 +49,7 @@ class CoverBound:
     def __init__(self, scene: Scene, known: int) -> None:
         self.builds, self.spent = known, 0.0
         counted = np.bincount(scene.kind[~scene.too_large], minlength=len(scene.kinds))
-        kept = np.flatnonzero(counted)
+        kept = np.flatnonzero(counted) if np.count_nonzero(counted) <= MOST_KINDS else np.empty(0, np.int64)
         boxes, self.demand = relaxed_boxes(scene), counted[kept].astype(np.int64)
         kinds, most = len(kept), int(self.demand.sum())
         self.sets = kernel.Sets(
@@ -85,8 +86,8 @@ class CoverBound:
             self.columns = np.concatenate((self.columns, found))
 
     def _may_go_on(self, work: float, stop: Stop) -> bool:
-        small = 0 < len(self.demand) <= MOST_KINDS
-        return small and self.spent < work and not self.outcome[kernel.HALT] and not stop()
+        halted = not len(self.demand) or self.outcome[kernel.HALT] or stop()
+        return self.spent < work and not halted
 
     def _fractional(self) -> tuple[Floats, float]:
         """Return the dual values ``(k,)`` of the best fractional cover, at least 0, and their total."""

@@ -14,6 +14,9 @@ MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
 NODES = 300
 """Nodes of the branch and bound after which it ends, so that the answer does not depend on the clock."""
 
+MOST_KINDS = 400
+"""Kinds beyond which fractional covers take too long to be of use."""
+
 MARGIN = 1e-6
 
 

@@ -90,7 +90,7 @@ def heavy_scales(share: Floats, demand: Indices, most: int) -> Floats:
             break
         i, j, k = np.unravel_index(place, weight.shape)
         scale = x[i] * y[j] * z[k]
-        if all(np.abs(scale - other).max() > 0.08 for other in kept):
+        if all(np.abs(scale - other).max(initial=0.0) > 0.08 for other in kept):
             kept.append(scale)
     return np.ascontiguousarray(np.array(kept).T)
 

@@ -10,7 +10,7 @@ from amprep.model.arrays import Floats
 from amprep.model.control import Stop
 from amprep.plugins.packing.extreme_points import Runner, Solution
 from amprep.plugins.packing.params import AutoParams
-from amprep.plugins.packing.partition import Pool, choose_builds
+from amprep.plugins.packing.partition import MOST_KINDS, Pool, choose_builds
 from amprep.plugins.packing.scene import Scene
 from amprep.plugins.packing.sortings import Pass, passes
 
@@ -86,6 +86,8 @@ class Search:
             return False
         self.next_choice *= GROWTH
         kinds, kind = np.unique(self.scene.kind[self.items], return_inverse=True)
+        if len(kinds) > MOST_KINDS:
+            return False
         of_item = np.zeros(len(self.scene.kind), np.int64)
         of_item[self.items] = kind
         start, item, variant, place = self._met()
