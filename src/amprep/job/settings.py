@@ -95,6 +95,8 @@ class SupportSettings:
     pitch_mm: float | None = None
     capacity: int = 0
     node_capacity: int = 0
+    load_area_mm2: float = 0.0
+    load_height_mm: float = 0.0
     escalation: Escalation = "cut"
     vertical_cost: int = 1
     oblique_cost: int = 2
@@ -119,7 +121,7 @@ class SupportSettings:
             value = getattr(self, name)
             require(value is None or value > 0, f"{name} is above 0", value)
         require(self.slender >= 1, "slender is at least 1", self.slender)
-        for name in ("least_area_mm2", "least_length_mm", "gap_mm"):
+        for name in ("least_area_mm2", "least_length_mm", "gap_mm", "load_area_mm2", "load_height_mm"):
             require(getattr(self, name) >= 0, f"{name} is at least 0", getattr(self, name))
         least = {"memory_mb": 1, "capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}
         for name, low in least.items():

@@ -26,13 +26,36 @@ Route = Callable[[SupportProblem, Stop, Report], SupportPlan]
 
 
 class Rules(NamedTuple):
-    """What holds for every network: capacities (0: none) and the rest as in `SupportProblem`."""
+    """What holds for every network: capacities (0: none) and the rest as in `SupportProblem`.
+
+    Attributes
+    ----------
+    load_area
+        mm2 of overhang that one edge may carry; 0 for any.
+    load_height
+        mm up to which a support carries that much; a taller one carries less by the square of the height, as
+        columns that buckle do (Euler). 0: any height.
+    """
 
     edge_capacity: int
     node_capacity: int
     costs: tuple[int, int]
     material: tuple[float, float]
     escalation: Escalation = "none"
+    load_area: float = 0.0
+    load_height: float = 0.0
+
+    def edge_limit(self, frame: GridFrame, top: int) -> int:
+        """Return the capacity of edges in a network whose highest red square is in plane `top`; 0 for none.
+
+        A path carries one square of overhang. At least one path may use an edge.
+        """
+        if not self.load_area:
+            return self.edge_capacity
+        height = top * frame.step
+        weaker = min(1.0, self.load_height / height) ** 2 if self.load_height and height else 1.0
+        by_load = max(1, int(self.load_area * weaker / frame.pitch**2 + 1e-9))
+        return min(by_load, self.edge_capacity or by_load)
 
 
 class Routed(NamedTuple):
@@ -114,7 +137,7 @@ class Network:
             self.red.part[reds],
             self.red.region[reds],
             cubes[0] == Cube.WHITE,
-            rules.edge_capacity,
+            rules.edge_limit(frame, int(square[:, 0].max())),
             rules.node_capacity,
             rules.costs,
             rules.material,
@@ -193,7 +216,8 @@ def _share_within(network: Network, edges: Ints) -> Ints:
         for red in left:
             if network.reasons[red] and int(red) not in enclosed:
                 network.reasons[red] = CAPACITY
-        full = _exceeded(np.concatenate([edges, more]), network.rules)
+        limit = network.rules.edge_limit(network.frame, int(network.red.square[:, 0].max()))
+        full = _exceeded(np.concatenate([edges, more]), limit, network.rules.node_capacity)
         full = full[np.isin(_keys(full), _keys(_below(more[:, :3])))]
         if not len(full):
             return more
@@ -201,15 +225,15 @@ def _share_within(network: Network, edges: Ints) -> Ints:
     return np.empty((0, 7), np.int32)
 
 
-def _exceeded(edges: Ints, rules: Rules) -> Ints:
+def _exceeded(edges: Ints, edge_capacity: int, node_capacity: int) -> Ints:
     """Return the cubes below the squares, and below the edges' upper squares, that exceed the capacities."""
     merged = merge_edges(edges)
     over = np.zeros(len(merged), np.bool_)
-    if rules.edge_capacity:
-        over |= merged[:, 4] > rules.edge_capacity
-    if rules.node_capacity:
+    if edge_capacity:
+        over |= merged[:, 4] > edge_capacity
+    if node_capacity:
         _, square = np.unique(_keys(merged[:, :3]), return_inverse=True)
-        over |= np.bincount(square, weights=merged[:, 4])[square] > rules.node_capacity
+        over |= np.bincount(square, weights=merged[:, 4])[square] > node_capacity
     return _below(merged[over, :3])
 
 

@@ -140,6 +140,8 @@ def _plan(
         edge_capacity=wishes.capacity,
         node_capacity=wishes.node_capacity,
         escalation=wishes.escalation,
+        load_area=wishes.load_area_mm2,
+        load_height=wishes.load_height_mm,
         costs=(wishes.vertical_cost, wishes.oblique_cost),
         material=host.material(
             emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)

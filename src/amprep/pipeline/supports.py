@@ -45,6 +45,8 @@ def plan_supports(
     costs: tuple[int, int] = (1, 2),
     material: tuple[float, float] = (1.0, 1.0),
     escalation: Escalation = "none",
+    load_area: float = 0.0,
+    load_height: float = 0.0,
     least_area: float = 0.5,
     least_length: float = 0.5,
     share_between_parts: Literal["avoid", "allow"] = "avoid",
@@ -67,6 +69,8 @@ def plan_supports(
         ``plate``, or ``anywhere``: what finds no way to the plate may stand on the part it belongs to.
     memory_mb
         What the grid may take.
+    load_area, load_height
+        mm2 of overhang on one edge, and mm up to which that holds (`Rules`); 0 for no limit.
     share_between_parts
         ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
         one network.
@@ -104,7 +108,7 @@ def plan_supports(
     if gap > 0:
         close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=overhang_angle_deg)
     report(0.15, "grid laid")
-    rules = Rules(edge_capacity, node_capacity, costs, material, escalation)
+    rules = Rules(edge_capacity, node_capacity, costs, material, escalation, load_area, load_height)
     network = Network(frame, cubes, red, rules, route, stop)
 
     def routing(share: float, words: str) -> None:
