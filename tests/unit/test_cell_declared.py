@@ -1,6 +1,6 @@
 """Declared cells: which variant an edge gets, how thick its struts are, beams, and the built-in lattices."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -99,9 +99,36 @@ def test_struts_become_beams_that_join_in_common_points():
     assert lengths == pytest.approx(2 * np.sqrt(2))
 
 
-def test_beams_are_refused_as_long_as_nothing_writes_them():
-    with pytest.raises(PluginError, match="beams, which this version cannot merge"):
-        checked(request([1]), emitted(cell_offer("pin", "A pin.", PIN), request([1]), solid=False))
+def test_the_request_may_ask_for_beams_or_for_none():
+    offer = cell_offer("pin", "A pin.", PIN)
+    plain = request([1])
+    assert emitted(offer, replace(plain, beams=True)).beams is not None
+    without = emitted(offer, replace(plain, beams=False), solid=False)
+    assert without.beams is None
+    assert len(without.template) == len(plain.plane)
+
+
+def test_beams_are_refused_where_none_are_wanted():
+    made = emitted(cell_offer("pin", "A pin.", PIN), request([1]), solid=False)
+    assert checked(request([1]), made) is made
+    with pytest.raises(PluginError, match=r"beams where request\.beams is False"):
+        checked(replace(request([1]), beams=False), made)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"struts": np.array([[0, 9]])}, "strut index"),
+        ({"radii": np.array([[0.4, 0.0]])}, "not above 0"),
+        ({"radii": np.array([[0.4]])}, "do not match"),
+        ({"group": np.array([3])}, "group index"),
+        ({"nodes": np.full((2, 3), np.nan)}, "not finite"),
+    ],
+)
+def test_unsound_beams_of_a_plugin_are_refused(change, why):
+    made = emitted(cell_offer("pin", "A pin.", PIN), request([1]), solid=False)
+    with pytest.raises(PluginError, match=why):
+        checked(request([1]), replace(made, beams=replace(made.beams, **change)))
 
 
 def test_walls_without_thickness_become_sheets_where_they_may():

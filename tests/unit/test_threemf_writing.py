@@ -263,7 +263,7 @@ def test_an_interruption_leaves_the_old_file_and_nothing_else(make_build, tmp_pa
     path = tmp_path / "job.build-1.3mf"
     path.write_bytes(b"of yesterday")
 
-    def broken(body, palette):
+    def broken(body, palette, object_ids):
         yield b"<mesh>"
         raise error
 

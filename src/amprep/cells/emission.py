@@ -43,7 +43,7 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
     Parameters
     ----------
     solid
-        False: struts become beams instead of templates.
+        False: struts become beams instead of templates, unless the request says which.
 
     Raises
     ------
@@ -52,6 +52,7 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
     JobError
         When it is nowhere positive.
     """
+    solid = solid if request.beams is None else not request.beams
     templates: list[Template] = []
     which, edges = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     beams: list[Beams] = []

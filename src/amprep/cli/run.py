@@ -28,6 +28,8 @@ def run(
     router: running.Router = None,
     cell: running.Cell = None,
     target: running.Target = None,
+    supports_as: running.SupportsAs = None,
+    lattice: running.Lattice = None,
     sets: running.Sets = None,
     seed: running.Seed = None,
     time_limit: running.TimeLimit = None,
@@ -58,6 +60,8 @@ def run(
         cell=cell,
         target=target,
         seed=seed,
+        supports_as=supports_as,
+        lattice=lattice,
     )
     job = apply_sets(job, sets or [])
     console = Console(stderr=True, quiet=quiet)

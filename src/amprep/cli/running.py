@@ -30,6 +30,22 @@ Target = Annotated[
     str | None,
     typer.Option("--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."),
 ]
+SupportsAs = Annotated[
+    str | None,
+    typer.Option(
+        "--supports-as",
+        metavar="TYPE",
+        help="What a generic file says supports are: support (default) or model.",
+    ),
+]
+Lattice = Annotated[
+    str | None,
+    typer.Option(
+        "--lattice",
+        metavar="FORM",
+        help="Struts of cells as beams (generic files only) or mesh; default: as the cell's parameters say.",
+    ),
+]
 Sets = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),

@@ -37,6 +37,8 @@ def support(
     router: running.Router = None,
     cell: running.Cell = None,
     target: running.Target = None,
+    supports_as: running.SupportsAs = None,
+    lattice: running.Lattice = None,
     sets: running.Sets = None,
     seed: running.Seed = None,
     time_limit: running.TimeLimit = None,
@@ -60,7 +62,14 @@ def support(
     from amprep.job import apply_sets, override
 
     job = override(
-        running.job_of(inputs), printer=printer, router=router, cell=cell, target=target, seed=seed
+        running.job_of(inputs),
+        printer=printer,
+        router=router,
+        cell=cell,
+        target=target,
+        seed=seed,
+        supports_as=supports_as,
+        lattice=lattice,
     )
     job = apply_sets(job, [*(sets or []), *([f"supports.grounding={grounding}"] if grounding else [])])
     console = Console(stderr=True, quiet=quiet)

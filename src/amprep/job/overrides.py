@@ -39,6 +39,8 @@ def override(
     cell: str | None = None,
     target: str | None = None,
     seed: int | None = None,
+    supports_as: str | None = None,
+    lattice: str | None = None,
 ) -> Job:
     """Return the job with the options given; None keeps what the job says.
 
@@ -56,6 +58,9 @@ def override(
         if name is not None:
             section = _STRATEGIES[option]
             table[section] = _with_strategy(job, table.get(section, {}), section, name)
+    for section, key, word in (("supports", "write_as", supports_as), ("cells", "lattice", lattice)):
+        if word is not None:
+            table[section] = {**table.get(section, {}), key: word}
     return _remade(job, table, "")
 
 

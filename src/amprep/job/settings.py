@@ -12,7 +12,7 @@ from amprep.errors import JobError
 from amprep.job.printers import Printer
 from amprep.job.tables import require
 from amprep.model.arrays import Floats, frozen
-from amprep.model.build import Grounding, Target
+from amprep.model.build import Grounding, SupportsAs, Target
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
@@ -108,6 +108,7 @@ class SupportSettings:
     reach_mm: float | None = None
     gap_mm: float = 0.0
     grounding: Grounding = "plate"
+    write_as: SupportsAs = "support"
     memory_mb: int = 2000
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
@@ -137,11 +138,14 @@ class CellSettings:
     ----------
     strategy
         Name of a lattice cell, or the path of a file that declares one: TOML, or a mesh.
+    lattice
+        Struts as beams or as meshes; None leaves it to the cell's parameters.
     """
 
     strategy: str = "x-wall"
     connector: Literal["full", "extend"] = "full"
     overlap_mm: float = 0.1
+    lattice: Literal["beams", "mesh"] | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -5,13 +5,14 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.model.arrays import Floats, frozen
+from amprep.model.arrays import Floats, Ints, frozen
 from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
 from amprep.model.space import BuildVolume
 
 Grounding = Literal["plate", "anywhere"]
 Target = Literal["generic", "prusaslicer", "cura"]
+SupportsAs = Literal["support", "model"]
 TARGETS: tuple[Target, ...] = ("generic", "prusaslicer", "cura")
 
 
@@ -33,6 +34,8 @@ class BuildSettings:
         False when the job asked for no supports.
     grounding
         ``plate``: all supports stand on it; ``anywhere``: some may stand on the parts they hold.
+    supports_as
+        What a generic file says that solid supports are; slicers have their own ways.
     """
 
     build_id: str
@@ -50,6 +53,7 @@ class BuildSettings:
     least_length: float = 0.5
     supported: bool = True
     grounding: Grounding = "plate"
+    supports_as: SupportsAs = "support"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,21 +86,55 @@ class PlacedPart:
 
 
 @dataclass(frozen=True, eq=False)
+class Lattice:
+    """Round beams with balls at their ends, cut off at the plate, and the solids that they carry.
+
+    Attributes
+    ----------
+    nodes, struts, radii
+        ``(n, 3)`` mm, ``(m, 2)`` int32, and ``(m, 2)`` mm at both ends.
+    solids
+        Connectors and whatever else is no beam; may have no triangles.
+    stand_in
+        What readers that know no beams show: the whole body as a solid, or a coarser one.
+    at_plate
+        Whether a clipping mesh cuts off what beams have below the plate.
+    """
+
+    nodes: Floats
+    struts: Ints
+    radii: Floats
+    solids: Mesh
+    stand_in: Mesh
+    at_plate: bool = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nodes", frozen(self.nodes, np.float64, 3))
+        object.__setattr__(self, "struts", frozen(self.struts, np.int32, 2))
+        object.__setattr__(self, "radii", frozen(self.radii, np.float64, 2))
+
+
+@dataclass(frozen=True, eq=False)
 class SupportBody:
     """Finished support geometry of one group, in build coordinates.
 
     Attributes
     ----------
+    mesh
+        The whole body; of beams, too, which are solids of several sides in it.
     parts
         Indices of the placed parts it holds; more than one only where supports are shared.
     surface
         True for walls without thickness, which a machine must not fill.
+    lattice
+        The body as a file says it where beams are wanted; None for a mesh.
     """
 
     name: str
     mesh: Mesh
     parts: tuple[int, ...]
     surface: bool = False
+    lattice: Lattice | None = None
 
 
 @dataclass(frozen=True, eq=False)

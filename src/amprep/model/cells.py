@@ -42,6 +42,8 @@ class CellRequest:
         How far connectors run into the part, mm.
     allow_surface
         Whether the target can read walls without thickness.
+    beams
+        True: struts as beams where the cell can; False: no beams; None: as the cell's parameters say.
     """
 
     frame: GridFrame
@@ -56,6 +58,7 @@ class CellRequest:
     gap: float = 0.0
     overlap: float = 0.1
     allow_surface: bool = True
+    beams: bool | None = None
 
     def __post_init__(self) -> None:
         for name in ("plane", "y", "x", "load", "group"):

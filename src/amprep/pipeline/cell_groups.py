@@ -86,10 +86,14 @@ def solid_of(
     *,
     overlap: float,
     extend: bool,
+    on_beams: bool = False,
 ) -> Mesh | None:
-    """Return the closed solid of a support group: cells, seats and connectors; None when it has none."""
+    """Return the closed solid of a support group: cells, seats and connectors; None when it has none.
+
+    With `on_beams` what hangs in the air stays: beams may carry it.
+    """
     mine = emitted.of(group) & ~emitted.sheet
-    if emitted.sheet.any() and not mine.any():
+    if emitted.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(emitted, group)
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
@@ -105,6 +109,8 @@ def solid_of(
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     trunks = _trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
     solids = [as_manifold(*mesh) for mesh in trunks] + ups + _extras(emitted, group)
+    if on_beams:
+        return Mesh(*finish(solids)) if solids else None
     boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
     return Mesh(*standing_only(*finish(solids), boxes)) if solids else None
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from amprep.errors import PluginError
-from amprep.model import CellRequest, Cells, Mesh, Role
+from amprep.model import Beams, CellRequest, Cells, Mesh, Role
 from amprep.model.arrays import Ints
 from amprep.pipeline.support_layout import SupportLayout
 
@@ -13,7 +13,13 @@ Emit = Callable[[CellRequest], Cells]
 
 
 def make_request(
-    layout: SupportLayout, parts: tuple[Mesh, ...], *, overlap: float, allow_surface: bool, extend: bool
+    layout: SupportLayout,
+    parts: tuple[Mesh, ...],
+    *,
+    overlap: float,
+    allow_surface: bool,
+    extend: bool,
+    beams: bool | None = None,
 ) -> CellRequest:
     """Return a request for every edge of the layout, and with `extend` for the cubes above red squares.
 
@@ -38,6 +44,7 @@ def make_request(
         parts,
         overlap=overlap,
         allow_surface=allow_surface,
+        beams=beams,
     )
 
 
@@ -75,8 +82,26 @@ def checked(request: CellRequest, cells: object) -> Cells:
     if not finite:
         raise PluginError("the lattice cell returned coordinates that are not finite")
     if cells.beams is not None and len(cells.beams.struts):
-        raise PluginError("the lattice cell returned beams, which this version cannot merge; return meshes")
+        _require_beams(request, cells.beams)
     return cells
+
+
+def _require_beams(request: CellRequest, beams: Beams) -> None:
+    if request.beams is False:
+        raise PluginError("the lattice cell returned beams where request.beams is False; return templates")
+    count = len(beams.struts)
+    if (
+        np.shape(beams.struts) != (count, 2)
+        or np.shape(beams.radii) != (count, 2)
+        or len(beams.group) != count
+    ):
+        raise PluginError("the lattice cell returned beams whose struts, radii and groups do not match")
+    _require_range("strut", np.asarray(beams.struts), len(beams.nodes))
+    _require_range("group", np.asarray(beams.group), int(request.group.max(initial=-1)) + 1)
+    if not np.isfinite(beams.nodes).all() or not (np.isfinite(beams.radii) & (beams.radii > 0)).all():
+        raise PluginError(
+            "the lattice cell returned beams with nodes that are not finite or radii not above 0"
+        )
 
 
 def _require_range(name: str, index: np.ndarray, count: int) -> None:

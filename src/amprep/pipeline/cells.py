@@ -1,10 +1,15 @@
 """From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
 
+from collections.abc import Callable
+
 from amprep.errors import JobError
-from amprep.model import PlacedPart, Report, Stop, SupportBody
+from amprep.model import Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
+from amprep.model.arrays import CONTACT_TOLERANCE
+from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
 from amprep.pipeline.cell_carving import Obstacles
-from amprep.pipeline.cell_connectors import find_ways
-from amprep.pipeline.cell_groups import sheet_of, solid_of, sort_out
+from amprep.pipeline.cell_connectors import Ways, find_ways
+from amprep.pipeline.cell_feet import foot_boxes
+from amprep.pipeline.cell_groups import Emitted, sheet_of, solid_of, sort_out
 from amprep.pipeline.cell_requests import Emit, checked, make_request
 from amprep.pipeline.support_layout import SupportLayout
 
@@ -19,6 +24,8 @@ def build_supports(
     allow_surface: bool,
     stop: Stop,
     report: Report,
+    beams: bool | None = None,
+    gap: float = 0.0,
 ) -> tuple[SupportBody, ...]:
     """Turn a layout into supports: one closed solid per support group, or its walls without thickness.
 
@@ -37,6 +44,10 @@ def build_supports(
         Whether the target reads walls without thickness.
     stop
         Only asked between groups; what is not finished by then is left out.
+    beams
+        Whether struts become beams: None as the cell's parameters say, False never.
+    gap
+        mm that beams keep from walls of parts; other cells keep to white cubes.
 
     Raises
     ------
@@ -49,14 +60,14 @@ def build_supports(
         return ()
     report(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
-    request = make_request(
-        layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=connector == "extend"
-    )
-    cells = checked(request, emit(request))
-    if connector != "extend" and any(template.surface for template in cells.templates):
-        request = make_request(layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=True)
-        cells = checked(request, emit(request))
-    emitted = sort_out(request, cells)
+
+    def ask(*, extend: bool, beams: bool | None) -> Emitted:
+        request = make_request(
+            layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=extend, beams=beams
+        )
+        return sort_out(request, checked(request, emit(request)))
+
+    emitted, bare = _ask(ask, extend=connector == "extend", beams=beams)
     if emitted.sheet.any() and len(layout.feet):
         raise JobError(
             "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
@@ -74,10 +85,59 @@ def build_supports(
         )
         sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
         if solid is not None and len(solid.triangles):
-            bodies.append(SupportBody(f"supports of {name}", solid, held))
+            lattice = None
+            if bare is not None:
+                lattice = _lattice(
+                    group, bare, solid, layout, ways, obstacles, parts, overlap=overlap, gap=gap
+                )
+            bodies.append(SupportBody(f"supports of {name}", solid, held, lattice=lattice))
         if sheet is not None and len(sheet.triangles):
             bodies.append(
                 SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
             )
     report(1.0, "supports finished")
     return tuple(bodies)
+
+
+def _ask(ask: Callable[..., Emitted], *, extend: bool, beams: bool | None) -> tuple[Emitted, Emitted | None]:
+    """Return what the cell made without beams, and with beams if it makes any; walls run up to the part."""
+    emitted, bare = ask(extend=extend, beams=beams), None
+    if emitted.cells.beams is not None and len(emitted.cells.beams.struts):
+        if extend:
+            raise JobError(
+                "beams end at connectors that are solids: set cells.connector = 'full', or cells.lattice = 'mesh'"
+            )
+        bare, beams = emitted, False
+        emitted = ask(extend=False, beams=False)
+    if not extend and any(template.surface for template in emitted.cells.templates):
+        emitted = ask(extend=True, beams=beams)
+    return emitted, bare
+
+
+def _lattice(
+    group: int,
+    bare: Emitted,
+    whole: Mesh,
+    layout: SupportLayout,
+    ways: Ways,
+    obstacles: Obstacles,
+    parts: tuple[PlacedPart, ...],
+    *,
+    overlap: float,
+    gap: float,
+) -> Lattice | None:
+    """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
+    overlap = max(overlap, CONTACT_TOLERANCE)
+    mine, held = of_group(bare.cells, group), layout.group_parts[group]
+
+    def solid(emitted: Emitted, *, on_beams: bool) -> Mesh | None:
+        return solid_of(
+            group, emitted, layout, ways, obstacles, overlap=overlap, extend=False, on_beams=on_beams
+        )
+
+    beams = keep_out(mine, parts, held, overlap=overlap, gap=gap)
+    coarse = None
+    if len(whole.triangles) > MOST_STOOD_IN:
+        coarse = solid(sort_out(bare.request, prisms(bare.request)), on_beams=False)
+    boxes = foot_boxes(layout, group, overlap)
+    return lattice_of(beams, solid(bare, on_beams=True), whole, coarse, boxes)

@@ -65,6 +65,8 @@ def support_build(
             overlap=settings.overlap,
             connector=job.cells.connector,
             allow_surface=job.target == "generic",
+            beams=_beams(job),
+            gap=settings.gap,
             stop=stop,
             report=report,
         )
@@ -113,7 +115,15 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         least_length=job.supports.least_length_mm,
         supported=job.supports.enabled,
         grounding=job.supports.grounding,
+        supports_as=job.supports.write_as,
     )
+
+
+def _beams(job: Job) -> bool | None:
+    """Return whether the cell is to make beams, None to leave it to its parameters; slicers know none."""
+    if job.target != "generic" or job.cells.lattice == "mesh":
+        return False
+    return True if job.cells.lattice == "beams" else None
 
 
 def _plan(

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.geometry.merging import compact
 from amprep.model.arrays import Floats
+from amprep.model.build import Lattice
 from amprep.model.mesh import Mesh
 from amprep.threemf import record
-from amprep.threemf.reading_arrays import fetch_mesh
+from amprep.threemf.reading_arrays import fetch_beams, fetch_mesh
 from amprep.threemf.record_values import Record, listing, mapping, table, whole, word
 from amprep.threemf.writing_merged import inverse, moved_exactly
 
@@ -34,6 +36,8 @@ class Piece:
         ``(m, 3)`` int64, 0xRRGGBBAA at each corner or -1; None if no triangle has any.
     surface
         Whether the object's type says that it must not be filled.
+    lattice
+        Its beams, in coordinates of its own like the mesh, which is only the solids then.
     """
 
     record: Record
@@ -41,6 +45,7 @@ class Piece:
     colours: NDArray[np.int64] | None
     matrix: Floats
     surface: bool
+    lattice: Lattice | None = None
 
     @property
     def role(self) -> str:
@@ -92,7 +97,7 @@ class PieceReader:
             component = group.GetComponent(index)
             shape = self._shape(component.GetObjectResource())
             place = matrix @ _matrix(component.GetTransform())
-            yield Piece(entry, shape.mesh, shape.colours, place, shape.surface)
+            yield Piece(entry, shape.mesh, shape.colours, place, shape.surface, shape.lattice)
 
     def _shape(self, target: Any) -> "_Shape":
         from lib3mf import Lib3MF
@@ -104,10 +109,35 @@ class PieceReader:
             raw = fetch_mesh(target)
             colours = self._colours(raw.properties, look=target.GetObjectLevelProperty()[0])
             surface = target.GetType() == Lib3MF.ObjectType.Support
+            mesh = Mesh(raw.vertices, raw.triangles.astype(np.int32))
+            lattice = self._lattice(target.BeamLattice(), mesh)
             self._shapes[number] = _Shape(
-                Mesh(raw.vertices, raw.triangles.astype(np.int32)), colours, surface
+                mesh if lattice is None else lattice.solids, colours, surface, lattice
             )
         return self._shapes[number]
+
+    def _lattice(self, lattice: "Lib3MF.BeamLattice", mesh: Mesh) -> Lattice | None:
+        """Return the beams of an object, apart from the solids beside them."""
+        from lib3mf import Lib3MF
+
+        if not lattice.GetBeamCount():
+            return None
+        struts, radii = fetch_beams(lattice)
+        shown, stand_in = lattice.GetRepresentation()
+        if not shown:
+            raise ValueError("beams have no mesh that stands in for them")
+        mode, clipping = lattice.GetClipping()
+        room = self._mesh(clipping) if mode == Lib3MF.BeamLatticeClipMode.Inside else None
+        used, local = np.unique(struts, return_inverse=True)
+        solids = Mesh(*compact(mesh.vertices, mesh.triangles.astype(np.int64)))
+        at_plate = room is not None and bool(room.bounds[0][2] >= 0.0)
+        return Lattice(
+            mesh.vertices[used], local.reshape(-1, 2), radii, solids, self._mesh(stand_in), at_plate
+        )
+
+    def _mesh(self, number: int) -> Mesh:
+        raw = fetch_mesh(self._model.GetMeshObjectByID(number))
+        return Mesh(raw.vertices, raw.triangles.astype(np.int32))
 
     def _colours(self, properties: NDArray[np.int64], look: int) -> NDArray[np.int64] | None:
         """Return the colours that triangles have of their own, not from resource `look` of the object."""
@@ -129,6 +159,7 @@ class _Shape:
     mesh: Mesh
     colours: NDArray[np.int64] | None
     surface: bool
+    lattice: Lattice | None
 
 
 def _sections(shape: _Shape, matrix: Floats, records: Sequence[Record]) -> Iterator[Piece]:

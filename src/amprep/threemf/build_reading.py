@@ -1,11 +1,15 @@
 """Reading a build job back: geometry and placements from its objects, the rules from amprep's record."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from amprep.errors import InputError
 from amprep.model.build import Build, PlacedPart, SupportBody
+from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.threemf import record
 from amprep.threemf.build_pieces import Piece, PieceReader
@@ -101,15 +105,22 @@ def _placed_part(piece: Piece, part: Part) -> PlacedPart:
 
 
 def _supports(pieces: Sequence[Piece], parts: int) -> tuple[SupportBody, ...]:
-    return tuple(
-        SupportBody(
-            text(piece.record, "name"),
-            piece.mesh.moved(piece.matrix),
-            wholes(piece.record, "holds", below=parts),
-            piece.surface,
+    return tuple(_support(piece, parts) for piece in _in_order(pieces))
+
+
+def _support(piece: Piece, parts: int) -> SupportBody:
+    """Return a support; one of beams is as a whole what the file shows to readers that know none."""
+    lattice, place = piece.lattice, piece.matrix
+    if lattice is not None:
+        nodes, solids, stand_in = (
+            Mesh(lattice.nodes, np.empty((0, 3), np.int32)).moved(place).vertices,
+            lattice.solids.moved(place),
+            lattice.stand_in.moved(place),
         )
-        for piece in _in_order(pieces)
-    )
+        lattice = replace(lattice, nodes=nodes, solids=solids, stand_in=stand_in)
+    mesh = piece.mesh.moved(place) if lattice is None else lattice.stand_in
+    holds = wholes(piece.record, "holds", below=parts)
+    return SupportBody(text(piece.record, "name"), mesh, holds, piece.surface, lattice)
 
 
 def _in_order(pieces: Sequence[Piece]) -> list[Piece]:

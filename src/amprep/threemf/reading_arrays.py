@@ -68,6 +68,15 @@ def fetch_mesh(mesh: "Lib3MF.MeshObject") -> RawMesh:
     return RawMesh(vertices.astype(np.float64), triangles.astype(np.int64), properties.astype(np.int64))
 
 
+def fetch_beams(lattice: "Lib3MF.BeamLattice") -> tuple[NDArray[np.int64], Floats]:
+    """Fetch the beams of a lattice: vertices ``(m, 2)`` and radii ``(m, 2)`` in the file's unit."""
+    from lib3mf import Lib3MF
+
+    dtype = np.dtype([("ends", np.uint32, 2), ("radii", np.float64, 2), ("caps", np.int32, 2)])
+    beams = _fetch(lattice, "lib3mf_beamlattice_getbeams", Lib3MF.Beam, dtype, 1).reshape(-1)
+    return beams["ends"].astype(np.int64), beams["radii"].astype(np.float64)
+
+
 def _fetch(mesh: Any, name: str, record: type, dtype: DTypeLike, width: int) -> NDArray[Any]:
     """Let a getter of lib3mf fill an array; asked without one it says how many records there are."""
     needed = ctypes.c_uint64(0)

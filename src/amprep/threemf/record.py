@@ -6,7 +6,7 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
-from amprep.model.build import TARGETS, BuildSettings, Grounding, Target, Unsupported
+from amprep.model.build import TARGETS, BuildSettings, Grounding, SupportsAs, Target, Unsupported
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
 from amprep.model.space import BuildVolume
@@ -62,7 +62,7 @@ _OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
 
 def settings_record(settings: BuildSettings) -> Record:
     """Return all rules of a build but its build volume."""
-    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "grounding")
+    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "grounding", "supports_as")
     return {name: getattr(settings, name) for name in names}
 
 
@@ -75,6 +75,10 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     grounding = cast(
         "Grounding", word(values, "grounding", get_args(Grounding)) if "grounding" in values else "plate"
     )
+    supports_as = cast(
+        "SupportsAs",
+        word(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
+    )
     supported = flag(values, "supported")
     return BuildSettings(
         **texts,  # type: ignore[arg-type]
@@ -82,6 +86,7 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         target=target,
         supported=supported,
         grounding=grounding,
+        supports_as=supports_as,
         space=space,
     )
 

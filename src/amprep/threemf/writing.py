@@ -60,7 +60,8 @@ def _write_readable(path: Path, document: Document, skeleton: Skeleton) -> None:
     size = 2 * len(skeleton.model) + sum(map(text_size, document.bodies))
     others = [(name, len(data), [data]) for name, data in skeleton.others.items()]
     for padding in _PADDINGS:
-        write_package(path, [*others, (MODEL_NAME, size, _model_text(document, skeleton, padding))])
+        model = (MODEL_NAME, size, _model_text(document, skeleton, padding))
+        write_package(path, [*others, model], regular=any(body.beams for body in document.bodies))
         if b"&" not in skeleton.model or is_readable(path):
             return
     raise AmprepError(
@@ -90,7 +91,7 @@ def _model_text(document: Document, skeleton: Skeleton, padding: int) -> Iterato
     places = _MESH.finditer(text)
     for body, palette, place in zip(document.bodies, skeleton.palettes, places, strict=True):
         yield text[start : place.start()]
-        yield from mesh_text(body, palette)
+        yield from mesh_text(body, palette, skeleton.object_ids)
         start = place.end()
     yield text[start:]
 

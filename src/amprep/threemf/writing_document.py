@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from amprep.model.arrays import Floats
+from amprep.model.arrays import Floats, Ints
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance
 
@@ -22,6 +22,23 @@ class Volume:
 
 
 @dataclass(frozen=True, eq=False)
+class BeamSet:
+    """The beams of a body; bodies before it that stand in for it, and that cut it off (indices).
+
+    Attributes
+    ----------
+    nodes, struts, radii
+        ``(n, 3)`` mm, ``(m, 2)`` and ``(m, 2)`` mm at both ends.
+    """
+
+    nodes: Floats
+    struts: Ints
+    radii: Floats
+    stand_in: int
+    clipping: int
+
+
+@dataclass(frozen=True, eq=False)
 class Body:
     """One mesh object.
 
@@ -29,6 +46,8 @@ class Body:
     ----------
     appearance
         Its `triangle_colours` may be of a signed type; a negative value leaves the corner uncoloured.
+    beams
+        Beams beside the mesh, which may be empty then.
     """
 
     name: str
@@ -38,6 +57,7 @@ class Body:
     appearance: Appearance = field(default_factory=Appearance)
     metadata: Metadata = ()
     volumes: tuple[Volume, ...] = ()
+    beams: BeamSet | None = None
 
 
 @dataclass(frozen=True, eq=False)

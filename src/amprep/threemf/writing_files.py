@@ -11,6 +11,9 @@ from amprep.errors import AmprepError
 _COMPRESSION = 1
 """Level 4 makes a mesh 10 % smaller and takes twice as long."""
 
+_OF_REGULAR = 4
+"""Rows of beams repeat far more than those of meshes: a fifth smaller at hardly more time."""
+
 _UNIX = 3
 
 
@@ -33,9 +36,15 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def write_package(path: Path, entries: Iterable[tuple[str, int, Iterable[bytes]]]) -> None:
-    """Write a zip package of entries: name, a size in bytes that it will not exceed, its contents."""
-    with ZipFile(path, "w", ZIP_DEFLATED, compresslevel=_COMPRESSION) as package:
+def write_package(
+    path: Path, entries: Iterable[tuple[str, int, Iterable[bytes]]], *, regular: bool = False
+) -> None:
+    """Write a zip package of entries: name, a size in bytes that it will not exceed, its contents.
+
+    With `regular` contents, such as beams, it is worth while to look longer for repetitions.
+    """
+    level = _OF_REGULAR if regular else _COMPRESSION
+    with ZipFile(path, "w", ZIP_DEFLATED, compresslevel=level) as package:
         for name, at_most, chunks in entries:
             info = ZipInfo(name)  # dated 1980-01-01, the same in every file
             info.compress_type, info.create_system, info.file_size = ZIP_DEFLATED, _UNIX, at_most

@@ -1,18 +1,25 @@
 """Meshes as 3MF text, every coordinate exactly as `Mesh.digest` counts it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from amprep.errors import AmprepError
-from amprep.threemf.writing_document import Body
+from amprep.model.arrays import Floats
+from amprep.threemf.writing_document import BeamSet, Body
 
 _ROWS = 20_000
 _VERTEX = '<vertex x="%.6f" y="%.6f" z="%.6f"/>\n'
 _TRIANGLE = '<triangle v1="%d" v2="%d" v3="%d"/>\n'
+_BEAM = '<b:beam v1="%d" v2="%d"/>\n'
+_SIZED = '<b:beam v1="%d" v2="%d" r1="{:.9g}" r2="{:.9g}"/>\n'
 _COLOURED = '<triangle v1="%d" v2="%d" v3="%d" pid="{}" p1="%d" p2="%d" p3="%d"/>\n'
+
+
+SHORTEST_BEAM = 1e-3
+"""mm; two ends nearer than that are one place to the whole product."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +33,10 @@ class Palette:
 def check_geometry(body: Body) -> None:
     """Raise AmprepError for a mesh that 3MF cannot hold: empty, not finite, bad or repeated indices."""
     vertices, triangles = body.mesh.vertices, body.mesh.triangles
+    if body.beams is not None:
+        _check_beams(body.name, body.beams)
+        if not len(triangles):
+            return
     if not len(triangles):
         raise AmprepError(f"cannot write {body.name!r}: it has no triangles")
     if not np.isfinite(vertices).all() or np.abs(vertices).max() >= 1e9:
@@ -36,25 +47,79 @@ def check_geometry(body: Body) -> None:
         raise AmprepError(f"cannot write {body.name!r}: a triangle has the same vertex twice")
 
 
-def mesh_text(body: Body, palette: Palette | None) -> Iterator[bytes]:
-    """Yield the body's ``<mesh>`` element in chunks.
+def _check_beams(name: str, beams: BeamSet) -> None:
+    """Raise AmprepError for beams that 3MF cannot hold."""
+    nodes, struts, radii = beams.nodes, beams.struts, beams.radii
+    if not len(struts) or struts.min() < 0 or struts.max() >= len(nodes):
+        raise AmprepError(f"cannot write {name!r}: it has no beams, or one between nodes that are not there")
+    if not np.isfinite(nodes).all() or np.abs(nodes).max() >= 1e9:
+        raise AmprepError(f"cannot write {name!r}: it has nodes beyond 1e9 mm or not finite")
+    if not (np.isfinite(radii) & (radii > 0.0)).all():
+        raise AmprepError(f"cannot write {name!r}: it has a beam whose radius is not above 0")
+    if (np.linalg.norm(nodes[struts[:, 0]] - nodes[struts[:, 1]], axis=1) < SHORTEST_BEAM).any():
+        raise AmprepError(f"cannot write {name!r}: it has a beam shorter than {SHORTEST_BEAM:g} mm")
+
+
+def mesh_text(body: Body, palette: Palette | None, object_ids: Sequence[int] = ()) -> Iterator[bytes]:
+    """Yield the body's ``<mesh>`` element in chunks; `object_ids` are those of the bodies before it.
 
     lib3mf's own writer scales coordinates by 10^6 in float32, which changes one in sixteen of them.
     """
     yield b"<mesh><vertices>\n"
     vertices = np.round(body.mesh.vertices, 6) + 0.0  # adding zero turns -0 into 0
     yield from _rows(_VERTEX, vertices)
-    yield b"</vertices><triangles>\n"
+    if body.beams is not None:
+        yield from _rows(_VERTEX, np.round(body.beams.nodes, 6) + 0.0)
+    yield b"</vertices>"
+    if not len(body.mesh.triangles) and body.beams is not None:
+        yield from _beams_text(body.beams, 0, object_ids)
+        yield b"</mesh>"
+        return
+    yield b"<triangles>\n"
     if palette is None:
         yield from _rows(_TRIANGLE, body.mesh.triangles)
     else:
         yield from _coloured_triangles(body, palette)
-    yield b"</triangles></mesh>"
+    yield b"</triangles>"
+    if body.beams is not None:
+        yield from _beams_text(body.beams, len(body.mesh.vertices), object_ids)
+    yield b"</mesh>"
+
+
+def _beams_text(beams: BeamSet, first: int, object_ids: Sequence[int]) -> Iterator[bytes]:
+    """Yield the ``<b:beamlattice>`` element; its nodes are the vertices from `first` on.
+
+    A lattice has one radius that beams need not repeat: the most frequent one.
+    """
+    sizes, which, count = np.unique(beams.radii, axis=0, return_inverse=True, return_counts=True)
+    usual = count[sizes[:, 0] == sizes[:, 1]]
+    common = float(sizes[sizes[:, 0] == sizes[:, 1]][usual.argmax(), 0]) if len(usual) else 1.0
+    yield (
+        f'<b:beamlattice radius="{common:.9g}" minlength="{SHORTEST_BEAM:g}" clippingmode="inside" '
+        f'clippingmesh="{object_ids[beams.clipping]}" representationmesh="{object_ids[beams.stand_in]}" '
+        'cap="sphere"><b:beams>\n'
+    ).encode()
+    struts = beams.struts.astype(np.int64) + first
+    plain = (beams.radii == common).all(axis=1)
+    for run in np.split(np.arange(len(struts)), np.flatnonzero(np.diff(plain)) + 1):
+        if plain[run[0]]:
+            yield from _rows(_BEAM, struts[run])
+        else:
+            yield from _sized_beams(struts[run], sizes, which.reshape(-1)[run])
+    yield b"</b:beams></b:beamlattice>"
+
+
+def _sized_beams(struts: NDArray[np.int64], sizes: Floats, which: NDArray[np.int64]) -> Iterator[bytes]:
+    """Yield beams with radii of their own; runs of one size are formatted at once."""
+    for run in np.split(np.arange(len(struts)), np.flatnonzero(np.diff(which)) + 1):
+        first, second = sizes[which[run[0]]].tolist()
+        yield from _rows(_SIZED.format(first, second), struts[run])
 
 
 def text_size(body: Body) -> int:
     """Return a number of bytes that the body's text does not exceed."""
-    return 80 * len(body.mesh.vertices) + 150 * len(body.mesh.triangles) + 1000
+    beams = 0 if body.beams is None else 80 * len(body.beams.nodes) + 100 * len(body.beams.struts)
+    return 80 * len(body.mesh.vertices) + 150 * len(body.mesh.triangles) + beams + 1000
 
 
 def _coloured_triangles(body: Body, palette: Palette) -> Iterator[bytes]:

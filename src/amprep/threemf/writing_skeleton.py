@@ -15,7 +15,7 @@ from amprep.model.arrays import Floats
 from amprep.model.part import Appearance
 from amprep.threemf.record import NAMESPACE
 from amprep.threemf.record_values import xml_text
-from amprep.threemf.writing_document import Body, Document, Instance, Item, Metadata, ObjectKind
+from amprep.threemf.writing_document import BeamSet, Body, Document, Instance, Item, Metadata, ObjectKind
 from amprep.threemf.writing_geometry import Palette
 
 MODEL_NAME = "3D/3dmodel.model"
@@ -140,7 +140,19 @@ class _Builder:
         mesh.SetUUID(self.next_uuid())
         self.annotate(mesh.GetMetaDataGroup(), body.metadata)
         self.paint(mesh, body.appearance)
+        if body.beams is not None:
+            self.add_lattice(mesh, body.beams)
         self.meshes.append(mesh)
+
+    def add_lattice(self, mesh: Any, beams: BeamSet) -> None:
+        """Give the object one beam, so that the file names the extension and keeps the meshes it refers to."""
+        lattice, beam = mesh.BeamLattice(), self.lib3mf.Beam()
+        beam.Indices[0], beam.Indices[1] = 0, 1
+        beam.Radii[0] = beam.Radii[1] = 1.0
+        lattice.AddBeam(beam)
+        lattice.SetRepresentation(self.meshes[beams.stand_in].GetResourceID())
+        inside = self.lib3mf.BeamLatticeClipMode.Inside
+        lattice.SetClipping(inside, self.meshes[beams.clipping].GetResourceID())
 
     def paint(self, mesh: Any, appearance: Appearance) -> None:
         """Give the object its material or colour, and a palette for its triangles."""
