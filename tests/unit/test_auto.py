@@ -9,6 +9,7 @@ from amprep.model.rotations import axis_rotations
 from amprep.plugins.packing.auto import pack_auto
 from amprep.plugins.packing.extreme_points import pack_extreme_points
 from amprep.plugins.packing.params import AutoParams, ExtremePointsParams
+from amprep.plugins.packing.search import _nothing_seen
 
 
 def problem(sizes, room=(10, 10, 10), orientations=None, **rules):
@@ -101,6 +102,18 @@ def test_the_budget_of_work_ends_the_search_at_the_same_place_every_time():
     task = problem(np.random.default_rng(7).integers(2, 8, (40, 3)).tolist())
     one, other = run(task, work=5.0), run(task, work=5.0)
     assert [[p.item for p in b] for b in one.builds] == [[p.item for p in b] for b in other.builds]
+
+
+def test_a_proof_that_ends_after_the_search_is_the_reason_too():
+    from amprep.pipeline.bench_instances import mpv_instance
+
+    packing = run(mpv_instance(1, 50, 1).problem, work=0.001, proof=400.0)
+    assert (packing.status == "optimal") == (packing.stop_reason == "bound met")
+
+
+def test_many_small_boxes_in_few_builds_need_no_memory_for_every_build_met():
+    held = _nothing_seen(200_000, 100_000)
+    assert held.item.size == 8_000_000
 
 
 def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from amprep.checks.packing import check_packing
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
-from amprep.plugins.packing.block_building import pack_block_building
+from amprep.plugins.packing.block_building import fill_by_blocks, pack_block_building
 from amprep.plugins.packing.block_building_blocks import build_blocks
 from amprep.plugins.packing.block_building_scene import whole_scene
 from amprep.plugins.packing.params import BlockBuildingParams
@@ -105,6 +105,12 @@ def test_what_is_fixed_stays_and_its_neighbours_keep_clear_of_it_and_of_zones():
     fixed = (Placement(0, np.eye(3), np.array([3.0, 3.0, 0.0])),)
     packing = run(PackingProblem(items, space, "fill", fixed, clearance=0.5), work=10.0)
     assert packing.builds[0][0].item == 0
+
+
+def test_what_is_fixed_counts_in_the_worth_of_a_filling():
+    task = problem([(4, 4, 4)] * 5, fixed=(Placement(0, np.eye(3), np.zeros(3)),))
+    found, _ = fill_by_blocks(prepare(task), BlockBuildingParams(work=10.0), Stop(), silent)
+    assert found.rank == (-5 * 64.0,)
 
 
 def test_boxes_come_to_rest_below_and_in_the_corner():

@@ -138,3 +138,28 @@ def test_boxes_cut_from_whole_rooms_never_have_a_bound_above_the_number_of_rooms
     for _ in range(rooms):
         cut([100.0 - 2 * gap, 100.0 - 2 * gap, 100.0 - gap], 3)
     assert bound(boxes, clearance=gap) <= rooms
+
+
+@pytest.mark.parametrize("objective", ["builds", "fill"])
+@pytest.mark.parametrize("places", [((0, 0, 0), (0, 0, 0)), ((0, 0, 0), (-5, 0, 8))])
+def test_fixed_items_that_stand_within_one_another_or_outside_prove_nothing(objective, places):
+    from amprep.checks.packing import check_packing
+    from amprep.model import Placement, Stop, silent
+    from amprep.plugins.packing.auto import pack_auto
+    from amprep.plugins.packing.params import AutoParams
+
+    fixed = tuple(Placement(i, np.eye(3), np.array(at, float)) for i, at in enumerate(places))
+    sizes = [(10, 10, 8), (10, 10, 8), (10, 10, 6)]
+    task = problem(sizes, size=(10, 10, 15), value=600.0, objective=objective, fixed=fixed)
+    packing = pack_auto(
+        task, params=AutoParams(), rng=np.random.default_rng(0), stop=Stop.after(5.0), report=silent
+    )
+    assert check_packing(task, packing) == []
+
+
+def test_fixed_items_that_keep_the_rules_count():
+    from amprep.model import Placement
+
+    fixed = (Placement(0, np.eye(3), np.zeros(3)),)
+    assert bound([(51, 51, 51)] * 3, fixed=fixed) == 3
+    assert fill_bound(prepare(problem([(100, 100, 60)] * 2, value=6.0, fixed=fixed))) < 10.1

@@ -4,20 +4,16 @@ After Araya and Riff 2014 (doi:10.1016/j.cor.2013.09.003), with the choice of bl
 Nunez 2017 (doi:10.1016/j.cor.2017.01.002).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
 from amprep.kernels.blocks_making import MOST_KINDS
+from amprep.kernels.blocks_records import MOST_SMALL
 from amprep.kernels.blocks_spaces import anchor, contact, cut, measure_reach, nearest, neighbours, put, sift
-from amprep.kernels.box_places import Array, Indices, helper
+from amprep.kernels.box_places import helper
 
 SPACES, PLACED, ALIVE, SMALL = 0, 1, 2, 3
 """Places in the counts of a state."""
-
-MOST_SMALL = 32
-"""Small boxes kept for telling which spaces are of no use."""
 
 STOP, WORK, LIMIT, LENGTH, MET, MORE = 0, 1, 2, 3, 4, 5
 """Places in the control: told to stop; work done and allowed; blocks in the best, work done when it was found;
@@ -28,120 +24,6 @@ TRIAL, FIRST = 0, 1
 
 PRUNE = 3
 """Blocks placed before those that no longer fit are sorted out."""
-
-
-class Blocks(NamedTuple):
-    """The blocks, greatest `base` first.
-
-    Attributes
-    ----------
-    size
-        ``(b, 3)`` int64 sides.
-    kind, number
-        ``(b, MOST_KINDS)`` int64 contents.
-    value
-        ``(b,)`` what its boxes are worth.
-    base
-        ``(b,)`` its merit if it touched something all around and wasted nothing.
-    single
-        ``(s,)`` int64 which blocks are single boxes, least volume first.
-    """
-
-    size: Indices
-    kind: Indices
-    number: Indices
-    value: Array
-    base: Array
-    single: Indices
-
-
-class Room(NamedTuple):
-    """What does not change in a search.
-
-    Attributes
-    ----------
-    box
-        ``(6,)`` int64 corners of the room.
-    sides, starts
-        The sides of boxes in steps of ``1 << shift``, see `measure_reach`.
-    margin
-        ``(3,)`` int64 distances that count as touching.
-    power
-        Exponent of the share of a block's surface that touches.
-    flat
-        Whether nothing may lie above anything.
-    goal
-        Value at which the search ends.
-    """
-
-    box: Indices
-    sides: Indices
-    starts: Indices
-    margin: Indices
-    power: int
-    shift: int
-    flat: bool
-    goal: float
-
-
-class States(NamedTuple):
-    """Partly filled rooms, one a row; see `TRIAL`.
-
-    Attributes
-    ----------
-    spaces
-        ``(w, s, 8)`` int64 maximal empty spaces.
-    placed
-        ``(w, p, 7)`` int64 boxes around what is placed, and the block.
-    stock
-        ``(w, k)`` int64 boxes left of each kind.
-    reach
-        ``(w, 3, l)`` int64, see `measure_reach`.
-    alive
-        ``(w, b)`` int32 blocks of which there may be enough boxes.
-    small
-        ``(w, MOST_SMALL, 3)`` int64 sides: a space in which none of these fits is of no use.
-    counts
-        ``(w, 4)`` int64 numbers of spaces, placed boxes, such blocks and small boxes.
-    value
-        ``(w,)``.
-    """
-
-    spaces: Indices
-    placed: Indices
-    stock: Indices
-    reach: Indices
-    alive: np.ndarray
-    small: Indices
-    counts: Indices
-    value: Array
-
-
-class Scratch(NamedTuple):
-    """Work arrays.
-
-    Attributes
-    ----------
-    fresh, touching, near, box, words
-        ``(f, 8)`` cut spaces, ``(s,)`` spaces beside a cut, ``(p,)`` neighbours, ``(6,)`` a box, and the
-        bits of `measure_reach`.
-    block, merit
-        ``(m,)`` the best blocks for a space.
-    parent, child, space, worth
-        ``(w * m,)`` the successors: row, block, space, and value when completed.
-    """
-
-    fresh: Indices
-    touching: Indices
-    near: Indices
-    box: Indices
-    words: np.ndarray
-    block: Indices
-    merit: Array
-    parent: Indices
-    child: Indices
-    space: Indices
-    worth: Array
 
 
 @helper

@@ -40,6 +40,8 @@ def pack_builds(
             share = min(float(search.spent[0]) / (params.work * 1e6 + 1.0), 1.0)
             report(share, f"{search.builds} builds, bound {proof.builds}")
             reason = search.save_a_build(lambda: proof.builds, stop)
+    # the proof may go on when the search is through; which ends first must not show
+    reason = "bound met" if search.builds <= proof.builds else reason
     return as_packing(scene, search.best, reason, proved=proof.builds)
 
 

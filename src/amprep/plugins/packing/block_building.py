@@ -11,7 +11,7 @@ from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.block_building_scene import Whole, whole_scene
 from amprep.plugins.packing.block_building_worker import Filling, Manner, Worker
-from amprep.plugins.packing.extreme_points import Solution, as_packing
+from amprep.plugins.packing.extreme_points import Solution, as_packing, value_of
 from amprep.plugins.packing.params import BlockBuildingParams
 from amprep.plugins.packing.scene import Scene, prepare
 from amprep.plugins.packing.sortings import Pass
@@ -113,6 +113,5 @@ def as_solution(scene: Scene, whole: Whole, filling: Filling) -> Solution:
         item = left[whole.kind[single]].pop(0)
         build[item], variant[item] = 0, whole.variant[single]
         place[item] = scene.space.lo + box[:3] * whole.unit
-    value = sum(item.value for item, b in zip(scene.problem.items, build.tolist(), strict=True) if b >= 0)
     order = Pass(np.flatnonzero(build >= 0), np.zeros(6))
-    return Solution(order, (-float(value),), True, build, variant, place)
+    return Solution(order, (-value_of(scene, build),), True, build, variant, place)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.kernels.blocks_search import MOST_SMALL, Room, Scratch, States
+from amprep.kernels.blocks_records import MOST_SMALL, Room, Scratch, States
 from amprep.plugins.packing.block_building_scene import Whole
 
 STEPS = 2048

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from amprep.kernels.blocks_making import GRID, MOST_KINDS, Making, make_blocks
-from amprep.kernels.blocks_search import Blocks
+from amprep.kernels.blocks_records import Blocks
 from amprep.kernels.box_places import Indices
 from amprep.plugins.packing.block_building_scene import Whole
 

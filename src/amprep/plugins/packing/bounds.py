@@ -5,12 +5,15 @@ penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it
 relaxed to one of their boxes, or to the volume of their union.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from amprep.checks.packing import check_packing
 from amprep.geometry.packing_space import union_volume
-from amprep.model.arrays import CONTACT_TOLERANCE, Floats
+from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.model.packing import Packing, Unplaced
 from amprep.plugins.packing.l2 import grown_volume, l2_bound
 from amprep.plugins.packing.relaxed_boxes import core_room, core_sizes, relaxed_boxes
 from amprep.plugins.packing.scales import heaviest_scale
@@ -29,9 +32,9 @@ def builds_bound(scene: Scene) -> int:
 
     Without stacking every item counts as high as the room, which makes the latter bounds for the plane.
     """
-    counted = scene.kind[~scene.too_large]
+    counted = scene.kind[counted_items(scene)]
     if not len(counted):
-        return 0
+        return 1 if scene.problem.fixed else 0
     bound = 1
     for amounts in amounts_of(scene):
         bound = max(bound, int(np.ceil(amounts.taken[counted].sum() / amounts.room - 1e-9)))
@@ -45,7 +48,8 @@ def fill_bound(scene: Scene) -> float:
     """Return a value that one build cannot exceed: the fractional knapsacks over volume and plate area."""
     items = scene.problem.items
     value = np.array([max(item.value, 0.0) for item in items])
-    inside = ~scene.too_large
+    inside = counted_items(scene)
+    aside = float(value[~inside & ~scene.too_large].sum())
     bound = float(value[inside].sum())
     for taken, room in amounts_of(scene):
         weight = taken[scene.kind]
@@ -55,7 +59,24 @@ def fill_bound(scene: Scene) -> float:
         full = np.cumsum(weight[order])
         share = np.clip((room - (full - weight[order])) / np.maximum(weight[order], 1e-12), 0.0, 1.0)
         bound = min(bound, float((share * value[order]).sum()))
-    return bound
+    return aside + bound
+
+
+def counted_items(scene: Scene) -> Bools:
+    """Return which items take their room for certain, ``(n,)`` bool: the free, and the fixed if they keep the rules.
+
+    The boxes of fixed items may overlap, be turned or stand outside, for nobody judges them.
+    """
+    return scene.free | (~scene.too_large & _fixed_keep_the_rules(scene))
+
+
+def _fixed_keep_the_rules(scene: Scene) -> bool:
+    fixed = scene.problem.fixed
+    if not fixed:
+        return True
+    others = sorted(set(range(len(scene.kind))) - {placement.item for placement in fixed})
+    alone = Packing((fixed,), tuple(Unplaced(item, "not asked for") for item in others))
+    return not check_packing(replace(scene.problem, fixed=()), alone)
 
 
 def amounts_of(scene: Scene) -> list[Amounts]:

@@ -16,6 +16,7 @@ from amprep.kernels.box_places import Indices
 from amprep.kernels.box_relations import relation_scratch
 from amprep.model.arrays import Floats
 from amprep.model.control import Stop
+from amprep.plugins.packing.bounds import counted_items
 from amprep.plugins.packing.partition import MOST_KINDS
 from amprep.plugins.packing.relaxed_boxes import relaxed_boxes
 from amprep.plugins.packing.scales import heavy_scales
@@ -48,7 +49,7 @@ class CoverBound:
 
     def __init__(self, scene: Scene, known: int) -> None:
         self.builds, self.spent = known, 0.0
-        counted = np.bincount(scene.kind[~scene.too_large], minlength=len(scene.kinds))
+        counted = np.bincount(scene.kind[counted_items(scene)], minlength=len(scene.kinds))
         kept = np.flatnonzero(counted) if np.count_nonzero(counted) <= MOST_KINDS else np.empty(0, np.int64)
         boxes, self.demand = relaxed_boxes(scene), counted[kept].astype(np.int64)
         kinds, most = len(kept), int(self.demand.sum())

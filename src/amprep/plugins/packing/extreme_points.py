@@ -119,11 +119,11 @@ class Runner:
         """Return what is smaller for a better answer."""
         looks = answer.looks.sum(axis=0).tolist()
         if self.scene.problem.objective == "fill":
-            return (-_value(self.scene, answer.build), *looks)
+            return (-value_of(self.scene, answer.build), *looks)
         return (float(self.scratch.cursor[records.LEFT]), float(answer.build.max(initial=-1) + 1), *looks)
 
 
-def _value(scene: Scene, build: records.Indices) -> float:
+def value_of(scene: Scene, build: records.Indices) -> float:
     """Return the value of what is placed, fixed items included."""
     fixed = [placement.item for placement in scene.problem.fixed]
     return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
@@ -137,7 +137,7 @@ def as_packing(scene: Scene, best: Solution, stop_reason: str, *, proved: int | 
     reasons = {int(i): "too large" for i in np.flatnonzero(scene.too_large)}
     reasons |= {int(i): left for i in np.flatnonzero(scene.free & (best.build < 0))}
     bound = fill_bound(scene) if filling else float(builds_bound(scene) if proved is None else proved)
-    reached = _value(scene, best.build) if filling else float(len(builds))
+    reached = value_of(scene, best.build) if filling else float(len(builds))
     return Packing(
         builds=builds,
         unplaced=tuple(Unplaced(i, reasons[i]) for i in sorted(reasons)),

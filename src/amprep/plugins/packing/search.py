@@ -20,8 +20,8 @@ PAUSE = 1_000_000
 FIRST_CHOICE, GROWTH = 20_000_000, 2
 """Comparisons before builds are first chosen among all that were met, and how much later each next time."""
 
-MOST_SEEN = 1 << 15
-"""Builds remembered."""
+MOST_SEEN, MOST_HELD = 1 << 15, 8_000_000
+"""Builds remembered, and items in them all together, 40 bytes each."""
 
 
 class Search:
@@ -144,7 +144,7 @@ class Search:
 
 def _nothing_seen(items: int, in_a_build: int) -> kernel.Seen:
     """Return an empty memory of builds."""
-    held = max(MOST_SEEN * in_a_build, 4 * items)
+    held = max(min(MOST_SEEN * in_a_build, MOST_HELD), 4 * items)
     return kernel.Seen(
         np.random.default_rng(0).integers(1, 2**63, items, dtype=np.uint64),
         np.zeros(2 * MOST_SEEN, np.uint64), np.full(2 * MOST_SEEN, -1, np.int64), np.zeros(MOST_SEEN, np.int64),
