@@ -5,7 +5,7 @@ import pytest
 
 from amprep.model import Cube, GridFrame, Mesh, SupportBody
 from amprep.pipeline.support_joining import join_columns
-from amprep.pipeline.support_routing import components
+from amprep.pipeline.support_routing import components, cube_users
 from amprep.report.columns import measure_columns
 
 from .conftest import box_mesh
@@ -84,3 +84,14 @@ def test_what_is_far_or_wide_stays_as_it_is():
     assert join_columns(frame, cubes, far, 8.0)[1:] == (0, 2)
     low = np.array(column(4, 3, 8) + column(4, 8, 8), np.int32)
     assert join_columns(frame, cubes, low, 8.0)[1:] == (0, 0)
+
+
+def test_struts_of_different_parts_share_no_cube():
+    edges = np.array(
+        column(4, 3, 30) + column(4, 13, 30) + column(0, 8, 30, 1) + column(8, 8, 30, 1), np.int32
+    )
+    frame, cubes = grid()
+    joined = join_columns(frame, cubes, edges, 8.0)
+    assert joined.braced == 4
+    used = [set(cube_users(joined.edges[joined.edges[:, 6] == part])) for part in (0, 1)]
+    assert not used[0] & used[1]

@@ -8,6 +8,7 @@ from amprep.errors import JobError, PluginError
 from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
 from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, Cube
 from amprep.pipeline.supports import choose_pitch, plan_supports
+from amprep.plugins.supports.auto import route_auto
 from amprep.plugins.supports.params import ShortestPathsParams
 from amprep.plugins.supports.shortest_paths import route_shortest_paths
 
@@ -127,6 +128,12 @@ def test_an_overhang_right_above_material_is_listed_as_no_white_cube_below():
     assert plan.reason_at(0, np.array([[15.0, 15.2, 5.7]])) == (NO_WHITE_BELOW,)
 
 
+def test_the_reason_of_a_square_is_not_that_of_an_overhang_higher_up_in_its_column():
+    room = box((12, 12, 12), (10, 10, 0)) - box((6, 6, 4), (13, 13, 2)) - box((6, 6, 0.5), (13, 13, 9.2))
+    plan = layout(placed(room))
+    assert plan.reason_at(0, np.array([[15.0, 15.2, 6.0], [15.0, 15.2, 9.7]])) == (ENCLOSED, NO_WHITE_BELOW)
+
+
 def test_what_a_connected_red_square_does_not_hold_is_a_blocked_connector():
     plan = layout(placed(TABLE))
     assert plan.reason_at(0, np.array([[21.5, 21.5, 10.0], [30.0, 30.0, 10.0]])) == (
@@ -207,6 +214,18 @@ def test_capacities_hold_for_the_whole_build(share):
     assert np.bincount(square.reshape(-1), weights=plan.flow).max() <= 3
 
 
+def test_notes_say_what_the_router_says_that_capacities_are_raised_and_that_time_is_up():
+    def auto(problem, stop, report):
+        return route_auto(problem, rng=np.random.default_rng(0), stop=stop, report=report)
+
+    plan = layout(shaft(2), route=auto, node_capacity=3, escalation="cut", least_area=0.0)
+    assert plan.connected.all()
+    assert any(note.startswith("p1: auto chose the router tree") for note in plan.notes)
+    assert "p2: capacities are raised by up to 1, as supports.escalation allows" in plan.notes
+    late = layout(placed(TABLE), route=auto, stop=Stop.after(0.0))
+    assert "p0: routing ended early: time limit" in late.notes
+
+
 def test_cubes_outside_the_build_volume_are_closed():
     drum = BuildVolume([40, 40, 40], shape="cylinder")
     plan = layout(placed(box((20, 20, 2), (10, 10, 20))), space=drum)
@@ -278,6 +297,12 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
     assert ((x[low] >= 34) | (y[low] < 26) | (y[low] >= 34)).all()
     far = kept.red[:, 2] + x0 >= 34
     assert kept.connected[far].all()
+
+
+def test_a_gap_of_any_width_leaves_what_can_stand_below_its_overhang():
+    plan = layout(placed(TABLE), gap=1e9)
+    assert plan.connected.all()
+    assert set(zip(plan.y, plan.x, strict=True)) <= {(y, x) for _, y, x in plan.red.tolist()}
 
 
 def test_the_automatic_pitch_suits_the_part_and_bounds_memory():

@@ -47,6 +47,7 @@ def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) ->
             slim = True
             strut = _strut(square, number, owners, cubes, round(FARTHEST_MM / frame.pitch))
             struts += strut
+            owners.cube_part.update(cube_users(np.array(strut, np.int32).reshape(-1, 7)))
             count += bool(strut)
         braced += count > 0
         alone += slim and not count

@@ -89,8 +89,8 @@ class SupportLayout:
         """Say for each point ``(n, 3)`` mm of a part's unsupported overhangs why nothing holds it.
 
         The red square that counts is the highest of the part in the point's column that is not above the
-        point. Unconnected, it gives its reason; connected and with the point within its rise, the connector
-        does not get there; otherwise no cube below the point is white.
+        point. When the point is within its rise it gives its reason or, connected, the connector does not get
+        there; otherwise no cube below the point is white.
         """
         reds = np.flatnonzero(self.red_part == part)
         key = self._heights(self.red[reds])
@@ -101,11 +101,9 @@ class SupportLayout:
         reasons = [NO_WHITE_BELOW] * len(points)
         for i in np.flatnonzero(below >= 0):
             red = reds[order[below[i]]]
-            if (self.red[red, 1:] == cube[i, 1:]).all():
-                if not self.connected[red]:
-                    reasons[i] = self.reasons[red]
-                elif cube[i, 0] <= self.red[red, 0] + self.red_rise[red]:
-                    reasons[i] = CONNECTOR_BLOCKED
+            within = cube[i, 0] <= self.red[red, 0] + self.red_rise[red]
+            if within and (self.red[red, 1:] == cube[i, 1:]).all():
+                reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]
         return tuple(reasons)
 
     def _heights(self, square: Ints | Longs) -> Longs:

@@ -75,7 +75,8 @@ def close_gap(
     for part in parts:
         if part.near is not None:
             near[part.window.slices] |= part.near
-    deep = int(np.ceil(gap * np.tan(np.radians(min(overhang_angle_deg, 80.0))) / step)) + 1
+    leaving = np.ceil(gap * np.tan(np.radians(min(overhang_angle_deg, 80.0))) / step) + 1
+    deep = int(min(leaving, len(cubes)))
     plane, y, x = red.square.T
     for down in range(1, deep + 1):
         reached = plane >= down

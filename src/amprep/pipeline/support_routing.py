@@ -74,7 +74,13 @@ class Routed(NamedTuple):
 
 
 class Network:
-    """The cubes of a build and the red squares to connect, ready to be routed by any of the routers."""
+    """The cubes of a build and the red squares to connect, ready to be routed by any of the routers.
+
+    Attributes
+    ----------
+    notes
+        What the user should know of the routing so far, each with the part that it is about, None for several.
+    """
 
     def __init__(
         self, frame: GridFrame, cubes: Bytes, red: RedSquares, rules: Rules, route: Route, stop: Stop
@@ -88,7 +94,7 @@ class Network:
             stop,
         )
         self.reasons = [""] * len(red.part)
-        self.notes: list[str] = []
+        self.notes: list[tuple[int | None, str]] = []
 
     def connect(self, reds: Ints, closed: Ints, report: Report) -> Ints:
         """Route the red squares numbered `reds` with the cubes ``closed[:, :3]`` (k, y, x) closed for once.
@@ -119,12 +125,23 @@ class Network:
             raise PluginError(
                 f"the support router broke its promise: {broken[0].subject} {broken[0].message}"
             )
-        self.notes += [note for note in plan.notes if note not in self.notes]
+        self._note(plan, reds)
         reason = {each.red: each.reason for each in plan.unconnected}
         for red, i in zip(reds, number, strict=True):
             self.reasons[red] = reason.get(int(i), "")
         rows = (plan.plane, plan.y + corner[1], plan.x + corner[2], plan.direction, plan.flow, plan.capacity)
         return np.column_stack([*rows, np.zeros(len(plan.flow))]).astype(np.int32)
+
+    def _note(self, plan: SupportPlan, reds: Ints) -> None:
+        """Keep what the router says, that it raised capacities, and that it was stopped."""
+        words = list(plan.notes)
+        if plan.raised:
+            words.append(f"capacities are raised by up to {plan.raised}, as supports.escalation allows")
+        if plan.stop_reason != "finished":
+            words.append(f"routing ended early: {plan.stop_reason}")
+        parts = np.unique(self.red.part[reds])
+        notes = [(int(parts[0]) if len(parts) == 1 else None, each) for each in words]
+        self.notes += [note for note in notes if note not in self.notes]
 
     def _problem(self, cubes: Bytes, square: Ints, reds: Ints, corner: Ints) -> SupportProblem:
         frame, rules = self.frame, self.rules

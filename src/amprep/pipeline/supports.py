@@ -121,7 +121,7 @@ def plan_supports(
     )
     edges = merge_edges(np.concatenate([routed.edges, grounded.edges]))
     connected |= grounded.served
-    notes = []
+    notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
     if len(grounded.feet):
         notes.append(f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows")
     if slender is not None:
