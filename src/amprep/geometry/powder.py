@@ -1,0 +1,241 @@
+"""Finds loose powder that cannot leave: flood fill of the space that solids leave free, for a ball of a given width."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Heights = NDArray[np.float32]
+Ints = NDArray[np.int64]
+Arrays = tuple[Floats, NDArray[np.integer]]
+
+MOST_LINES = 12_000_000
+"""Lines through one group of solids; beyond that they stand further apart than asked."""
+
+_OFF = np.array([0.137, 0.291])
+"""Of the spacing: lines keep off planes in which vertices tend to lie."""
+
+_ABOVE = 1e6
+"""mm; where runs end that nothing closes above."""
+
+
+class Pocket(NamedTuple):
+    """Powder that cannot leave.
+
+    Attributes
+    ----------
+    volume
+        mm3.
+    point
+        A point in it, where it is highest.
+    lo, hi
+        Corners of its box.
+    closed
+        Whether it has no way out at all; else its ways out are too narrow.
+    """
+
+    volume: float
+    point: tuple[float, float, float]
+    lo: tuple[float, float, float]
+    hi: tuple[float, float, float]
+    closed: bool
+
+
+class _Lines(NamedTuple):
+    """Upright lines: ``(y, x)`` of `shape` stands at ``origin + (x + 0.5, y + 0.5) * spacing``."""
+
+    origin: Floats
+    spacing: float
+    shape: tuple[int, int]
+
+
+class _Runs(NamedTuple):
+    """Free intervals of lines: those of line i are ``start[i] .. start[i + 1]``."""
+
+    start: Ints
+    low: Heights
+    high: Heights
+
+    def at(self, line: int, height: float) -> int:
+        """Return the run at a height of a line, or -1."""
+        begin, end = self.start[line], self.start[line + 1]
+        index = int(begin + np.searchsorted(self.high[begin:end], height))
+        return index if index < end and self.low[index] <= height else -1
+
+
+def spacing_for(hole: float, size: Floats) -> float:
+    """Return how far apart lines through a box of `size` stand: half of the hole, unless they get too many."""
+    area = float((size[:2] + 6.0 * hole).prod())
+    return max(hole / 2.0, float(np.sqrt(area / MOST_LINES)))
+
+
+def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: float) -> list[Pocket]:
+    """Return the pockets that a ball of diameter `hole` cannot leave, the largest first.
+
+    The plate, z = 0, closes the space below; above and sideways it is open. Upright lines half of the hole
+    apart are cut by the solids exactly; a ball's centre is where its own line is free as far up and down as
+    its radius, and the four lines around it beside it. Ways less than `hole` wide count as closed and ways
+    wider than `hole` and half of it as open; in between it depends on where the lines fall. What the parts
+    would lock in without supports does not count, nor does a place without room for the ball.
+
+    Parameters
+    ----------
+    supports, parts
+        Closed meshes, vertices ``(n, 3)`` mm and triangles ``(m, 3)``.
+    hole
+        mm, above 0.
+    """
+    solids = [*supports, *parts]
+    if not supports:
+        return []
+    lines = _lines(solids, hole)
+    free = _free_runs(lines, solids)
+    roomy = _roomy_runs(lines, free, hole / 2.0)
+    pocket = _pockets(lines, roomy, hole / 2.0)
+    if not pocket.any():
+        return []
+    found = _listed(lines, free, roomy, pocket, hole / 2.0)
+    if not parts:
+        return found
+    return _unless_own(found, lines, _roomy_runs(lines, _free_runs(lines, parts), hole / 2.0), hole / 2.0)
+
+
+def _lines(solids: Sequence[Arrays], hole: float) -> _Lines:
+    """Stand lines over all solids and at least two beside them on each side."""
+    low = np.min([points.min(axis=0) for points, _ in solids], axis=0)
+    high = np.max([points.max(axis=0) for points, _ in solids], axis=0)
+    spacing = spacing_for(hole, high - low)
+    nx, ny = (np.ceil((high - low)[:2] / spacing) + 5).astype(int).tolist()
+    return _Lines(low[:2] - (2.5 + _OFF) * spacing, spacing, (ny, nx))
+
+
+def _free_runs(lines: _Lines, solids: Sequence[Arrays]) -> _Runs:
+    from amprep.kernels.powder import cross_lines, free_runs
+
+    meshes = [
+        (np.ascontiguousarray(points - (*lines.origin, 0.0)), np.ascontiguousarray(triangles, np.int64))
+        for points, triangles in solids
+    ]
+    count = lines.shape[0] * lines.shape[1]
+    place, none = np.zeros(count, np.int64), np.empty(0, np.float32)
+    for points, triangles in meshes:
+        cross_lines(points, triangles, lines.spacing, lines.shape, place, none, np.empty(0, np.int8))
+    first = np.concatenate([[0], np.cumsum(place)])
+    heights, signs = np.empty(first[-1], np.float32), np.empty(first[-1], np.int8)
+    place = first[:-1].copy()
+    for points, triangles in meshes if first[-1] else ():
+        cross_lines(points, triangles, lines.spacing, lines.shape, place, heights, signs)
+    start = np.empty(count + 1, np.int64)
+    low, high = np.empty((2, first[-1] + count), np.float32)
+    total = free_runs(first, heights, signs, _ABOVE, start, low, high)
+    return _Runs(start, low[:total], high[:total])
+
+
+def _roomy_runs(lines: _Lines, free: _Runs, radius: float) -> _Runs:
+    from amprep.kernels.powder import roomy_runs
+
+    start = np.empty_like(free.start)
+    low, high = np.empty((2, 5 * len(free.low)), np.float32)
+    most = 5 * int(np.diff(free.start).max())
+    spare = np.empty((2, 2, most), np.float32)
+    total = roomy_runs(lines.shape, radius, *free, start, low, high, spare)
+    return _Runs(start, low[:total], high[:total])
+
+
+def _pockets(lines: _Lines, runs: _Runs, radius: float) -> Ints:
+    """Return the number of each run's pocket, 0 for the outside."""
+    from amprep.kernels.powder import join_runs
+
+    parent = np.empty(len(runs.low) + 1, np.int32)
+    join_runs(lines.shape, *runs, _ABOVE - 2.0 * radius, parent)
+    return parent[1:].astype(np.int64)
+
+
+def _listed(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints, radius: float) -> list[Pocket]:
+    """Describe the pockets of roomy runs: whole cavities if they are closed, else what the ball can reach."""
+    around = _pockets(lines, free, 0.0)
+    chosen = np.flatnonzero(pocket)
+    line = np.searchsorted(roomy.start, chosen, side="right") - 1
+    low, high = roomy.low[chosen].astype(np.float64), roomy.high[chosen].astype(np.float64)
+    order = np.lexsort([low - high, pocket[chosen]])  # the longest run of each pocket first
+    longest = order[np.unique(pocket[chosen][order], return_index=True)[1]]
+    middle = (low[longest] + high[longest]) / 2.0
+    cavity = np.array([around[free.at(at, z)] for at, z in zip(line[longest], middle, strict=True)])
+    swept = _swept(lines, line, low, high, np.unique(pocket[chosen], return_inverse=True)[1], radius)
+    open_ = [
+        _pocket(lines, *swept, n, line[longest[n]], middle[n], False) for n in np.flatnonzero(cavity == 0)
+    ]
+    inside = np.flatnonzero(np.isin(around, cavity[cavity > 0]))
+    numbers, label = np.unique(around[inside], return_inverse=True)
+    whole = (
+        np.searchsorted(free.start, inside, side="right") - 1,
+        free.low[inside].astype(np.float64),
+        free.high[inside].astype(np.float64),
+        label,
+    )
+    closed = []
+    for number, one in enumerate(numbers):
+        within = np.flatnonzero(cavity == one)
+        best = within[(high - low)[longest[within]].argmax()]
+        closed.append(_pocket(lines, *whole, number, line[longest[best]], middle[best], True))
+    return sorted(open_ + closed, key=lambda each: (-each.volume, each.point))
+
+
+def _swept(
+    lines: _Lines, line: Ints, low: Floats, high: Floats, label: Ints, radius: float
+) -> tuple[Ints, Floats, Floats, Ints]:
+    """Return the runs that balls cover whose centres are on the given ones: those and the lines beside them."""
+    nx = lines.shape[1]
+    sides = np.array([0, -1, 1, -nx, nx])
+    up = np.where(sides == 0, radius, 0.0)
+    at = (line[:, None] + sides).ravel()
+    bottom, lid = (low[:, None] - up).ravel(), (high[:, None] + up).ravel()
+    owner = np.repeat(label, len(sides))
+    order = np.lexsort([bottom, at, owner])
+    at, bottom, lid, owner = at[order], bottom[order], lid[order], owner[order]
+    # what overlaps on one line is one run: a running maximum of the lids, kept apart by line and pocket
+    group = np.cumsum(np.concatenate([[0], (np.diff(at) != 0) | (np.diff(owner) != 0)]))
+    span = 2.0 * (np.abs(lid).max() + np.abs(bottom).max() + 1.0)
+    reach = np.maximum.accumulate(lid + group * span)
+    begins = np.concatenate([[True], bottom[1:] + group[1:] * span > reach[:-1]])
+    ends = np.concatenate([np.flatnonzero(begins)[1:] - 1, [len(at) - 1]])
+    return at[begins], bottom[begins], reach[ends] - group[ends] * span, owner[begins]
+
+
+def _pocket(
+    lines: _Lines,
+    line: Ints,
+    low: Floats,
+    high: Floats,
+    label: Ints,
+    number: int,
+    at: int,
+    z: float,
+    closed: bool,
+) -> Pocket:
+    own = label == number
+    x, y = line[own] % lines.shape[1], line[own] // lines.shape[1]
+    half = lines.spacing / 2.0
+    plan = lines.origin + (np.array([[x.min(), y.min()], [x.max(), y.max()]]) + 0.5) * lines.spacing
+    point = lines.origin + (np.array([at % lines.shape[1], at // lines.shape[1]]) + 0.5) * lines.spacing
+    return Pocket(
+        float((high[own] - low[own]).sum()) * lines.spacing**2,
+        (float(point[0]), float(point[1]), float(z)),
+        (float(plan[0, 0]) - half, float(plan[0, 1]) - half, float(low[own].min())),
+        (float(plan[1, 0]) + half, float(plan[1, 1]) + half, float(high[own].max())),
+        closed,
+    )
+
+
+def _unless_own(found: list[Pocket], lines: _Lines, parts: _Runs, radius: float) -> list[Pocket]:
+    """Leave out pockets that parts lock in by themselves."""
+    pocket = _pockets(lines, parts, radius)
+    kept = []
+    for each in found:
+        x, y = np.floor((np.array(each.point[:2]) - lines.origin) / lines.spacing).astype(int).tolist()
+        run = parts.at(y * lines.shape[1] + x, each.point[2])
+        if run < 0 or pocket[run] == 0:
+            kept.append(each)
+    return kept
