@@ -1,11 +1,13 @@
 """The promise of finished supports: closed, inside, on the plate, in no part deeper than allowed."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.checks import beams
 from amprep.checks.placed import TOLERANCE
 from amprep.checks.violation import Violation
 from amprep.geometry.inside import inside
@@ -13,7 +15,7 @@ from amprep.geometry.merging import merge_equal
 from amprep.geometry.shells import label_shells
 from amprep.geometry.solids import as_manifold
 from amprep.model.arrays import Bools, Floats
-from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody
+from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.control import Stop
 from amprep.model.space import BuildVolume
 
@@ -46,11 +48,13 @@ def check_bodies(build: Build, stop: Stop) -> list[Violation]:
     """Return how the supports of a build break their promise.
 
     Solids are judged by manifold3d, exactly; of walls without thickness the corners and the middles of
-    triangles and edges are judged.
+    triangles and edges are judged, of beams points on balls along them.
     """
     found: list[Violation] = []
-    for body in map(Body, build.supports):
-        faults = _closed(body)
+    for support in build.supports:
+        solids = None if support.lattice is None else support.lattice.solids
+        body = Body(support if solids is None else replace(support, mesh=solids))
+        faults = _unsound(support) if support.lattice else _closed(body)
         found += faults
         if faults:
             continue
@@ -75,23 +79,43 @@ def _closed(body: Body) -> list[Violation]:
     return [Violation(CLOSED, body.name, f"expected a solid, manifold3d says {status} and {volume:.3g} mm3")]
 
 
+def _unsound(support: SupportBody) -> list[Violation]:
+    """Judge beams as arrays, the solids beside them, and the solid that readers show who know no beams."""
+    if support.lattice is None:
+        return []
+    fault = beams.fault_of(support.lattice)
+    found = [Violation(CLOSED, support.name, fault)] if fault else []
+    for mesh in (support.lattice.solids, support.lattice.stand_in):
+        if len(mesh.triangles):
+            found += _closed(Body(replace(support, mesh=mesh, lattice=None)))
+    return found
+
+
 def _inside(body: Body, space: BuildVolume) -> list[Violation]:
-    points = body.support.mesh.vertices
-    below, above = -points.min(axis=0), points.max(axis=0) - space.size
-    if space.shape == "cylinder":
-        radius = space.size[0] / 2
-        above[:2] = below[:2] = np.hypot(*(points[:, :2] - radius).T).max() - radius
-    excess = float(max(below.max(), above.max()))
+    lattice = body.support.lattice
+    excess = -np.inf if lattice is None else beams.excess_of(lattice, space)
+    if len(body.support.mesh.vertices):
+        excess = max(excess, _excess(body.support.mesh.vertices, space))
     found = []
     if excess > TOLERANCE:
         found.append(Violation(INSIDE, body.name, f"sticks out of the build volume by {excess:.4f} mm"))
     return [*found, *_zones(body, space)]
 
 
+def _excess(points: Floats, space: BuildVolume) -> float:
+    """Return how far points lie outside the build volume, mm."""
+    below, above = -points.min(axis=0), points.max(axis=0) - space.size
+    if space.shape == "cylinder":
+        radius = space.size[0] / 2
+        above[:2] = below[:2] = np.hypot(*(points[:, :2] - radius).T).max() - radius
+    return float(max(below.max(), above.max()))
+
+
 def _zones(body: Body, space: BuildVolume) -> list[Violation]:
     found = []
     for lo, hi in zip(space.zone_lo + TOLERANCE, space.zone_hi - TOLERANCE, strict=True):
-        if _volume_in_box(body, lo, hi):
+        lattice = body.support.lattice
+        if _volume_in_box(body, lo, hi) or (lattice is not None and beams.enters_box(lattice, lo, hi)):
             found.append(Violation(INSIDE, body.name, f"reaches into the forbidden zone at {lo.tolist()} mm"))
     return found
 
@@ -113,6 +137,8 @@ def _standing(body: Body, build: Build) -> list[Violation]:
     A shell of negative volume bounds a void inside a piece and is none itself. Where the build allows it, a
     piece may stand on a part that the body holds instead.
     """
+    if body.support.lattice is not None:
+        return _standing_beams(body, body.support.lattice, build)
     points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
     count, shell = label_shells(triangles, len(points))
     lowest = np.full(count, np.inf)
@@ -134,6 +160,21 @@ def _standing(body: Body, build: Build) -> list[Violation]:
     return [Violation(STANDING, body.name, message)]
 
 
+def _standing_beams(body: Body, lattice: Lattice, build: Build) -> list[Violation]:
+    """Judge that beams, and the solids that touch them, reach the plate together."""
+
+    def rests(points: Floats) -> Bools:
+        on_plate = points[:, 2] <= TOLERANCE
+        if build.settings.grounding == "anywhere":
+            held = [build.parts[index] for index in body.support.parts]
+            on_plate |= _rest_on(points, held, build.settings.overlap)
+        return np.asarray(on_plate)
+
+    hanging = beams.hanging_pieces(lattice, rests)
+    message = f"{hanging} pieces of beams and what they carry do not reach the plate"
+    return [Violation(STANDING, body.name, message)] if hanging else []
+
+
 def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Bools:
     """Tell which points are at or just below an upper surface of a part: in it, and out of it a little higher."""
     found = np.zeros(len(points), np.bool_)
@@ -152,8 +193,17 @@ def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, hol
     """
     feet = holds and settings.grounding == "anywhere"
     depth = (settings.overlap if holds else 0.0) + TOLERANCE
+    if not placed.part.is_solid:
+        return []
+    lattice = body.support.lattice
+    place = None if lattice is None else beams.deepest_place(lattice, placed.mesh, depth)
+    if place is not None:
+        message = f"enters {placed.label}: a beam at {np.round(place, 2).tolist()} mm is more than {depth:.4g} mm deep"
+        return [Violation(PENETRATION, body.name, message)]
+    if not len(body.support.mesh.triangles):
+        return []
     (lo, hi), (part_lo, part_hi) = body.support.mesh.bounds, placed.mesh.bounds
-    if ((lo > part_hi) | (hi < part_lo)).any() or not placed.part.is_solid:
+    if ((lo > part_hi) | (hi < part_lo)).any():
         return []
     if body.support.surface:
         deep = _sheet_enters(body, placed, depth)

@@ -23,6 +23,10 @@ _SHELLS = (0.25, 0.5, 0.95)
 """Shares of a ball's radius at which points are tried: what it touches may be a plate thinner than the ball."""
 
 
+_GRID, _MOST_CELLS = 128, 4_000_000
+"""Cells along the longest side of the grid that tells what is near a surface; how many are marked at once."""
+
+
 class Samples(NamedTuple):
     """Places along beams, end to end, at most `step` radii apart.
 
@@ -72,15 +76,40 @@ def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) ->
 def balls_too_deep(
     centres: Floats, reach: Floats, vertices: Floats, triangles: Ints, depth: float, directions: Floats
 ) -> Bools:
-    """Tell which balls have a point at distance `reach` ``(k,)`` of their centre that is `too_deep`."""
-    found = np.zeros(len(centres), np.bool_)
-    lo, hi = vertices.min(axis=0), vertices.max(axis=0)
-    near = np.flatnonzero(((centres + reach[:, None] > lo) & (centres - reach[:, None] < hi)).all(axis=1))
+    """Tell which balls have their centre, or a point at distance `reach` ``(k,)`` of it, `too_deep`."""
+    found = too_deep(centres, vertices, triangles, depth)
+    near = np.flatnonzero(near_surface(centres, float(reach.max(initial=0.0)), vertices, triangles) & ~found)
     for direction in directions:
         near = near[~found[near]]
         points = centres[near] + reach[near, None] * direction
         found[near] = too_deep(points, vertices, triangles, depth)
     return found
+
+
+def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints) -> Bools:
+    """Tell which points may have a triangle within `reach` mm; of the others it is certain that they have none."""
+    near = np.zeros(len(points), np.bool_)
+    if not len(triangles) or not len(points):
+        return near
+    corners = vertices[triangles]
+    low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
+    origin, extent = low.min(axis=0), high.max(axis=0) - low.min(axis=0)
+    side = max(2.0 * reach, float(extent.max()) / _GRID, 1e-6)
+    shape = np.floor(extent / side).astype(np.int64) + 1
+    first, last = (np.floor((each - origin) / side).astype(np.int64) for each in (low, high))
+    taken = np.zeros(int(shape.prod()), np.bool_)
+    spans = last - first + 1
+    for some in np.array_split(np.arange(len(triangles)), 1 + int(spans.prod(axis=1).sum()) // _MOST_CELLS):
+        sizes = spans[some].prod(axis=1)
+        owner = np.repeat(some, sizes)
+        place = np.arange(len(owner)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+        x, rest = place % spans[owner, 0], place // spans[owner, 0]
+        cell = first[owner] + np.column_stack([x, rest % spans[owner, 1], rest // spans[owner, 1]])
+        taken[np.ravel_multi_index(tuple(cell.T), tuple(shape))] = True
+    within = ((points >= origin) & (points <= origin + extent)).all(axis=1)
+    cell = np.minimum(np.floor((points[within] - origin) / side).astype(np.int64), shape - 1)
+    near[within] = taken[np.ravel_multi_index(tuple(cell.T), tuple(shape))]
+    return near
 
 
 class Carried(NamedTuple):

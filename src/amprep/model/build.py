@@ -87,7 +87,7 @@ class PlacedPart:
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Round beams with balls at their ends, cut off at the plate, and the solids that they carry.
+    """Round beams with balls at their ends, and the solids that they carry.
 
     Attributes
     ----------
@@ -97,8 +97,8 @@ class Lattice:
         Connectors and whatever else is no beam; may have no triangles.
     stand_in
         What readers that know no beams show: the whole body as a solid, or a coarser one.
-    at_plate
-        Whether a clipping mesh cuts off what beams have below the plate.
+    room
+        ``(2, 3)`` mm, corners of the box outside which beams are cut off; None where nothing cuts them.
     """
 
     nodes: Floats
@@ -106,12 +106,14 @@ class Lattice:
     radii: Floats
     solids: Mesh
     stand_in: Mesh
-    at_plate: bool = True
+    room: Floats | None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", frozen(self.nodes, np.float64, 3))
         object.__setattr__(self, "struts", frozen(self.struts, np.int32, 2))
         object.__setattr__(self, "radii", frozen(self.radii, np.float64, 2))
+        if self.room is not None:
+            object.__setattr__(self, "room", frozen(self.room, np.float64, 3))
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.geometry.beams import DIRECTIONS, Carried, balls_too_deep, carried, sample
+from amprep.geometry.beams import DIRECTIONS, Carried, Samples, balls_too_deep, carried, sample
 from amprep.geometry.cell_solids import arrays_of
 from amprep.geometry.inside import inside
 from amprep.geometry.merging import compact
 from amprep.geometry.solids import as_manifold
-from amprep.model import CONTACT_TOLERANCE, Beams, CellRequest, Cells, Lattice, Mesh, PlacedPart, Template
+from amprep.model import (
+    CONTACT_TOLERANCE,
+    Beams,
+    BuildVolume,
+    CellRequest,
+    Cells,
+    Lattice,
+    Mesh,
+    PlacedPart,
+    Template,
+)
 from amprep.model.arrays import Bools, Floats
 
 MOST_STOOD_IN = 100_000
@@ -25,9 +35,15 @@ _SIDEWAYS = DIRECTIONS[np.abs(DIRECTIONS[:, 2]) < 1e-9]
 
 
 def keep_out(
-    beams: Beams, parts: Sequence[PlacedPart], held: tuple[int, ...], *, overlap: float, gap: float
+    beams: Beams,
+    parts: Sequence[PlacedPart],
+    held: tuple[int, ...],
+    space: BuildVolume,
+    *,
+    overlap: float,
+    gap: float,
 ) -> Beams:
-    """Shorten beams that reach into parts or too near to their walls; drop those of which nothing is left.
+    """Shorten beams that reach into parts, too near to their walls, or out of bounds; drop those that vanish.
 
     As for connectors, depth is measured upwards. Of each beam the longest clear stretch stays; beams of one
     group are given.
@@ -42,7 +58,7 @@ def keep_out(
     if not len(beams.struts):
         return beams
     places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii)
-    blocked = np.zeros(len(places.centres), np.bool_)
+    blocked = _out_of_bounds(places, space)
     for index, placed in enumerate(parts):
         if not placed.part.is_solid:
             continue
@@ -52,6 +68,19 @@ def keep_out(
         if gap > 0.0:
             blocked |= balls_too_deep(places.centres, places.radii + gap, *arrays, depth + gap, _SIDEWAYS)
     return _clear_stretches(beams, places.strut, places.share, blocked)
+
+
+def _out_of_bounds(places: Samples, space: BuildVolume) -> Bools:
+    """Tell which balls reach into a forbidden zone or out of a round build volume; a box cuts them off."""
+    centres, radii = places.centres, places.radii
+    found = np.zeros(len(centres), np.bool_)
+    if space.shape == "cylinder":
+        middle = space.size[0] / 2
+        found |= np.hypot(*(centres[:, :2] - middle).T) + radii > middle
+    for lo, hi in zip(space.zone_lo, space.zone_hi, strict=True):
+        away = np.maximum(np.maximum(lo - centres, centres - hi), 0.0)
+        found |= np.linalg.norm(away, axis=1) < radii
+    return found
 
 
 def _clear_stretches(beams: Beams, strut: np.ndarray, share: Floats, blocked: Bools) -> Beams:
@@ -96,7 +125,12 @@ def _longest_run(clear: Bools) -> tuple[int, int] | None:
 
 
 def lattice_of(
-    beams: Beams, solids: Mesh | None, whole: Mesh, coarse: Mesh | None, boxes: tuple[Floats, Floats]
+    beams: Beams,
+    solids: Mesh | None,
+    whole: Mesh,
+    coarse: Mesh | None,
+    boxes: tuple[Floats, Floats],
+    space: BuildVolume,
 ) -> Lattice | None:
     """Return what stands of beams and of the solids that they carry; None when they do not carry enough.
 
@@ -129,6 +163,7 @@ def lattice_of(
         np.round(beams.radii[stands.struts], 6),
         Mesh(*compact(points, triangles[stands.triangles])),
         whole if coarse is None else coarse,
+        np.array([np.zeros(3), space.size]),
     )
 
 

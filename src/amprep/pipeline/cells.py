@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from amprep.errors import JobError
-from amprep.model import Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
+from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
 from amprep.model.arrays import CONTACT_TOLERANCE
 from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
 from amprep.pipeline.cell_carving import Obstacles
@@ -26,6 +26,7 @@ def build_supports(
     report: Report,
     beams: bool | None = None,
     gap: float = 0.0,
+    space: BuildVolume | None = None,
 ) -> tuple[SupportBody, ...]:
     """Turn a layout into supports: one closed solid per support group, or its walls without thickness.
 
@@ -48,6 +49,8 @@ def build_supports(
         Whether struts become beams: None as the cell's parameters say, False never.
     gap
         mm that beams keep from walls of parts; other cells keep to white cubes.
+    space
+        What cuts beams off; without it all supports are meshes.
 
     Raises
     ------
@@ -86,9 +89,9 @@ def build_supports(
         sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
         if solid is not None and len(solid.triangles):
             lattice = None
-            if bare is not None:
+            if bare is not None and space is not None:
                 lattice = _lattice(
-                    group, bare, solid, layout, ways, obstacles, parts, overlap=overlap, gap=gap
+                    group, bare, solid, layout, ways, obstacles, parts, space, overlap=overlap, gap=gap
                 )
             bodies.append(SupportBody(f"supports of {name}", solid, held, lattice=lattice))
         if sheet is not None and len(sheet.triangles):
@@ -122,6 +125,7 @@ def _lattice(
     ways: Ways,
     obstacles: Obstacles,
     parts: tuple[PlacedPart, ...],
+    space: BuildVolume,
     *,
     overlap: float,
     gap: float,
@@ -135,9 +139,9 @@ def _lattice(
             group, emitted, layout, ways, obstacles, overlap=overlap, extend=False, on_beams=on_beams
         )
 
-    beams = keep_out(mine, parts, held, overlap=overlap, gap=gap)
+    beams = keep_out(mine, parts, held, space, overlap=overlap, gap=gap)
     coarse = None
     if len(whole.triangles) > MOST_STOOD_IN:
         coarse = solid(sort_out(bare.request, prisms(bare.request)), on_beams=False)
     boxes = foot_boxes(layout, group, overlap)
-    return lattice_of(beams, solid(bare, on_beams=True), whole, coarse, boxes)
+    return lattice_of(beams, solid(bare, on_beams=True), whole, coarse, boxes, space)

@@ -67,6 +67,7 @@ def support_build(
             allow_surface=job.target == "generic",
             beams=_beams(job),
             gap=settings.gap,
+            space=job.printer.space,
             stop=stop,
             report=report,
         )

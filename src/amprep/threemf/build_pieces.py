@@ -127,13 +127,11 @@ class PieceReader:
         if not shown:
             raise ValueError("beams have no mesh that stands in for them")
         mode, clipping = lattice.GetClipping()
-        room = self._mesh(clipping) if mode == Lib3MF.BeamLatticeClipMode.Inside else None
+        clips = mode == Lib3MF.BeamLatticeClipMode.Inside
+        room = np.array(self._mesh(clipping).bounds) if clips else None
         used, local = np.unique(struts, return_inverse=True)
         solids = Mesh(*compact(mesh.vertices, mesh.triangles.astype(np.int64)))
-        at_plate = room is not None and bool(room.bounds[0][2] >= 0.0)
-        return Lattice(
-            mesh.vertices[used], local.reshape(-1, 2), radii, solids, self._mesh(stand_in), at_plate
-        )
+        return Lattice(mesh.vertices[used], local.reshape(-1, 2), radii, solids, self._mesh(stand_in), room)
 
     def _mesh(self, number: int) -> Mesh:
         raw = fetch_mesh(self._model.GetMeshObjectByID(number))

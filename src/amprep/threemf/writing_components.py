@@ -35,9 +35,10 @@ def components_document(build: Build) -> Document:
     bodies = [_part_body(part) for part in parts]
     places = []
     for support in build.supports:
-        bodies += _aids(build, support)
-        places.append(len(bodies))
-        bodies.append(_support_body(build, support, at=len(bodies)))
+        aids = _aids(build, support)
+        first = len(bodies)
+        bodies += [*aids, _support_body(build, support, range(first, first + len(aids)))]
+        places.append(len(bodies) - 1)
     items = [_item(build, parts, group, places) for group in groups]
     return Document(build.settings.build_id, build_metadata(build, parts), tuple(bodies), tuple(items))
 
@@ -61,16 +62,18 @@ def _has_beams(build: Build, support: SupportBody) -> bool:
 
 def _aids(build: Build, support: SupportBody) -> list[Body]:
     """Return what beams need beside them: the mesh for readers that know none, and what they are cut off by."""
-    if support.lattice is None or not _has_beams(build, support):
+    lattice = support.lattice
+    if lattice is None or not _has_beams(build, support):
         return []
-    space = build.settings.space.size
-    box = Mesh(_CUBE * space, np.array(_SIDES))
-    name = support.name
-    return [Body(f"mesh of {name}", support.lattice.stand_in), Body(f"room of {name}", box)]
+    aids = [Body(f"mesh of {support.name}", lattice.stand_in)]
+    if lattice.room is not None:
+        low, high = lattice.room
+        aids.append(Body(f"room of {support.name}", Mesh(low + _CUBE * (high - low), np.array(_SIDES))))
+    return aids
 
 
-def _support_body(build: Build, support: SupportBody, at: int) -> Body:
-    """Return the support's object, body `at` of the file.
+def _support_body(build: Build, support: SupportBody, aids: Sequence[int]) -> Body:
+    """Return the support's object; `aids` are the bodies that its beams need beside them.
 
     A surface must not be filled, which only the type `support` says.
     """
@@ -84,7 +87,7 @@ def _support_body(build: Build, support: SupportBody, at: int) -> Body:
     lattice = support.lattice
     if lattice is None or not _has_beams(build, support):
         return Body(support.name, support.mesh, kind, metadata=metadata)
-    beams = BeamSet(lattice.nodes, lattice.struts, lattice.radii, at - 2, at - 1)
+    beams = BeamSet(lattice.nodes, lattice.struts, lattice.radii, *aids)
     return Body(support.name, lattice.solids, kind, metadata=metadata, beams=beams)
 
 

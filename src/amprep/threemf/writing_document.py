@@ -23,7 +23,7 @@ class Volume:
 
 @dataclass(frozen=True, eq=False)
 class BeamSet:
-    """The beams of a body; bodies before it that stand in for it, and that cut it off (indices).
+    """The beams of a body; bodies before it that stand in for it, and that may cut it off (indices).
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class BeamSet:
     struts: Ints
     radii: Floats
     stand_in: int
-    clipping: int
+    clipping: int | None = None
 
 
 @dataclass(frozen=True, eq=False)

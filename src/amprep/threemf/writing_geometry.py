@@ -94,10 +94,14 @@ def _beams_text(beams: BeamSet, first: int, object_ids: Sequence[int]) -> Iterat
     sizes, which, count = np.unique(beams.radii, axis=0, return_inverse=True, return_counts=True)
     usual = count[sizes[:, 0] == sizes[:, 1]]
     common = float(sizes[sizes[:, 0] == sizes[:, 1]][usual.argmax(), 0]) if len(usual) else 1.0
+    cut = (
+        ""
+        if beams.clipping is None
+        else f'clippingmode="inside" clippingmesh="{object_ids[beams.clipping]}" '
+    )
     yield (
-        f'<b:beamlattice radius="{common:.9g}" minlength="{SHORTEST_BEAM:g}" clippingmode="inside" '
-        f'clippingmesh="{object_ids[beams.clipping]}" representationmesh="{object_ids[beams.stand_in]}" '
-        'cap="sphere"><b:beams>\n'
+        f'<b:beamlattice radius="{common:.9g}" minlength="{SHORTEST_BEAM:g}" {cut}'
+        f'representationmesh="{object_ids[beams.stand_in]}" cap="sphere"><b:beams>\n'
     ).encode()
     struts = beams.struts.astype(np.int64) + first
     plain = (beams.radii == common).all(axis=1)

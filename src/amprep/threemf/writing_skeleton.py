@@ -151,8 +151,9 @@ class _Builder:
         beam.Radii[0] = beam.Radii[1] = 1.0
         lattice.AddBeam(beam)
         lattice.SetRepresentation(self.meshes[beams.stand_in].GetResourceID())
-        inside = self.lib3mf.BeamLatticeClipMode.Inside
-        lattice.SetClipping(inside, self.meshes[beams.clipping].GetResourceID())
+        if beams.clipping is not None:
+            inside = self.lib3mf.BeamLatticeClipMode.Inside
+            lattice.SetClipping(inside, self.meshes[beams.clipping].GetResourceID())
 
     def paint(self, mesh: Any, appearance: Appearance) -> None:
         """Give the object its material or colour, and a palette for its triangles."""
