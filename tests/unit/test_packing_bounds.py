@@ -1,5 +1,7 @@
 """Bounds: against the published means of L2, by hand, and with clearance, zones and round plates."""
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -52,6 +54,14 @@ def test_l2_reproduces_the_published_means(kind):
     for n, mean in zip((50, 100, 150, 200), PUBLISHED[kind], strict=True):
         bounds = [l2_bound(martello_pisinger_vigo(kind, n, index), room, 0.0) for index in range(1, 11)]
         assert np.mean(bounds) == pytest.approx(mean)
+
+
+def test_l2_of_thousands_of_different_sizes_comes_at_once():
+    sizes, room = np.random.default_rng(0).uniform(10.0, 60.0, (20_000, 3)), np.full(3, 100.0)
+    begun = time.process_time()
+    bound = l2_bound(sizes, room, 0.0)
+    assert time.process_time() - begun < 10.0
+    assert bound >= sizes.prod(axis=1).sum() / room.prod()
 
 
 def problem(

@@ -4,6 +4,9 @@ import numpy as np
 
 from amprep.model.arrays import Floats
 
+MOST_THRESHOLDS = 200
+"""Lengths tried as p and q, at most: fewer give a weaker bound, but one in time for thousands of sizes."""
+
 
 def l2_bound(size: Floats, room: Floats, gap: float) -> int:
     """Return a lower bound on the number of rooms that boxes of fixed orientation need.
@@ -35,8 +38,8 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
     lined_up = _one_dimensional(length[both], whole)
     grown = grown_volume(size, gap / 2.0)
     floor = float((room[0] + gap) * (room[1] + gap))
-    p = np.unique(np.append(width[width <= room[0] / 2.0], room[0] / 2.0))
-    q = np.unique(np.append(height[height <= room[1] / 2.0], room[1] / 2.0))
+    p = _thresholds(np.append(width[width <= room[0] / 2.0], room[0] / 2.0))
+    q = _thresholds(np.append(height[height <= room[1] / 2.0], room[1] / 2.0))
     too_wide, too_high = width > room[0] - p[:, None], height > room[1] - q[:, None]
     blocking = (too_wide * (length * both)) @ too_high.T
     blocking_volume = (too_wide * (grown * both)) @ too_high.T
@@ -44,6 +47,14 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
     volume = grown[both].sum() - blocking_volume + small_volume
     more = (volume - (whole * lined_up - blocking) * floor) / (whole * floor)
     return lined_up + max(0, int(np.ceil(more.max() - 1e-9)))
+
+
+def _thresholds(length: Floats) -> Floats:
+    """Return the different lengths, evenly chosen when they are too many."""
+    found = np.unique(length)
+    if len(found) > MOST_THRESHOLDS:
+        found = found[np.linspace(0, len(found) - 1, MOST_THRESHOLDS).astype(np.int64)]
+    return found
 
 
 def grown_volume(size: Floats, radius: float) -> Floats:
@@ -58,7 +69,7 @@ def _one_dimensional(length: Floats, whole: float) -> int:
     large, small = length[length > whole / 2.0], length[length <= whole / 2.0]
     if not len(small):
         return len(large)
-    p = np.unique(small)[:, None]
+    p = _thresholds(small)[:, None]
     counted, beside = small >= p, large <= whole - p
     by_length = (counted @ small - beside.sum(axis=1) * whole + beside @ large) / whole
     room_beside = (np.floor((whole - large) / np.maximum(p, 1e-12)) * beside).sum(axis=1)
