@@ -140,16 +140,31 @@ class CellSettings:
         Name of a lattice cell, or the path of a file that declares one: TOML, or a mesh.
     lattice
         Struts as beams or as meshes; None leaves it to the cell's parameters.
+    removability
+        Whether contacts with the parts and powder locked in are measured for the report.
+    powder_hole_mm
+        Powder counts as locked in where a ball of this diameter cannot leave.
+    layer_mm, density_g_cm3
+        Thickness of a printed layer, and density of the supports, by which time and mass are estimated; None
+        takes the density from the parts' material.
     """
 
     strategy: str = "x-wall"
     connector: Literal["full", "extend"] = "full"
     overlap_mm: float = 0.1
     lattice: Literal["beams", "mesh"] | None = None
+    removability: bool = False
+    powder_hole_mm: float = 0.2
+    layer_mm: float = 0.04
+    density_g_cm3: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         require(self.overlap_mm >= 0, "overlap_mm is at least 0", self.overlap_mm)
+        require(self.powder_hole_mm >= 0.02, "powder_hole_mm is at least 0.02", self.powder_hole_mm)
+        require(self.layer_mm > 0, "layer_mm is above 0", self.layer_mm)
+        density = self.density_g_cm3
+        require(density is None or density > 0, "density_g_cm3 is above 0", density)
 
     @property
     def file(self) -> Path | None:

@@ -28,6 +28,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         height_mm=build_height(build),
         support_volume_mm3=support_volume(build),
         advice=supported.advice,
+        removal=supported.removal,
         columns=tuple(measure_columns(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),

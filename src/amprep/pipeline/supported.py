@@ -20,9 +20,11 @@ from amprep.model import (
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW
 from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.cells import build_supports
+from amprep.pipeline.removability import removal_of
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.support_grid import usual_pitch
 from amprep.pipeline.supports import SupportLayout, choose_pitch, plan_supports
+from amprep.report.removability import Removal
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,7 @@ class SupportedBuild:
     build: Build
     layout: SupportLayout | None = None
     advice: tuple[str, ...] = ()
+    removal: tuple[Removal, ...] = ()
 
 
 def support_build(
@@ -74,7 +77,9 @@ def support_build(
     with clock.stage("judge"):
         unsupported = find_unsupported(parts, bodies, settings, layout.reason_at)
     build = Build(settings, parts, bodies, unsupported)
-    return SupportedBuild(build, layout, tuple(_advice(job, build, pitch)))
+    with clock.stage("judge"):
+        removal = removal_of(job, build)
+    return SupportedBuild(build, layout, tuple(_advice(job, build, pitch)), removal)
 
 
 def _advice(job: Job, build: Build, pitch: float) -> Iterator[str]:

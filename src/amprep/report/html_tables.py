@@ -46,6 +46,7 @@ def body_sections(record: RunRecord) -> str:
         ("Unplaced", _unplaced(record)),
         ("Unsupported", _unsupported(record)),
         ("Supports", "".join(_supports(n, entry) for n, entry in enumerate(record.builds, start=1))),
+        ("Removing supports", "".join(_removal(n, each) for n, each in enumerate(record.builds, start=1))),
         ("Overhangs", "".join(_overhangs(n, entry) for n, entry in enumerate(record.builds, start=1))),
         ("Verification", _verification(record)),
         ("Parts", "".join(_parts(number, entry) for number, entry in enumerate(record.builds, start=1))),
@@ -172,6 +173,37 @@ def _supports(number: int, entry: BuildRecord) -> str:
     most = max(columns.slenderness for columns in entry.columns)
     name = f"Build {number}: {len(entry.columns)} bodies, the most slender piece {most:.1f} times as high as wide"
     return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+
+
+def _removal(number: int, entry: BuildRecord) -> str:
+    if not entry.removal:
+        return ""
+    rows = (
+        (
+            body.name,
+            _figure(each.mass_g, ".2f"),
+            _figure(each.scan_mm2, ",.0f"),
+            _figure(each.contact_mm2, ".2f"),
+            _figure(each.contacts, "d"),
+            _figure(None if each.pockets is None else len(each.pockets), "d"),
+            _figure(each.trapped_mm3, ".2f"),
+        )
+        for body, each in zip(entry.build.supports, entry.removal, strict=True)
+    )
+    headings = (
+        "Supports",
+        "Mass g|",
+        "Scanned mm²|",
+        "Contact mm²|",
+        "Contacts|",
+        "Powder pockets|",
+        "Powder locked in mm³|",
+    )
+    return f"<details><summary>Build {number}</summary>\n{table(headings, rows)}</details>\n"
+
+
+def _figure(value: float | None, form: str) -> tuple[str, str]:
+    return "number", "" if value is None else f"{value:{form}}"
 
 
 def _overhangs(number: int, entry: BuildRecord) -> str:

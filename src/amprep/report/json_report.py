@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from amprep.geometry.powder import Pocket
 from amprep.model import PlacedPart, Unsupported
 from amprep.report.measures import part_volume
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord
+from amprep.report.removability import Removal, totals
 from amprep.threemf.writing_files import replacing
 
 FORMAT = 1
@@ -72,6 +74,7 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
         "supports": {
             "volume_mm3": entry.support_volume_mm3,
             "material": entry.support_material,
+            **totals(entry.removal),
             "overhangs": [_overhang(region) for region in entry.overhangs],
             "red": entry.red,
             "unconnected": [_unconnected(square) for square in entry.unconnected],
@@ -152,6 +155,30 @@ def _body(entry: BuildRecord, index: int) -> dict[str, Any]:
         "triangles": len(body.mesh.triangles),
         "volume_mm3": 0.0 if body.surface else abs(body.mesh.signed_volume),
         **columns,
+        **(_removal(entry.removal[index]) if entry.removal else {}),
+    }
+
+
+def _removal(removal: Removal) -> dict[str, Any]:
+    pockets = removal.pockets
+    return {
+        "mass_g": removal.mass_g,
+        "scan_mm2": removal.scan_mm2,
+        "contact_mm2": removal.contact_mm2,
+        "contacts": removal.contacts,
+        "trapped_mm3": removal.trapped_mm3,
+        "resolution_mm": removal.resolution_mm,
+        "pockets": None if pockets is None else [_pocket(pocket) for pocket in pockets],
+    }
+
+
+def _pocket(pocket: Pocket) -> dict[str, Any]:
+    return {
+        "volume_mm3": pocket.volume,
+        "position_mm": pocket.point,
+        "low_mm": pocket.lo,
+        "high_mm": pocket.hi,
+        "closed": pocket.closed,
     }
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from amprep.checks.violation import Violation
 from amprep.model import Build, Unsupported
 from amprep.report.columns import Columns
+from amprep.report.removability import Removal
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,8 @@ class BuildRecord:
         What to try for a better build, one sentence each.
     columns
         How slender each of the build's support bodies is.
+    removal
+        What each of them costs and how it comes off.
     """
 
     build: Build
@@ -123,6 +126,7 @@ class BuildRecord:
     overhangs: tuple[OverhangRecord, ...] = ()
     columns: tuple[Columns, ...] = ()
     advice: tuple[str, ...] = ()
+    removal: tuple[Removal, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

@@ -74,6 +74,7 @@ def _attention(record: RunRecord) -> list[str]:
             for found in entry.verification or ()
         ]
         lines += [f"build {number}: unsupported: {words}" for words in _unsupported(entry)]
+        lines += [f"build {number}: {words}" for words in _trapped(entry)]
     return lines
 
 
@@ -89,6 +90,17 @@ def _unsupported(entry: BuildRecord) -> list[str]:
             counts = ", ".join(f"{count} {reason}" for reason, count in reasons.most_common())
             lines.append(f"{len(regions)} regions of {placed.label}: {counts}")
     return lines
+
+
+def _trapped(entry: BuildRecord) -> list[str]:
+    """Return a line when powder is locked in."""
+    pockets = [pocket for removal in entry.removal for pocket in removal.pockets or ()]
+    if not pockets:
+        return []
+    volume = sum(pocket.volume for pocket in pockets)
+    return [
+        f"powder cannot leave {_count(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ together"
+    ]
 
 
 def _stages(stages: tuple[StageTime, ...]) -> str:

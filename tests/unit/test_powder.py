@@ -1,0 +1,95 @@
+"""Powder that cannot leave, and contacts with parts: cases known by hand."""
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+
+from amprep.geometry.contacts import measure_contact
+from amprep.geometry.powder import find_pockets
+
+
+def box(size, corner):
+    return Manifold.cube(size).translate(corner)
+
+
+def arrays(solid):
+    mesh = solid.to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts)
+
+
+CASE = box((6, 5, 7), (0, 0, 0)) - box((4, 3, 5), (1, 1, 1))
+PART = box((12, 12, 2), (-3, -3, 8))
+
+
+def test_a_closed_box_locks_in_exactly_its_inside():
+    (pocket,) = find_pockets([arrays(CASE)], [], hole=0.2)
+    assert pocket.closed
+    assert pocket.volume == pytest.approx(60.0, rel=1e-5)
+    np.testing.assert_allclose([pocket.lo, pocket.hi], [(1, 1, 1), (5, 4, 6)], atol=0.11)
+    assert (np.array(pocket.lo) < pocket.point).all()
+    assert (np.array(pocket.hi) > pocket.point).all()
+
+
+def test_four_walls_between_the_plate_and_a_part_lock_in_what_is_between_them():
+    walls = box((6, 5, 8), (0, 0, 0)) - box((4, 3, 9), (1, 1, -0.5))
+    (pocket,) = find_pockets([arrays(walls)], [arrays(PART)], hole=0.2)
+    assert pocket.closed
+    assert pocket.volume == pytest.approx(4 * 3 * 8, rel=1e-5)
+    assert find_pockets([arrays(walls)], [], hole=0.2) == []
+
+
+@pytest.mark.parametrize(("width", "count"), [(0.15, 1), (0.35, 0)])
+@pytest.mark.parametrize("turn", [0, 90])
+def test_a_slit_lets_powder_out_when_it_is_wider_than_the_hole(width, count, turn):
+    slit = CASE - box((2, width, 3), (4.5, 2, 2))
+    found = find_pockets([arrays(slit.rotate((0, 0, turn)))], [], hole=0.2)
+    assert len(found) == count
+    for pocket in found:
+        assert not pocket.closed
+        assert pocket.volume == pytest.approx(60.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("height", "count"), [(0.19, 1), (0.21, 0)])
+def test_a_level_slit_is_measured_without_steps(height, count):
+    slit = CASE - box((2, 2, height), (4.5, 1.5, 3))
+    assert len(find_pockets([arrays(slit)], [], hole=0.2)) == count
+
+
+def test_a_cavity_that_a_part_has_by_itself_is_none_of_the_supports_doing():
+    hollow = box((8, 8, 8), (0, 0, 4)) - box((2, 2, 2), (3, 3, 7))
+    post = box((1, 1, 4.1), (3.5, 3.5, 0))
+    assert find_pockets([arrays(post)], [arrays(hollow)], hole=0.2) == []
+
+
+def test_two_chambers_with_a_door_are_one_pocket_and_without_it_two():
+    walls = CASE + box((0.5, 3, 5), (2.75, 1, 1))
+    assert len(find_pockets([arrays(walls)], [], hole=0.2)) == 2
+    door = walls - box((1, 1, 1), (2.5, 2, 2))
+    (pocket,) = find_pockets([arrays(door)], [], hole=0.2)
+    assert pocket.volume == pytest.approx(60 - 0.5 * 15 + 0.5, rel=2e-2)
+
+
+def test_the_same_solids_give_the_same_pockets_wherever_they_stand():
+    here = find_pockets([arrays(CASE)], [], hole=0.2)
+    there = find_pockets([arrays(CASE.translate((100.03, 57.77, 0)))], [], hole=0.2)
+    assert there[0].volume == pytest.approx(here[0].volume, rel=1e-5)
+
+
+def test_a_column_of_2_by_2_has_4_mm2_of_contact_in_one_patch():
+    column = box((2, 2, 10), (0, 0, 0))
+    contact = measure_contact(arrays(column), arrays(box((20, 20, 5), (-9, -9, 9.9))))
+    assert contact.area == pytest.approx(4.0, abs=1e-9)
+    assert contact.patches == 1
+
+
+def test_the_contact_with_a_slope_is_larger_than_its_plan():
+    slope = box((20, 20, 5), (-10, -10, 0)).rotate((0, 30, 0)).translate((0, 0, 9.0))
+    contact = measure_contact(arrays(box((2, 2, 10), (-1, -1, 0))), arrays(slope))
+    assert contact.area == pytest.approx(4.0 / np.cos(np.radians(30)), rel=1e-9)
+
+
+def test_two_posts_have_two_contacts_and_a_post_that_stays_below_has_none():
+    posts = box((2, 2, 10), (0, 0, 0)) + box((2, 2, 10), (5, 0, 0))
+    plate = arrays(box((20, 20, 5), (-9, -9, 9.9)))
+    assert measure_contact(arrays(posts), plate).patches == 2
+    assert measure_contact(arrays(box((2, 2, 9), (0, 0, 0))), plate) == (0.0, 0)
