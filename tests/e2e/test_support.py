@@ -91,6 +91,26 @@ def test_parts_outside_the_build_volume_are_refused_by_name(amprep, tmp_path, po
     assert "plate lies from" in outcome.err
 
 
+def test_a_part_outside_a_round_build_volume_is_refused_though_it_is_in_the_box_around_it(amprep, tmp_path):
+    profile = tmp_path / "round.toml"
+    profile.write_text('name = "round"\nshape = "cylinder"\nsize_mm = [50, 60]\n')
+    file = plate_3mf(tmp_path / "plate.3mf", (1, 1, 0))
+    outcome = amprep("support", file, "--printer", profile, "-o", tmp_path / "out")
+    assert outcome.code == 2
+    assert "lies from (1, 1, 0)" in outcome.err
+    assert "outside the build volume" in outcome.err
+
+
+def test_a_quantity_is_left_out_with_a_note(amprep, tmp_path):
+    file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 0))
+    outcome = amprep("support", f"{file}:3", "-o", tmp_path / "out", "--json", "--dry-run")
+    assert outcome.code == 0
+    assert len(outcome.json["builds"][0]["parts"]) == 1
+    assert outcome.json["notes"] == [
+        "plate: supported 1 times, as often as it lies on the plate; its quantity of 3 is for packing"
+    ]
+
+
 def test_a_printer_whose_process_needs_no_supports_gets_some_when_asked(amprep, tmp_path):
     file = plate_3mf(tmp_path / "plate.3mf", (20, 30, 6))
     own = "printer={size_mm=[100.0,100.0,50.0],technology='polymer-powder-bed'}"

@@ -182,6 +182,14 @@ def test_marks_block_and_enforce():
     )  # only the underside
 
 
+def test_what_lies_on_the_plate_is_held_by_it_even_when_support_is_enforced():
+    vertices, triangles = arrays(box((10, 10, 5), (0, 0, 0)))
+    marks = Marks(
+        np.ones(len(triangles), bool), np.zeros(len(triangles), bool), np.zeros(len(vertices), bool)
+    )
+    assert find_overhangs(vertices, triangles, angle_deg=45, marks=marks).regions == ()
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(*[st.floats(0, 20)] * 3), min_size=5, max_size=12), st.floats(10, 80))
 def test_the_lowest_point_of_a_lifted_convex_solid_is_always_among_its_needs(points, angle_deg):

@@ -23,6 +23,10 @@ def test_a_path_carries_one_square_of_overhang_and_one_path_always_fits(area, pa
     assert limit(50, load_area=area) == paths
 
 
+def test_a_load_beyond_all_paths_is_a_capacity_that_routers_can_count():
+    assert limit(50, load_area=1e300) == 1_000_000
+
+
 def test_the_smaller_of_load_and_capacity_holds():
     assert limit(50, load_area=40.0, edge_capacity=3) == 3
     assert limit(50, load_area=40.0, edge_capacity=30) == 10

@@ -130,7 +130,7 @@ def find_overhangs(
 
     enforced = np.zeros(len(triangles), np.bool_)
     if marks is not None:
-        enforced = marks.enforced & (normals[:, 2] < -_LEVEL)
+        enforced = marks.enforced & (normals[:, 2] < -_LEVEL) & _above_plate(surface)
         needy = (needy | enforced) & ~marks.blocked
         blocked = marks.blocked_vertices[surface.first]
         sharp = sharp[~blocked[sharp].all(axis=1)]
@@ -187,8 +187,13 @@ def _unit_normals(surface: _Surface) -> Floats:
 
 def _needy_faces(surface: _Surface, normals: Floats, angle_deg: float) -> Bools:
     steep_enough = np.cos(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
-    above_plate = surface.points[:, 2][surface.triangles].max(axis=1, initial=-np.inf) > _ON_PLATE
-    return np.asarray(above_plate & (-normals[:, 2] > steep_enough))
+    return np.asarray(_above_plate(surface) & (-normals[:, 2] > steep_enough))
+
+
+def _above_plate(surface: _Surface) -> Bools:
+    """Tell which faces do not lie on the plate."""
+    heights = surface.points[:, 2][surface.triangles]
+    return np.asarray(heights.max(axis=1, initial=-np.inf) > _ON_PLATE)
 
 
 def _knife_edges(surface: _Surface, normals: Floats, needy: Bools, angle_deg: float) -> Longs:

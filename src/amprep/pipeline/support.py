@@ -47,7 +47,7 @@ def support(
     clock, limit = Clock(watcher), stop.within(options.time_limit)
     check_choices(job, host)
     with clock.stage("read") as report:
-        parts = read_job(job, host, options.allow_surface, report)
+        parts = [_once_each(part) for part in read_job(job, host, options.allow_surface, report)]
     placed = placed_as_they_lie(parts, job.printer.space, center=center)
     name = f"{job.name}.supported"
     with OutputFolder(options.folder, name, numbered=False) as outputs:
@@ -68,7 +68,7 @@ def placed_as_they_lie(
     InputError
         If a part reaches out of the build volume or below the plate.
     """
-    lying = [replace(part, quantity=len(_positions(part))) for part in parts]
+    lying = [_once_each(part) for part in parts]
     shift = _to_middle(lying, space) if center else np.zeros(3)
     names = labels(lying)
     placed = tuple(
@@ -79,6 +79,15 @@ def placed_as_they_lie(
     for each in placed:
         _require_inside(each, space, center)
     return placed
+
+
+def _once_each(part: Part) -> Part:
+    """Return the part as often as it lies somewhere; a quantity that says otherwise is left out with a note."""
+    count = len(_positions(part))
+    if part.quantity == count:
+        return part
+    words = f"supported {count} times, as often as it lies on the plate; its quantity of {part.quantity} is for packing"
+    return replace(part, quantity=count, notes=(*part.notes, words))
 
 
 def _positions(part: Part) -> Floats:
@@ -103,7 +112,11 @@ def _to_middle(parts: Sequence[Part], space: BuildVolume) -> Floats:
 
 def _require_inside(placed: PlacedPart, space: BuildVolume, centered: bool) -> None:
     lo, hi = placed.mesh.bounds
-    if (lo >= -TOLERANCE).all() and (hi <= space.size + TOLERANCE).all():
+    within = (lo >= -TOLERANCE).all() and (hi <= space.size + TOLERANCE).all()
+    if space.shape == "cylinder":
+        radius = space.size[0] / 2
+        within &= np.hypot(*(placed.mesh.vertices[:, :2] - radius).T).max() <= radius + TOLERANCE
+    if within:
         return
     size = " x ".join(f"{value:g}" for value in space.size)
     low, high = (", ".join(f"{value:.6g}" for value in corner) for corner in (lo, hi))

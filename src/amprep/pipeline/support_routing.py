@@ -8,6 +8,7 @@ import numpy as np
 from amprep.checks.supports import check_plan
 from amprep.errors import PluginError
 from amprep.geometry.overhangs import Longs
+from amprep.job.settings import LARGEST_COUNT
 from amprep.model.arrays import Bytes, Ints
 from amprep.model.control import Report, Stop, silent
 from amprep.model.supports import (
@@ -54,7 +55,7 @@ class Rules(NamedTuple):
             return self.edge_capacity
         height = top * frame.step
         weaker = min(1.0, self.load_height / height) ** 2 if self.load_height and height else 1.0
-        by_load = max(1, int(self.load_area * weaker / frame.pitch**2 + 1e-9))
+        by_load = max(1, int(min(self.load_area * weaker / frame.pitch**2 + 1e-9, LARGEST_COUNT)))
         return min(by_load, self.edge_capacity or by_load)
 
 
