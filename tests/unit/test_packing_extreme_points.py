@@ -328,3 +328,14 @@ def test_the_fill_bound_is_no_less_than_the_brute_force_optimum(sizes, data):
     reached = sum(values[p.item] for build in packing.builds for p in build)
     assert reached <= best <= packing.bound + 1e-9
     assert reached == best or packing.status != "optimal"
+
+
+def test_with_many_boxes_the_slow_passes_come_last():
+    from amprep.kernels.box_places import TOUCHING
+    from amprep.plugins.packing.scene import prepare
+    from amprep.plugins.packing.sortings import passes
+
+    sizes = np.random.default_rng(0).integers(1, 9, (600, 3)).tolist()
+    slow = [plan.style[0] == TOUCHING for plan in passes(prepare(boxes_problem(sizes, (100, 100, 100))))]
+    assert slow == sorted(slow)
+    assert any(slow)
