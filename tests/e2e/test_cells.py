@@ -64,3 +64,40 @@ def test_a_cell_that_breaks_a_promise_gives_1_and_a_wrong_file_2(amprep, tmp_pat
     assert "points is a list of rows of 3 numbers" in wrong.err
     missing = amprep("cells", "check", tmp_path / "none.stl")
     assert missing.code == 2
+
+
+@pytest.mark.parametrize("name", ["strut", "bcc"])
+def test_beams_hold_a_part_in_a_file_that_verifies(amprep, fixtures, tmp_path, name):
+    from amprep.threemf import read_build
+
+    done = amprep(
+        *("run", fixtures / "table.stl", "--cell", name, "--lattice", "beams", "--supports-as", "model"),
+        *("--set", "supports.pitch_mm=4", "-o", tmp_path),
+    )
+    assert done.code == 0, done.err
+    path = tmp_path / "table.build-1.3mf"
+    assert amprep("verify", path).code == 0
+    build = read_build(path)
+    assert build.settings.supports_as == "model"
+    assert all(body.lattice is not None for body in build.supports)
+
+
+def test_slicers_and_whoever_asks_for_meshes_get_no_beams(amprep, fixtures, tmp_path):
+    from amprep.threemf import read_build
+
+    for option, word in (("--lattice", "mesh"), ("--for", "prusaslicer")):
+        done = amprep(
+            *("run", fixtures / "table.stl", "--cell", "strut", "--set", "cells.params.solid=false"),
+            *(option, word, "--set", "supports.pitch_mm=4", "-o", tmp_path / word),
+        )
+        assert done.code == 0, done.err
+        build = read_build(tmp_path / word / "table.build-1.3mf")
+        assert all(body.lattice is None for body in build.supports)
+
+
+def test_beams_with_connectors_of_cells_are_refused_in_one_line(amprep, fixtures, tmp_path):
+    done = amprep(
+        *("run", fixtures / "table.stl", "--cell", "strut", "--lattice", "beams"),
+        *("--set", "cells.connector=extend", "--set", "supports.pitch_mm=4", "-o", tmp_path),
+    )
+    assert (done.code, "cells.connector = 'full'" in done.err) == (2, True)

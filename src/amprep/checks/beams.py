@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from amprep.geometry.beams import balls_too_deep, carried, sample
+from amprep.geometry.beams import balls_too_deep, carried, sample, sphere
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.model.build import Lattice
 from amprep.model.mesh import Mesh
@@ -14,15 +14,7 @@ _STEP = 0.4
 """Radii between two balls that are judged; other places than those at which beams were planned."""
 
 
-def _sphere(count: int) -> Floats:
-    """Return points spread evenly over the unit sphere, ``(count, 3)``, by the golden angle."""
-    z = 1.0 - 2.0 * (np.arange(count) + 0.5) / count
-    angle = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
-    flat = np.sqrt(1.0 - z * z)
-    return np.column_stack([flat * np.cos(angle), flat * np.sin(angle), z])
-
-
-_DIRECTIONS = _sphere(42)
+_DIRECTIONS = sphere(42)
 
 
 def fault_of(lattice: Lattice) -> str:

@@ -19,6 +19,15 @@ DIRECTIONS: Floats = _AXES[np.abs(_AXES).any(axis=1)] / np.linalg.norm(
 )
 """``(26, 3)`` unit vectors; no direction is more than 28 degrees from one of them."""
 
+
+def sphere(count: int) -> Floats:
+    """Return points spread evenly over the unit sphere, ``(count, 3)``, by the golden angle."""
+    z = 1.0 - 2.0 * (np.arange(count) + 0.5) / count
+    angle = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(angle), flat * np.sin(angle), z])
+
+
 _SHELLS = (0.25, 0.5, 0.95)
 """Shares of a ball's radius at which points are tried: what it touches may be a plate thinner than the ball."""
 
@@ -168,5 +177,7 @@ def _touches(nodes: Floats, radius: Floats, used: Ints, points: Floats, triangle
     ]
     rings = np.vstack([np.zeros((1, 3)), *(share * DIRECTIONS for share in _SHELLS)])
     tried = nodes[near, None] + radius[near, None, None] * rings
-    found = inside(tried.reshape(-1, 3), own, corners.reshape(-1, 3).astype(np.int64)).reshape(len(near), -1)
+    found = inside(tried.reshape(-1, 3), own, corners.reshape(-1, 3).astype(np.int64)).reshape(
+        len(near), len(rings)
+    )
     return np.asarray(near[found.any(axis=1)])

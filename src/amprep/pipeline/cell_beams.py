@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.geometry.beams import DIRECTIONS, Carried, Samples, balls_too_deep, carried, sample
+from amprep.geometry.beams import DIRECTIONS, Carried, Samples, balls_too_deep, carried, sample, sphere
 from amprep.geometry.cell_solids import arrays_of
 from amprep.geometry.inside import inside
 from amprep.geometry.merging import compact
@@ -27,6 +27,11 @@ MOST_STOOD_IN = 100_000
 
 _WIDER = 1.15
 """Points are tried this much farther out than a beam reaches: it may bulge between two of them."""
+
+_PLACES = 0.25
+"""Radii between two balls at which beams are tried."""
+
+_FINE = sphere(120)
 
 _SLIVER = 1e-3
 """mm3; a hanging crumb of a connector smaller than that is left out without a word."""
@@ -57,7 +62,7 @@ def keep_out(
     """
     if not len(beams.struts):
         return beams
-    places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii)
+    places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii, _PLACES)
     blocked = _out_of_bounds(places, space)
     for index, placed in enumerate(parts):
         if not placed.part.is_solid:
@@ -65,6 +70,8 @@ def keep_out(
         mesh, depth = placed.mesh, overlap if index in held else CONTACT_TOLERANCE
         arrays = mesh.vertices, mesh.triangles.astype(np.int64)
         blocked |= balls_too_deep(places.centres, _WIDER * places.radii, *arrays, depth, DIRECTIONS)
+        # edges and fins of a part may come between those few points
+        blocked |= balls_too_deep(places.centres, places.radii, *arrays, depth, _FINE)
         if gap > 0.0:
             blocked |= balls_too_deep(places.centres, places.radii + gap, *arrays, depth + gap, _SIDEWAYS)
     return _clear_stretches(beams, places.strut, places.share, blocked)

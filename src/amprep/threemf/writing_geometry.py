@@ -91,9 +91,8 @@ def _beams_text(beams: BeamSet, first: int, object_ids: Sequence[int]) -> Iterat
 
     A lattice has one radius that beams need not repeat: the most frequent one.
     """
-    sizes, which, count = np.unique(beams.radii, axis=0, return_inverse=True, return_counts=True)
-    usual = count[sizes[:, 0] == sizes[:, 1]]
-    common = float(sizes[sizes[:, 0] == sizes[:, 1]][usual.argmax(), 0]) if len(usual) else 1.0
+    values, count = np.unique(beams.radii[:, 0], return_counts=True)
+    common = float(values[count.argmax()])
     cut = (
         ""
         if beams.clipping is None
@@ -109,14 +108,15 @@ def _beams_text(beams: BeamSet, first: int, object_ids: Sequence[int]) -> Iterat
         if plain[run[0]]:
             yield from _rows(_BEAM, struts[run])
         else:
-            yield from _sized_beams(struts[run], sizes, which.reshape(-1)[run])
+            yield from _sized_beams(struts[run], beams.radii[run])
     yield b"</b:beams></b:beamlattice>"
 
 
-def _sized_beams(struts: NDArray[np.int64], sizes: Floats, which: NDArray[np.int64]) -> Iterator[bytes]:
+def _sized_beams(struts: NDArray[np.int64], radii: Floats) -> Iterator[bytes]:
     """Yield beams with radii of their own; runs of one size are formatted at once."""
-    for run in np.split(np.arange(len(struts)), np.flatnonzero(np.diff(which)) + 1):
-        first, second = sizes[which[run[0]]].tolist()
+    changes = np.flatnonzero((radii[1:] != radii[:-1]).any(axis=1)) + 1
+    for run in np.split(np.arange(len(struts)), changes):
+        first, second = radii[run[0]].tolist()
         yield from _rows(_SIZED.format(first, second), struts[run])
 
 
