@@ -11,6 +11,7 @@ from amprep.geometry.cell_solids import arrays_of, union
 from amprep.geometry.solids import as_manifold
 from amprep.geometry.welding import kept, weld
 from amprep.kernels import cells as kernels
+from amprep.kernels import patches as patch_kernels
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -22,6 +23,12 @@ Arrays = tuple[Floats, Ints]
 
 RUN_SLACK = 1e-6
 """mm; faces this little outside a column's run of cubes still count as in it."""
+
+CROWDED = 64
+"""In columns with more patches than this below others, those that are hidden are left out."""
+
+_SAMPLES = 64
+"""Points per side of a column's content: a patch seen from below only between them counts as hidden."""
 
 _LOWEST = 1e-4
 """mm; walls are not cut closer than this to their upper ends."""
@@ -77,10 +84,11 @@ class Patches(NamedTuple):
         of_column = np.searchsorted(owner[:, 0], np.arange(len(self.of_column)))
         return Patches(self.points[np.repeat(keep, sizes)], start, owner, of_column)
 
-    def corners_in(self, column: int) -> Iterator[Floats]:
-        """Yield the corners ``(k, 3)`` of each patch in a column."""
-        for index in range(self.of_column[column], self.of_column[column + 1]):
-            yield self.points[self.start[index] : self.start[index + 1]]
+    def in_column(self, column: int) -> tuple[Floats, Ints]:
+        """Return the corners of the patches in a column, and where each patch's start among them."""
+        first, last = self.of_column[column : column + 2]
+        start = self.start[first : last + 1]
+        return self.points[start[0] : start[-1]], start - start[0]
 
 
 def clip_into(columns: Columns, corners: Floats, number: Ints, allowed: Bools) -> Patches:
@@ -172,11 +180,18 @@ def _quads(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
 def find_covered(held: Patches, surface: Patches) -> Bools:
     """Tell in which columns something held has another face of the parts below it, ``(m,)``."""
     covered = np.zeros(len(held.of_column) - 1, np.bool_)
-    kernels.find_covered(
-        held.points, held.start, held.owner, held.of_column,
-        surface.points, surface.start, surface.owner, surface.of_column, covered,
-    )  # fmt: skip
+    covered[surface.owner[find_below(held, surface), 0]] = True
     return covered
+
+
+def find_below(held: Patches, surface: Patches) -> Bools:
+    """Tell which patches of `surface` lie below, at least in part, another that is held, ``(n,)``."""
+    below = np.zeros(len(surface.owner), np.bool_)
+    patch_kernels.find_below(
+        held.points, held.start, held.owner, held.of_column,
+        surface.points, surface.start, surface.owner, surface.of_column, below,
+    )  # fmt: skip
+    return below
 
 
 def connect(
@@ -204,31 +219,76 @@ def connect(
         Closed ones that may touch one another: one of all columns where nothing is in the way, and one for
         each other column.
     """
-    covered = find_covered(held, surface)
+    rise = np.where(own, overlap, -overlap)
+    held, below = _without_hidden(held, surface, find_below(held, surface), overlap, rise)
+    cutting, rise = surface.chosen(below), rise[below]
+    covered = np.diff(cutting.of_column) > 0
     free = held.chosen(~covered[held.owner[:, 0]])
     meshes = [separate_edges(*stand_on(free, base[free.owner[:, 0]], overlap))] if len(free.owner) else []
     for column in np.flatnonzero(covered).tolist():
-        way = union([_between(corners, base[column], overlap) for corners in held.corners_in(column)])
-        first, last = surface.of_column[column : column + 2]
-        for corners, mine in zip(surface.corners_in(column), own[first:last], strict=True):
-            way -= _between(corners, lid[column], overlap if mine else -overlap)
+        way = union(list(_prisms(*held.in_column(column), overlap, base[column])))
+        first, last = cutting.of_column[column : column + 2]
+        way -= union(list(_prisms(*cutting.in_column(column), rise[first:last], lid[column], hang=True)))
         if not way.is_empty():
             meshes.append(arrays_of(way))
     return meshes
 
 
-def _between(corners: Floats, level: float, rise: float) -> "Manifold":
-    """Return the prism between a patch, raised by `rise`, and a level below or above it."""
-    sloped, flat = kept(corners + (0.0, 0.0, rise)), kept(corners)
-    flat[:, 2] = kept(np.array([level]))[0]
-    low, high = (flat, sloped) if level < corners[0, 2] + rise else (sloped, flat)
-    count = len(corners)
-    here = np.arange(count)
-    following = np.roll(here, -1)
-    fan = np.column_stack([np.zeros(count - 2, np.int64), here[1:-1], here[2:]])
-    walls = [[here, following, following + count], [here, following + count, here + count]]
-    triangles = [fan[:, ::-1], fan + count] + [np.column_stack(wall) for wall in walls]
-    return as_manifold(np.vstack([low, high]), np.vstack(triangles))
+def _without_hidden(
+    held: Patches, surface: Patches, below: Bools, overlap: float, rise: Floats
+) -> tuple[Patches, Bools]:
+    """Leave out what is hidden by other patches below it, where a column has many.
+
+    Returns
+    -------
+    held, below
+        What stays of both.
+    """
+    keep, below = np.ones(len(held.owner), np.bool_), below.copy()
+    many = np.bincount(surface.owner[below, 0], minlength=len(held.of_column) - 1) > CROWDED
+    for column in np.flatnonzero(many).tolist():
+        ours, theirs = (slice(*each.of_column[column : column + 2]) for each in (held, surface))
+        around = *surface.in_column(column), rise[theirs]
+        lift = np.full(ours.stop - ours.start, overlap)
+        spacing = float(np.ptp(around[0][:, :2], axis=0).max()) / _SAMPLES
+        patch_kernels.find_seen(*held.in_column(column), lift, *around, spacing, keep[ours])
+        seen = np.zeros(theirs.stop - theirs.start, np.bool_)
+        patch_kernels.find_seen(*around, *around, spacing, seen)
+        below[theirs] &= seen
+    return held.chosen(keep), below
+
+
+def _prisms(
+    points: Floats, start: Ints, rise: Floats | float, level: float, *, hang: bool = False
+) -> Iterator["Manifold"]:
+    """Yield solids that together fill the space between patches, raised, and a level below them, or above.
+
+    Each joins the prisms of all patches that do not get in each other's way.
+
+    Parameters
+    ----------
+    points, start
+        As in `Patches`.
+    rise
+        mm, for each patch or for all.
+    hang
+        Whether the prisms hang from the level.
+    """
+    sizes = np.diff(start)
+    points = points.copy()
+    points[:, 2] += np.repeat(np.broadcast_to(rise, len(sizes)), sizes)
+    points = kept(points) * (1.0, 1.0, -1.0 if hang else 1.0)
+    colour = np.empty(len(sizes), np.int64)
+    patch_kernels.colour_patches(points, start, _LOWEST, colour)
+    nowhere = np.zeros((len(sizes), 2), np.int64)
+    patches = Patches(points, start, nowhere, np.array([0, len(sizes)]))
+    for each in range(int(colour.max(initial=-1)) + 1):
+        chosen = patches.chosen(colour == each)
+        base = np.full(len(chosen.owner), -level if hang else level)
+        corners, triangles = separate_edges(*stand_on(chosen, base, 0.0))
+        yield as_manifold(
+            *((corners * (1.0, 1.0, -1.0), triangles[:, ::-1]) if hang else (corners, triangles))
+        )
 
 
 def stand_on(patches: Patches, base: Floats, rise: float) -> Arrays:
