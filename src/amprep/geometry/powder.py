@@ -165,7 +165,8 @@ def _listed(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints, radius: floa
     cavity = np.array([around[free.at(at, z)] for at, z in zip(line[longest], middle, strict=True)])
     swept = _swept(lines, line, low, high, np.unique(pocket[chosen], return_inverse=True)[1], radius)
     open_ = [
-        _pocket(lines, *swept, n, line[longest[n]], middle[n], False) for n in np.flatnonzero(cavity == 0)
+        _pocket(lines, *swept, int(n), line[longest[n]], middle[n], False)
+        for n in np.flatnonzero(cavity == 0)
     ]
     inside = np.flatnonzero(np.isin(around, cavity[cavity > 0]))
     numbers, label = np.unique(around[inside], return_inverse=True)

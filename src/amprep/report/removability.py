@@ -80,9 +80,9 @@ def _sum(values: list[float | None]) -> float | None:
     return sum(known) if len(known) == len(values) else None
 
 
-def density_of(material: str) -> float | None:
+def density_of(material: str | None) -> float | None:
     """Return the density of a known metal named by `material`, g/cm3, or None."""
-    name = re.sub(r"[\W_]+", "", material.casefold())
+    name = re.sub(r"[\W_]+", "", (material or "").casefold())
     return next((density for word, density in DENSITIES.items() if word in name), None)
 
 

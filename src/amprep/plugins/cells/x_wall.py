@@ -29,7 +29,7 @@ class XWallParams:
         Thickness of the walls; 0 makes surfaces, which only targets with walls of no thickness can read. Left
         out, it is 0.3 mm, or a quarter of the pitch if that is less.
     join_every
-        Neighbours meet in every n-th layer, the one on the plate first; 1 joins them all the way up.
+        Neighbours meet in every n-th layer from the plate; 1 joins them all the way up.
     gap_mm
         How far neighbouring walls are apart where they do not meet. Left out, it is 0.3 mm, or a quarter of the
         pitch if that is less.
@@ -71,7 +71,9 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, repor
     low = np.where(_is_joined(lower, params.join_every), 0.0, shares.inset)
     high = np.where(_is_joined(request.plane, params.join_every), 0.0, shares.inset)
     waist = np.where(
-        lower % params.join_every == 0, 0.0, np.where(low == high, shares.inset, (low + high) / 2)
+        lower % params.join_every == params.join_every - 1,
+        0.0,
+        np.where(low == high, shares.inset, (low + high) / 2),
     )
     whole = request.role == Role.CONNECTOR
     low[whole], waist[whole], high[whole] = 0.0, 0.0, 0.0
@@ -123,8 +125,11 @@ def _mean_volume(arm: float, layers: list[tuple[float, float, float]], hair: flo
 
 
 def _is_joined(plane: np.ndarray, every: int) -> np.ndarray:
-    """Whether the layer above or below a plane is one in which neighbours meet."""
-    return np.asarray((plane % every == 0) | ((plane - 1) % every == 0))
+    """Whether the layer above or below a plane is one in which neighbours meet: the n-th from the plate on.
+
+    The lowest layers stay apart, so that powder which the connectors close in from above leaves below.
+    """
+    return np.asarray((plane % every == every - 1) | ((plane % every == 0) & (plane > 0)))
 
 
 def _shares(pitch: float, params: XWallParams) -> _Shares:
