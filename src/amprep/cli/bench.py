@@ -10,6 +10,7 @@ import typer
 from amprep import cli
 from amprep.cli.bench_support_volume import support_volume
 from amprep.cli.bench_supports import supports
+from amprep.errors import InputError
 
 if TYPE_CHECKING:
     from amprep.pipeline.bench_packing import Result
@@ -64,7 +65,10 @@ def container_loading(
     from amprep.pipeline.bench_loading import read_loading
     from amprep.pipeline.bench_packing import run_instances
 
-    instances = read_loading(file)[first - 1 : first - 1 + count if count else None]
+    known = read_loading(file)
+    if first > len(known):
+        raise InputError(f"{file}: expected --first of at most {len(known)}, its instances; got {first}")
+    instances = known[first - 1 : first - 1 + count if count else None]
     results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
     record = {
         "benchmark": "container-loading",

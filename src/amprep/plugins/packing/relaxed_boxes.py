@@ -37,7 +37,7 @@ def _core(variant: Variant, scene: Scene) -> Floats:
     side = variant.hi - variant.lo
     if scene.space.flat:
         side = np.where(variant.lo[:, 2:] <= CONTACT_TOLERANCE, side, 0.0)
-        side[:, 2] = core_room(scene)[2] + CONTACT_TOLERANCE
+        side[:, 2] = core_room(scene)[2] - CONTACT_TOLERANCE  # as high as the room is
     return np.asarray(side[side.prod(axis=1).argmax()] if len(side) > 1 else side[0])
 
 
