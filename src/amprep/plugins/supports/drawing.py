@@ -24,6 +24,7 @@ from amprep.plugins.supports.escalation import escalate
 from amprep.plugins.supports.exact import task_of
 from amprep.plugins.supports.network import hard_limits, network_of, no_flows, plan_of
 from amprep.plugins.supports.params import ShortestPathsParams
+from amprep.plugins.supports.pushing import push
 
 _EFFORT = 20_000_000
 """Arcs that augmenting searches may look at in one go; a fraction of a second."""
@@ -180,11 +181,17 @@ class Drawing:
         return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
 
     def escalate(self, stop: Stop, report: Report) -> str:
-        """Connect red squares left over by capacities that `problem.escalation` raises; return why it ended."""
-        if self.problem.escalation == "none" or not self._lost().size:
+        """Connect the red squares left over as far as there is room; return why it ended.
+
+        First the flow is made as great as it can be, for the searches while drawing are cut short. Then
+        capacities grow, if `problem.escalation` says so.
+        """
+        if not self._lost().size:
             return "finished"
         task, flowing = task_of(self.problem), Carried(self.flows.flow, self.flows.through)
-        _, connected, stop_reason = escalate(task, flowing, self.drawn == 1, stop=stop, report=report)
+        connected, stop_reason = push(task, flowing, self.drawn == 1, stop=stop, report=report)
+        if stop_reason == "finished":
+            _, connected, stop_reason = escalate(task, flowing, connected, stop=stop, report=report)
         self.drawn[:] = connected
         return stop_reason
 
