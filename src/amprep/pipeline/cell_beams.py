@@ -28,10 +28,13 @@ MOST_STOOD_IN = 100_000
 _WIDER = 1.15
 """Points are tried this much farther out than a beam reaches: it may bulge between two of them."""
 
+_ROUND = 1.06
+"""The same for many points."""
+
 _PLACES = 0.25
 """Radii between two balls at which beams are tried."""
 
-_FINE = sphere(120)
+_FINE = sphere(200)
 
 _SLIVER = 1e-3
 """mm3; a hanging crumb of a connector smaller than that is left out without a word."""
@@ -71,7 +74,7 @@ def keep_out(
         arrays = mesh.vertices, mesh.triangles.astype(np.int64)
         blocked |= balls_too_deep(places.centres, _WIDER * places.radii, *arrays, depth, DIRECTIONS)
         # edges and fins of a part may come between those few points
-        blocked |= balls_too_deep(places.centres, places.radii, *arrays, depth, _FINE)
+        blocked |= balls_too_deep(places.centres, _ROUND * places.radii, *arrays, depth, _FINE)
         if gap > 0.0:
             blocked |= balls_too_deep(places.centres, places.radii + gap, *arrays, depth + gap, _SIDEWAYS)
     return _clear_stretches(beams, places.strut, places.share, blocked)
