@@ -1,0 +1,49 @@
+"""What a run says of taking its supports off: contacts, mass, scanned area, powder locked in."""
+
+import json
+
+import pytest
+import trimesh
+
+
+def supports(amprep, tmp_path, fixture, *sets):
+    """Return the figures of the supports of a run, and its exit code."""
+    keys = [
+        word for key in ("cells.removability=true", "packing.lift_mm=3", *sets) for word in ("--set", key)
+    ]
+    done = amprep("run", fixture, "--cell", "x-wall", "-o", tmp_path, *keys)
+    name = f"{fixture.stem}.report.json"
+    return json.loads((tmp_path / name).read_text(encoding="utf-8"))["builds"][0]["supports"], done
+
+
+def test_low_x_walls_with_gaps_let_all_powder_out_from_below_a_level_plate(amprep, tmp_path):
+    trimesh.creation.box((24, 24, 4)).export(tmp_path / "plate.stl")
+    found, done = supports(amprep, tmp_path, tmp_path / "plate.stl", "supports.pitch_mm=2")
+    assert found["trapped_mm3"] == 0.0
+    assert "powder" not in done.out
+
+
+def test_x_walls_without_gaps_lock_powder_in_and_that_is_no_fault(amprep, fixtures, tmp_path):
+    joined = ("supports.pitch_mm=4", "cells.params.join_every=1")
+    found, done = supports(amprep, tmp_path, fixtures / "table.stl", *joined)
+    assert done.code == 0
+    assert "powder cannot leave" in done.out
+    pockets = [pocket for body in found["bodies"] for pocket in body["pockets"]]
+    assert len(pockets) > 50
+    assert found["trapped_mm3"] == pytest.approx(sum(pocket["volume_mm3"] for pocket in pockets))
+
+
+@pytest.mark.parametrize(("name", "share"), [("ball", 0.03), ("two-balls", 0.2)])
+def test_gaps_leave_little_of_the_powder_that_joined_walls_lock_in(amprep, fixtures, tmp_path, name, share):
+    gap, _ = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
+    joined, _ = supports(amprep, tmp_path / "joined", fixtures / f"{name}.stl", "cells.params.join_every=1")
+    assert 0.0 < gap["trapped_mm3"] < share * joined["trapped_mm3"]
+
+
+def test_mass_and_scanned_area_follow_from_the_volume(amprep, fixtures, tmp_path):
+    keys = ("supports.pitch_mm=4", "cells.density_g_cm3=8", "cells.layer_mm=0.05")
+    found, _ = supports(amprep, tmp_path, fixtures / "table.stl", *keys)
+    assert found["mass_g"] == pytest.approx(found["volume_mm3"] * 0.008)
+    assert found["scan_mm2"] == pytest.approx(found["volume_mm3"] / 0.05)
+    assert 0.0 < found["contact_mm2"] <= 1600.0
+    assert found["contacts"] >= 1
