@@ -8,7 +8,7 @@ from amprep.geometry.powder import Pocket, find_pockets, spacing_for
 from amprep.model import Build, SupportBody
 
 DENSITIES = {"alsi10mg": 2.67, "ti64": 4.41, "ti6al4v": 4.41, "316l": 7.9, "in718": 8.15, "inconel718": 8.15}
-"""g/cm3 of solid metal by words in a material's name, as the machine maker EOS states them in its data sheets."""
+"""g/cm3 of solid metal by words in a material's name: usual values, rounded; `cells.density_g_cm3` comes before."""
 
 
 @dataclass(frozen=True)
