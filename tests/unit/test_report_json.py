@@ -41,7 +41,7 @@ def record(make_build) -> RunRecord:
 
 
 def printed(record: RunRecord) -> str:
-    console = Console(width=90, record=True, file=open("/dev/null", "w"))  # noqa: SIM115, PTH123
+    console = Console(width=90, record=True, file=open("/dev/null", "w", encoding="utf-8"))  # noqa: SIM115, PTH123
     with console.file:
         console.print(summary(record))
     return console.export_text()
