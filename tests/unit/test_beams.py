@@ -134,7 +134,9 @@ def test_beams_that_3mf_cannot_hold_are_refused_by_name(tmp_path, change, why):
 
 
 def test_beams_are_shortened_before_a_part_and_dropped_inside_it():
-    nodes = np.array([[5.0, 15, 11.5], [15, 15, 11.5], [12, 12, 11.5], [14, 14, 11.5], [30, 30, 0], [30, 30, 9]])
+    nodes = np.array(
+        [[5.0, 15, 11.5], [15, 15, 11.5], [12, 12, 11.5], [14, 14, 11.5], [30, 30, 0], [30, 30, 9]]
+    )
     beams = Beams(nodes, np.array([[0, 1], [2, 3], [4, 5]], np.int32), np.full((3, 2), 0.4), np.zeros(3, int))
     slab = built(pin()).parts
     kept = keep_out(beams, slab, (0,), SPACE, overlap=0.1, gap=0.0)
