@@ -11,7 +11,7 @@ class ExtremePointsParams:
     ----------
     sortings
         At most so many passes are made, each with an order and a way to choose places; 0: as many as suit the
-        room, which is 16 for fewest builds of boxes that may be stacked, else all there are.
+        room, which is 12 for fewest builds of boxes that may be stacked, else all there are.
     restarts
         Further passes over randomly disturbed copies of the best order.
     disturbance

@@ -19,7 +19,7 @@ EARLY = (
 """Orders and styles by number that, one after another, saved most builds over classes 1 to 8 of Martello, Pisinger
 and Vigo with 50, 100 and 200 boxes; there the other 75 passes saved none beyond these."""
 
-ENOUGH, ALL = 16, 1000
+ENOUGH, ALL = 12, 1000
 
 MANY = 500
 """Items from which passes by touching areas come last: they take some twenty times as long as the others."""
