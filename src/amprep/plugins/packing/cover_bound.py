@@ -77,7 +77,10 @@ class CoverBound:
     def prove(self, reached: Callable[[], int], work: float, stop: Stop) -> None:
         """Raise the bound until it meets what is `reached`, cannot be raised, or `work` is used up."""
         while self._may_go_on(work, stop) and self.builds < reached():
-            price, total = self._fractional()
+            price = self._prices()
+            if price is None:
+                return
+            total = float(price @ self.demand)
             code, worth, found = self._price(price, work / 8.0)
             self.spent += 20.0 * self.columns.size
             if code == kernel.EXACT:
@@ -90,14 +93,13 @@ class CoverBound:
         halted = not len(self.demand) or self.outcome[kernel.HALT] or stop()
         return self.spent < work and not halted
 
-    def _fractional(self) -> tuple[Floats, float]:
-        """Return the dual values ``(k,)`` of the best fractional cover, at least 0, and their total."""
+    def _prices(self) -> Floats | None:
+        """Return the dual values ``(k,)`` of the best fractional cover, at least 0; None if it was not found."""
         from scipy.optimize import linprog
 
         cover = -self.columns.T.astype(np.float64)
         solved = linprog(np.ones(len(self.columns)), A_ub=cover, b_ub=-self.demand, method="highs")
-        price = np.maximum(-solved.ineqlin.marginals, 0.0)
-        return price, float(price @ self.demand)
+        return np.maximum(-solved.ineqlin.marginals, 0.0) if solved.success else None
 
     def _price(self, price: Floats, work: float) -> tuple[int, float, Indices]:
         """Return whether the search was complete, the greatest worth of a set, and sets worth more than 1."""

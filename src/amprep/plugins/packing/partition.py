@@ -66,6 +66,8 @@ def _fractional(pool: Pool, demand: Indices, first: Indices, stop: Stop) -> tupl
     for _ in range(ROUNDS):
         cover = -pool.counts(rows, len(demand))
         solved = linprog(np.ones(len(rows)), A_ub=cover, b_ub=-demand, method="highs")
+        if not solved.success:
+            return rows, np.zeros(len(demand)), np.inf
         price = np.maximum(-solved.ineqlin.marginals, 0.0)
         worth = pool.worth(price)
         new = np.argsort(-worth, kind="stable")[:ADDED]
