@@ -5,7 +5,7 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from amprep.checks.supports import check_plan
@@ -124,6 +124,7 @@ def test_high_costs_need_no_more_than_larger_buckets():
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 100_000))
+@example(14383)  # a unit ends, for nothing, at a red square that is itself yet to be left out
 def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
     task = random_problem(seed)
     plan = route("min-cost-flow", task)

@@ -51,7 +51,7 @@ class Exits(NamedTuple):
     level
         Least potential an exit has to be at for ending there to be free; below, the difference is its cost.
     once
-        Whether only one path may end at each.
+        Whether only one path may end at each; then units may have come into an exit that has none going through.
     """
 
     open: Bytes
@@ -115,7 +115,7 @@ def augment(
         network.via.size,
         exits.open,
     )
-    straight, oblique, each = prices.straight, prices.oblique, room.each
+    straight, oblique, each, once = prices.straight, prices.oblique, room.each, exits.once
     found = 0
     for i in range(starts.size):
         ends[i] = -1
@@ -147,7 +147,7 @@ def augment(
                     if tight and through[u] < square_room[u * each]:
                         to = s + 1
                     k += to < 0
-                if k > 0 and through[u] > 0:
+                if k > 0 and (once or through[u] > 0):
                     while k < 6 and to < 0:
                         direction = k if k < 5 else 0
                         w = u + stride - offset[direction]
@@ -167,7 +167,7 @@ def augment(
             continue
         found += 1
         ends[i] = stack[length] >> 1
-        if exits.once:
+        if once:
             exits.open[ends[i]] = 0
         for j in range(length):
             shift(network, carried, stack[j], arcs[j], 1)
@@ -225,7 +225,7 @@ def search(
     via, offset, stride, top, each = network.via, network.offset, network.stride, network.via.size, room.each
     heads[:] = -1
     highest, settled, bucket, length, count, end = 0, 0, 0, 0, 0, 0
-    best, straight, oblique = _UNKNOWN, prices.straight, prices.oblique
+    best, straight, oblique, once = _UNKNOWN, prices.straight, prices.oblique, exits.once
     for u in starts:
         seen[2 * u], came[2 * u] = base, NO_ARC
         stack[length] = 2 * u
@@ -254,7 +254,7 @@ def search(
                 best, end = near + exits.level, s
             if bucket >= best:
                 break
-        first = 1 if inward and through[u] == 0 else 6
+        first = 1 if inward and through[u] == 0 and not once else 6
         for k in range(first - 1, -1, -1):
             if inward and k == 0:
                 if u < stride or through[u] >= square_room[u * each]:
@@ -304,7 +304,7 @@ def search(
             seen[s] = 0
     if best == _UNKNOWN:
         return NO_EXIT, -1
-    ending[end >> 1] = ending[end >> 1] and not exits.once
+    ending[end >> 1] = ending[end >> 1] and not once
     while came[end] < NO_ARC:
         end = _take_back_to(network, carried, end, came[end])
     return best, end >> 1
