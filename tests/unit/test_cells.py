@@ -22,7 +22,7 @@ from amprep.model import (
     silent,
 )
 from amprep.pipeline.cell_carving import Obstacles, standing_only
-from amprep.pipeline.cell_groups import _trunks, sort_out
+from amprep.pipeline.cell_trunks import sort_out, trunks
 
 
 def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> CellRequest:
@@ -41,7 +41,7 @@ def solid_of(cell: str, request: CellRequest, **params):
     listed = host.choose("cell", cell)
     cells = host.call(listed, request, params=host.params(listed, params), stop=Stop(), report=silent)
     emitted = sort_out(request, cells)
-    meshes = _trunks(emitted, np.ones(len(cells.edge), np.bool_))
+    meshes = trunks(emitted, np.ones(len(cells.edge), np.bool_))
     return Manifold.batch_boolean([as_manifold(*mesh) for mesh in meshes], OpType.Add)
 
 

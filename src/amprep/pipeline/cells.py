@@ -9,8 +9,9 @@ from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_g
 from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_connectors import Ways, find_ways
 from amprep.pipeline.cell_feet import foot_boxes
-from amprep.pipeline.cell_groups import Emitted, sheet_of, solid_of, sort_out
+from amprep.pipeline.cell_groups import sheet_of, solid_of
 from amprep.pipeline.cell_requests import Emit, checked, make_request
+from amprep.pipeline.cell_trunks import Emitted, sort_out
 from amprep.pipeline.support_layout import SupportLayout
 
 
