@@ -14,6 +14,7 @@ was written for and yields offers; the job picks an offer by name::
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -40,6 +41,19 @@ _hookspec = pluggy.HookspecMarker("amprep")
 @dataclass(frozen=True)
 class NoParams:
     """The parameters of an offer that has none."""
+
+
+def later(where: str) -> Callable[..., Any]:
+    """Return the function ``"package.module:name"``, imported when it is first called.
+
+    An offer's module is loaded by every command; what its algorithm needs (numba, a solver) takes seconds.
+    """
+    module, _, name = where.partition(":")
+
+    def call(*args: Any, **kwargs: Any) -> Any:
+        return getattr(import_module(module), name)(*args, **kwargs)
+
+    return call
 
 
 class ReadMeshes(Protocol):

@@ -1,14 +1,15 @@
 """``amprep run``: the main job."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep import cli
 from amprep.cli import running
 
 if TYPE_CHECKING:
     from amprep.host import Host
+    from amprep.job import Job
     from amprep.pipeline.stages import Watcher
     from amprep.report.record import RunRecord
 
@@ -48,12 +49,24 @@ def run(
     build. Exit code 0: done; 1: done, but something is unplaced, unsupported or fails verification; 2: wrong input or
     usage, nothing written; 130: interrupted, nothing written.
     """
-    from rich.console import Console
 
-    from amprep.job import apply_sets, override
+    def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":
+        from amprep.model import Stop
+        from amprep.pipeline.run import RunOptions
+        from amprep.pipeline.run import run as run_job
 
-    job = override(
-        running.job_of(inputs),
+        options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
+        return run_job(job, host, options, watcher=watcher, stop=Stop())
+
+    running.carry_out(
+        work,
+        inputs,
+        output=output,
+        sets=sets or [],
+        as_json=as_json,
+        quiet=quiet,
+        modules=modules or [],
+        no_plugins=no_plugins,
         printer=printer,
         packer=packer,
         router=router,
@@ -63,18 +76,3 @@ def run(
         supports_as=supports_as,
         lattice=lattice,
     )
-    job = apply_sets(job, sets or [])
-    console = Console(stderr=True, quiet=quiet)
-    folder = output or running.beside(inputs[0])
-
-    def work(host: "Host", watcher: "Watcher") -> "RunRecord":
-        from amprep.model import Stop
-        from amprep.pipeline.run import RunOptions
-        from amprep.pipeline.run import run as run_job
-
-        options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
-        return run_job(job, host, options, watcher=watcher, stop=Stop())
-
-    record = running.watched(job, console, work, modules=modules or [], no_plugins=no_plugins)
-    running.print_record(record, as_json=as_json, quiet=quiet)
-    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)

@@ -1,11 +1,12 @@
-"""What ``amprep run`` and ``amprep support`` share: options, the job named by inputs, progress, the closing table."""
+"""What ``amprep run`` and ``amprep support`` share: options, and the course from inputs to exit code."""
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from amprep import cli
 from amprep.errors import JobError
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from amprep.pipeline.stages import Watcher
     from amprep.report.record import RunRecord
 
-    Work = Callable[[Host, Watcher], RunRecord]
+    Work = Callable[[Job, Path, Host, Watcher], RunRecord]
 
 Output = Annotated[
     Path | None, typer.Option("-o", "--output", help="Output folder; default: beside the first input.")
@@ -89,8 +90,40 @@ def job_of(inputs: list[str]) -> "Job":
     return load_job(Path(job_files[0]))
 
 
-def watched(
-    job: "Job", console: "Console", work: "Work", *, modules: list[str], no_plugins: bool
+def carry_out(
+    work: "Work",
+    inputs: list[str],
+    *,
+    output: Path | None,
+    sets: list[str],
+    as_json: bool,
+    quiet: bool,
+    modules: list[str],
+    no_plugins: bool,
+    **overrides: Any,
+) -> NoReturn:
+    """Settle the job, do the work on it with progress bars, print what came out and exit.
+
+    Parameters
+    ----------
+    work
+        Takes the job, the output folder, the host and the watcher.
+    overrides
+        As `amprep.job.override` takes them; None leaves what the job says.
+    """
+    from rich.console import Console
+
+    from amprep.job import apply_sets, override
+
+    job = apply_sets(override(job_of(inputs), **overrides), sets)
+    console, folder = Console(stderr=True, quiet=quiet), output or beside(inputs[0])
+    record = _watched(work, job, folder, console, modules=modules, no_plugins=no_plugins)
+    print_record(record, as_json=as_json, quiet=quiet)
+    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
+
+
+def _watched(
+    work: "Work", job: "Job", folder: Path, console: "Console", *, modules: list[str], no_plugins: bool
 ) -> "RunRecord":
     """Do the work with progress bars; nothing heavy is imported before they show."""
     from amprep.cli.progress import Bars
@@ -105,7 +138,7 @@ def watched(
             host = Host.load(modules=modules, plugins_enabled=not no_plugins)
         for warning in host.warnings:
             console.print(f"warning: {warning}", markup=False)
-        return work(host, bars)
+        return work(job, folder, host, bars)
 
 
 def beside(first: str) -> Path:

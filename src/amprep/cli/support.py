@@ -1,14 +1,15 @@
 """``amprep support``: supports for a plate as it lies."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep import cli
 from amprep.cli import running
 
 if TYPE_CHECKING:
     from amprep.host import Host
+    from amprep.job import Job
     from amprep.pipeline.stages import Watcher
     from amprep.report.record import RunRecord
 
@@ -57,12 +58,24 @@ def support(
     must lie in the build volume, plate at z = 0. Writes NAME.supported.3mf, NAME.supported.report.html and .json, and
     a picture. Exit codes as of 'amprep run'.
     """
-    from rich.console import Console
 
-    from amprep.job import apply_sets, override
+    def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":
+        from amprep.model import Stop
+        from amprep.pipeline.run import RunOptions
+        from amprep.pipeline.support import support as support_job
 
-    job = override(
-        running.job_of(inputs),
+        options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
+        return support_job(job, host, options, center=center, watcher=watcher, stop=Stop())
+
+    running.carry_out(
+        work,
+        inputs,
+        output=output,
+        sets=[*(sets or []), *([f"supports.grounding={grounding}"] if grounding else [])],
+        as_json=as_json,
+        quiet=quiet,
+        modules=modules or [],
+        no_plugins=no_plugins,
         printer=printer,
         router=router,
         cell=cell,
@@ -71,18 +84,3 @@ def support(
         supports_as=supports_as,
         lattice=lattice,
     )
-    job = apply_sets(job, [*(sets or []), *([f"supports.grounding={grounding}"] if grounding else [])])
-    console = Console(stderr=True, quiet=quiet)
-    folder = output or running.beside(inputs[0])
-
-    def work(host: "Host", watcher: "Watcher") -> "RunRecord":
-        from amprep.model import Stop
-        from amprep.pipeline.run import RunOptions
-        from amprep.pipeline.support import support as support_job
-
-        options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
-        return support_job(job, host, options, center=center, watcher=watcher, stop=Stop())
-
-    record = running.watched(job, console, work, modules=modules or [], no_plugins=no_plugins)
-    running.print_record(record, as_json=as_json, quiet=quiet)
-    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)

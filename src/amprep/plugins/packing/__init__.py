@@ -1,12 +1,9 @@
 """The built-in packers."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-import numpy as np
-
-from amprep.hookspecs import Packer, PackerAccepts, hookimpl
-from amprep.model.control import Report, Stop
-from amprep.model.packing import Packing, PackingProblem
+from amprep.hookspecs import Packer, PackerAccepts, hookimpl, later
 from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpLocalSearchParams, IpParams
 from amprep.plugins.packing.params import (
     AutoParams,
@@ -19,88 +16,12 @@ from amprep.plugins.packing.params import (
 amprep_api = 1
 
 
-def _extreme_points(
-    problem: PackingProblem,
-    *,
-    params: ExtremePointsParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> Packing:
-    from amprep.plugins.packing.extreme_points import pack_extreme_points
-
-    return pack_extreme_points(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _auto(
-    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, report: Report
-) -> Packing:
-    from amprep.plugins.packing.auto import pack_auto
-
-    return pack_auto(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _sweep(
-    problem: PackingProblem, *, params: SweepParams, rng: np.random.Generator, stop: Stop, report: Report
-) -> Packing:
-    from amprep.plugins.packing.sweep import pack_sweep
-
-    return pack_sweep(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _tabu(
-    problem: PackingProblem, *, params: TabuParams, rng: np.random.Generator, stop: Stop, report: Report
-) -> Packing:
-    from amprep.plugins.packing.tabu import pack_tabu
-
-    return pack_tabu(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _ip(
-    problem: PackingProblem, *, params: IpParams, rng: np.random.Generator, stop: Stop, report: Report
-) -> Packing:
-    from amprep.plugins.packing.ip import pack_ip
-
-    return pack_ip(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _ip_local_search(
-    problem: PackingProblem,
-    *,
-    params: IpLocalSearchParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> Packing:
-    from amprep.plugins.packing.ip_local_search import pack_ip_local_search
-
-    return pack_ip_local_search(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _column_generation(
-    problem: PackingProblem,
-    *,
-    params: ColumnGenerationParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> Packing:
-    from amprep.plugins.packing.column_generation import pack_column_generation
-
-    return pack_column_generation(problem, params=params, rng=rng, stop=stop, report=report)
-
-
-def _block_building(
-    problem: PackingProblem,
-    *,
-    params: BlockBuildingParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> Packing:
-    from amprep.plugins.packing.block_building import pack_block_building
-
-    return pack_block_building(problem, params=params, rng=rng, stop=stop, report=report)
+_BOXES = PackerAccepts(volumes=frozenset({"box", "boxes"}), orientations=frozenset({"fixed", "axis"}))
+_BUILDS, _FILL = frozenset({"builds"}), frozenset({"fill"})
+_ANY_LIST = frozenset({"fixed", "axis", "list"})
+_ALL = replace(
+    _BOXES, objectives=_BUILDS | _FILL, orientations=_ANY_LIST, cylinder=True, zones=True, fixed=True
+)
 
 
 @hookimpl
@@ -109,101 +30,56 @@ def amprep_packers() -> Iterable[Packer]:
     yield Packer(
         name="extreme-points",
         summary="The best of many sortings, each item at its best extreme point (Crainic, Perboli, Tadei).",
-        run=_extreme_points,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds", "fill"}),
-            orientations=frozenset({"fixed", "axis", "list"}),
-            cylinder=True,
-            zones=True,
-            fixed=True,
-        ),
+        run=later("amprep.plugins.packing.extreme_points:pack_extreme_points"),
+        accepts=_ALL,
         params=ExtremePointsParams,
     )
     yield Packer(
         name="auto",
         summary="Extreme points at once, then a search that packs a few builds anew until one is saved.",
-        run=_auto,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds", "fill"}),
-            orientations=frozenset({"fixed", "axis", "list"}),
-            cylinder=True,
-            zones=True,
-            fixed=True,
-        ),
+        run=later("amprep.plugins.packing.auto:pack_auto"),
+        accepts=_ALL,
         params=AutoParams,
     )
     yield Packer(
         name="block-building",
         summary="Beam search over blocks of boxes in maximal empty spaces (Araya, Riff; Fanslau, Bortfeldt).",
-        run=_block_building,
-        accepts=PackerAccepts(
-            objectives=frozenset({"fill"}),
-            orientations=frozenset({"fixed", "axis"}),
-            zones=True,
-            fixed=True,
-        ),
+        run=later("amprep.plugins.packing.block_building:pack_block_building"),
+        accepts=replace(_BOXES, volumes=frozenset({"box"}), objectives=_FILL, zones=True, fixed=True),
         params=BlockBuildingParams,
     )
     yield Packer(
         name="sweep",
         summary="Builds sliced into layers and rows, rows packed along one axis (Sweep 2003).",
-        run=_sweep,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds", "fill"}),
-            orientations=frozenset({"fixed", "axis", "list"}),
-        ),
+        run=later("amprep.plugins.packing.sweep:pack_sweep"),
+        accepts=replace(_BOXES, objectives=_BUILDS | _FILL, orientations=_ANY_LIST),
         params=SweepParams,
     )
     yield Packer(
         name="tabu",
         summary="Tabu search that empties one build after another (Lodi, Martello, Vigo; thesis 2.4).",
-        run=_tabu,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds"}),
-            orientations=frozenset({"fixed", "axis", "list"}),
-            zones=True,
-        ),
+        run=later("amprep.plugins.packing.tabu:pack_tabu"),
+        accepts=replace(_BOXES, orientations=_ANY_LIST, zones=True),
         params=TabuParams,
     )
     yield Packer(
         name="ip",
         summary="The thesis's integer program, by HiGHS or any solver of pulp, after extreme points.",
-        run=_ip,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds", "fill"}),
-            orientations=frozenset({"fixed", "axis"}),
-            zones=True,
-            fixed=True,
-        ),
+        run=later("amprep.plugins.packing.ip:pack_ip"),
+        accepts=replace(_BOXES, objectives=_BUILDS | _FILL, zones=True, fixed=True),
         params=IpParams,
     )
     yield Packer(
         name="ip-local-search",
         summary="Steps to the best build near the last one, by the integer program (thesis 2.2).",
-        run=_ip_local_search,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"fill"}),
-            orientations=frozenset({"fixed", "axis"}),
-            zones=True,
-            fixed=True,
-        ),
+        run=later("amprep.plugins.packing.ip_local_search:pack_ip_local_search"),
+        accepts=replace(_BOXES, objectives=_FILL, zones=True, fixed=True),
         params=IpLocalSearchParams,
     )
     yield Packer(
         name="column-generation",
         summary="Set covering over builds, priced by the fill problem; proves bounds (thesis 2.1).",
-        run=_column_generation,
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes"}),
-            objectives=frozenset({"builds"}),
-            orientations=frozenset({"fixed", "axis"}),
-            zones=True,
-        ),
+        run=later("amprep.plugins.packing.column_generation:pack_column_generation"),
+        accepts=replace(_BOXES, zones=True),
         params=ColumnGenerationParams,
     )

@@ -4,25 +4,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from amprep.hookspecs import NoParams, SupportRouter, hookimpl
+from amprep.hookspecs import NoParams, SupportRouter, hookimpl, later
 from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.params import ShortestPathsParams, TreeParams
 
 amprep_api = 1
-
-
-def _shortest_paths(
-    problem: SupportProblem,
-    *,
-    params: ShortestPathsParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> SupportPlan:
-    from amprep.plugins.supports.shortest_paths import route_shortest_paths
-
-    return route_shortest_paths(problem, params=params, rng=rng, stop=stop, report=report)
 
 
 def _min_cost_flow(
@@ -51,19 +38,6 @@ def _push_relabel(
     return route_push_relabel(problem, stop=stop, report=report)
 
 
-def _tree(
-    problem: SupportProblem,
-    *,
-    params: TreeParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    report: Report,
-) -> SupportPlan:
-    from amprep.plugins.supports.tree import route_tree
-
-    return route_tree(problem, params=params, rng=rng, stop=stop, report=report)
-
-
 def _auto(
     problem: SupportProblem,
     *,
@@ -83,7 +57,7 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
     yield SupportRouter(
         name="shortest-paths",
         summary="Iterated shortest paths that gather into trunks; fast on large grids (thesis 3.4).",
-        run=_shortest_paths,
+        run=later("amprep.plugins.supports.shortest_paths:route_shortest_paths"),
         params=ShortestPathsParams,
     )
     yield SupportRouter(
@@ -99,7 +73,7 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
     yield SupportRouter(
         name="tree",
         summary="Least material: local search over merges, from shortest paths and from a least-cost flow.",
-        run=_tree,
+        run=later("amprep.plugins.supports.tree:route_tree"),
         params=TreeParams,
     )
     yield SupportRouter(
