@@ -1,6 +1,6 @@
 """Measures where supports touch a part: the part's surface inside them."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from amprep.geometry.manifolds import as_manifold
 from amprep.geometry.merging import merge_equal
 from amprep.geometry.shells import label_shells
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.integer]]
 
@@ -25,16 +28,20 @@ def measure_contact(support: Arrays, part: Arrays) -> Contact:
     manifold3d says of each triangle of the intersection which of the two it comes from, so the area is exact.
     Supports that touch a part without entering it have no contact.
     """
-    one, two = (as_manifold(*mesh).as_original() for mesh in (support, part))
-    mesh = (one ^ two).to_mesh64()
-    triangles = np.asarray(mesh.tri_verts, np.int64)
-    run = np.searchsorted(np.asarray(mesh.run_index), 3 * np.arange(len(triangles)), side="right") - 1
-    own = (
-        triangles[np.asarray(mesh.run_original_id)[run] == two.original_id()] if len(triangles) else triangles
-    )
-    if not len(own):
+    corners = contact_corners(*(as_manifold(*mesh) for mesh in (support, part)))
+    if not len(corners):
         return Contact(0.0, 0)
-    points, own = merge_equal(np.asarray(mesh.vert_properties)[:, :3], own)
+    points, own = merge_equal(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
     sides = points[own[:, 1:]] - points[own[:, :1]]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2.0
     return Contact(float(area), label_shells(own, len(points))[0])
+
+
+def contact_corners(support: "Manifold", part: "Manifold") -> NDArray[np.float64]:
+    """Return the triangles ``(t, 3, 3)`` mm of the part's surface inside a support, turned as in the part."""
+    two = part.as_original()
+    mesh = (support.as_original() ^ two).to_mesh64()
+    triangles = np.asarray(mesh.tri_verts, np.int64)
+    run = np.searchsorted(np.asarray(mesh.run_index), 3 * np.arange(len(triangles)), side="right") - 1
+    own = np.asarray(mesh.run_original_id)[run] == two.original_id() if len(triangles) else []
+    return np.asarray(mesh.vert_properties, np.float64)[:, :3][triangles[np.asarray(own, np.bool_)]]

@@ -13,10 +13,14 @@ from amprep.job.printers import Printer
 from amprep.job.tables import require
 from amprep.model.arrays import Floats, frozen
 from amprep.model.build import Grounding, SupportsAs, Target
+from amprep.model.endings import Connector, ConnectorKind
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
 from amprep.model.supports import Escalation
+
+LEAST_TIP = 0.05
+"""mm; teeth, points, necks and windows finer than that are refused: nothing prints them."""
 
 LARGEST_COUNT = 1_000_000
 """Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""
@@ -138,6 +142,8 @@ class CellSettings:
     ----------
     strategy
         Name of a lattice cell, or the path of a file that declares one: TOML, or a mesh.
+    connector
+        Kind of the connectors; `ending` says what the measures that follow it mean.
     lattice
         Struts as beams or as meshes; None leaves it to the cell's parameters.
     removability
@@ -150,8 +156,17 @@ class CellSettings:
     """
 
     strategy: str = "x-wall"
-    connector: Literal["full", "extend"] = "full"
+    connector: ConnectorKind = "full"
     overlap_mm: float = 0.1
+    tooth_pitch_mm: float | None = None
+    tooth_width_mm: float = 0.5
+    tooth_height_mm: float = 0.8
+    point_pitch_mm: float | None = None
+    point_mm: float = 0.5
+    point_height_mm: float = 1.0
+    neck_mm: float = 0.0
+    neck_height_mm: float = 0.3
+    window_mm: float = 0.0
     lattice: Literal["beams", "mesh"] | None = None
     removability: bool = False
     powder_hole_mm: float = 0.2
@@ -161,10 +176,43 @@ class CellSettings:
 
     def __post_init__(self) -> None:
         require(self.overlap_mm >= 0, "overlap_mm is at least 0", self.overlap_mm)
+        self._require_ending()
         require(self.powder_hole_mm >= 0.02, "powder_hole_mm is at least 0.02", self.powder_hole_mm)
         require(self.layer_mm > 0, "layer_mm is above 0", self.layer_mm)
         density = self.density_g_cm3
         require(density is None or density > 0, "density_g_cm3 is above 0", density)
+
+    def _require_ending(self) -> None:
+        for name in ("tooth_width_mm", "tooth_height_mm", "point_mm", "point_height_mm", "neck_height_mm"):
+            require(getattr(self, name) >= LEAST_TIP, f"{name} is at least {LEAST_TIP}", getattr(self, name))
+        for name, width in (("tooth_pitch_mm", self.tooth_width_mm), ("point_pitch_mm", self.point_mm)):
+            pitch = getattr(self, name)
+            require(pitch is None or pitch > width, f"{name} is above the width, {width:g}", pitch)
+        for name in ("neck_mm", "window_mm"):
+            value = getattr(self, name)
+            require(value == 0 or value >= LEAST_TIP, f"{name} is 0 or at least {LEAST_TIP}", value)
+        cut = self.neck_mm > 0 or self.window_mm > 0
+        require(
+            self.connector != "extend" or not cut,
+            "neck_mm and window_mm are for connectors 'full', 'teeth' and 'point'",
+            repr(self.connector),
+        )
+        if self.neck_mm > 0 and self.connector in ("teeth", "point"):
+            width, height = self.ending.width, self.ending.height
+            require(self.neck_mm < width, f"neck_mm is below the width of {width:g}", self.neck_mm)
+            require(
+                self.neck_height_mm < height,
+                f"neck_height_mm is below the height of {height:g}",
+                self.neck_height_mm,
+            )
+
+    @property
+    def ending(self) -> Connector:
+        """The connectors asked for."""
+        sizes = (self.tooth_pitch_mm, self.tooth_width_mm, self.tooth_height_mm)
+        if self.connector == "point":
+            sizes = (self.point_pitch_mm, self.point_mm, self.point_height_mm)
+        return Connector(self.connector, *sizes, self.neck_mm, self.neck_height_mm, self.window_mm)
 
     @property
     def file(self) -> Path | None:

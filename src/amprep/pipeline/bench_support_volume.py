@@ -21,6 +21,7 @@ from amprep.model import (
     silent,
 )
 from amprep.model.arrays import Bools, Bytes
+from amprep.model.endings import Connector
 from amprep.pipeline.bench_slicer import STYLES, rival_volume
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.reading import expand_inputs, read_all
@@ -182,7 +183,7 @@ def _volume(
         (part,),
         lambda request: host.call(emitter, request, params=params, stop=stop, report=silent),
         overlap=0.1,
-        connector="full",
+        connector=Connector(),
         allow_surface=False,
         stop=stop,
         report=silent,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.geometry.contacts import contact_corners
 from amprep.geometry.merging import compact
 from amprep.geometry.shells import label_shells
 from amprep.geometry.solids import as_manifold
@@ -44,6 +45,15 @@ class Obstacles:
             shift = depth + CONTACT_TOLERANCE / 2
             connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
         return connectors
+
+    def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
+        """Return the triangles ``(t, 3, 3)`` mm of the parts held that lie in the connectors."""
+        lo, hi = (np.array(corner) for corner in np.split(np.array(connectors.bounding_box()), 2))
+        found = [np.empty((0, 3, 3))]
+        for index, mesh in self._parts:
+            if index in held and (lo <= mesh.bounds[1]).all() and (hi >= mesh.bounds[0]).all():
+                found.append(contact_corners(connectors, self._solid(index)))
+        return np.concatenate(found)
 
 
 def standing_only(

@@ -11,9 +11,11 @@ from amprep.geometry.connectors import connect
 from amprep.geometry.solids import as_manifold
 from amprep.model import Mesh
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.model.endings import Connector
 from amprep.pipeline.cell_carving import Obstacles, standing_only
 from amprep.pipeline.cell_connectors import Ways
 from amprep.pipeline.cell_feet import foot_boxes, make_feet
+from amprep.pipeline.cell_patterns import shaped
 from amprep.pipeline.cell_trunks import Emitted, arrays, ends, on_red, squares, trunks
 from amprep.pipeline.support_layout import SupportLayout
 
@@ -32,14 +34,14 @@ def solid_of(
     obstacles: Obstacles,
     *,
     overlap: float,
-    extend: bool,
+    connector: Connector,
     on_beams: bool = False,
 ) -> Mesh | None:
     """Return the closed solid of a support group: cells, seats and connectors; None when it has none.
 
     With `on_beams` what hangs in the air stays: beams may carry it.
     """
-    mine = emitted.of(group) & ~emitted.sheet
+    mine, extend = emitted.of(group) & ~emitted.sheet, connector.kind == "extend"
     if emitted.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(emitted, group)
         return Mesh(*finish(solids)) if solids else None
@@ -51,7 +53,8 @@ def solid_of(
         lids = [as_manifold(*mesh) for mesh in ends(emitted, mine & emitted.connector, seat, layout)]
         ups = [union(ups) ^ union(lids)] if ups and lids else []
     if ups:
-        ups = [obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))]
+        up = obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
+        ups = [up if extend else _shaped(up, group, red, seat, layout, ways, obstacles, connector, overlap)]
     ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
@@ -78,6 +81,27 @@ def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, ove
     lid = ways.columns.hi[:, 2] + layout.frame.step
     overlap = max(overlap, CONTACT_TOLERANCE)
     return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
+
+
+def _shaped(
+    up: "Manifold",
+    group: int,
+    red: Bools,
+    seat: Floats,
+    layout: SupportLayout,
+    ways: Ways,
+    obstacles: Obstacles,
+    connector: Connector,
+    overlap: float,
+) -> "Manifold":
+    """Return connectors of the kind asked for, where that is another than whole squares."""
+    if connector.kind == "full" and not connector.neck and not connector.window:
+        return up
+    contact = obstacles.contact(up, layout.group_parts[group])
+    columns = ways.columns
+    columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
+    base = columns.lo[:, 2] - seat[red] / 2
+    return shaped(up, contact, columns, base, connector, max(overlap, CONTACT_TOLERANCE))
 
 
 def _extras(emitted: Emitted, group: int) -> list["Manifold"]:

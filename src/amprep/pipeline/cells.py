@@ -5,6 +5,7 @@ from collections.abc import Callable
 from amprep.errors import JobError
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
 from amprep.model.arrays import CONTACT_TOLERANCE
+from amprep.model.endings import Connector
 from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
 from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_connectors import Ways, find_ways
@@ -21,7 +22,7 @@ def build_supports(
     emit: Emit,
     *,
     overlap: float,
-    connector: str,
+    connector: Connector,
     allow_surface: bool,
     stop: Stop,
     report: Report,
@@ -41,7 +42,7 @@ def build_supports(
     overlap
         mm; less than `amprep.model.CONTACT_TOLERANCE` counts as that.
     connector
-        ``full``: the whole square runs up; ``extend``: the cell does, as walls without thickness always do.
+        Its kind and measures; walls without thickness always extend.
     allow_surface
         Whether the target reads walls without thickness.
     stop
@@ -71,7 +72,7 @@ def build_supports(
         )
         return sort_out(request, checked(request, emit(request)))
 
-    emitted, bare = _ask(ask, extend=connector == "extend", beams=beams)
+    emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
     if emitted.sheet.any() and len(layout.feet):
         raise JobError(
             "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
@@ -85,14 +86,30 @@ def build_supports(
         name = ", ".join(parts[part].label for part in held)
         report(group / count, f"uniting supports of {name}")
         solid = solid_of(
-            group, emitted, layout, ways, obstacles, overlap=overlap, extend=connector == "extend"
+            group,
+            emitted,
+            layout,
+            ways,
+            obstacles,
+            overlap=overlap,
+            connector=connector,
         )
         sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
         if solid is not None and len(solid.triangles):
             lattice = None
             if bare is not None and space is not None:
                 lattice = _lattice(
-                    group, bare, solid, layout, ways, obstacles, parts, space, overlap=overlap, gap=gap
+                    group,
+                    bare,
+                    solid,
+                    layout,
+                    ways,
+                    obstacles,
+                    parts,
+                    space,
+                    overlap=overlap,
+                    gap=gap,
+                    connector=connector,
                 )
             bodies.append(SupportBody(f"supports of {name}", solid, held, lattice=lattice))
         if sheet is not None and len(sheet.triangles):
@@ -109,7 +126,8 @@ def _ask(ask: Callable[..., Emitted], *, extend: bool, beams: bool | None) -> tu
     if emitted.cells.beams is not None and len(emitted.cells.beams.struts):
         if extend:
             raise JobError(
-                "beams end at connectors that are solids: set cells.connector = 'full', or cells.lattice = 'mesh'"
+                "beams end at connectors that are solids: set cells.connector = 'full', 'teeth' or 'point', "
+                "or cells.lattice = 'mesh'"
             )
         bare, beams = emitted, False
         emitted = ask(extend=False, beams=False)
@@ -130,6 +148,7 @@ def _lattice(
     *,
     overlap: float,
     gap: float,
+    connector: Connector,
 ) -> Lattice | None:
     """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
     overlap = max(overlap, CONTACT_TOLERANCE)
@@ -137,7 +156,14 @@ def _lattice(
 
     def solid(emitted: Emitted, *, on_beams: bool) -> Mesh | None:
         return solid_of(
-            group, emitted, layout, ways, obstacles, overlap=overlap, extend=False, on_beams=on_beams
+            group,
+            emitted,
+            layout,
+            ways,
+            obstacles,
+            overlap=overlap,
+            connector=connector,
+            on_beams=on_beams,
         )
 
     beams = keep_out(mine, parts, held, space, overlap=overlap, gap=gap)

@@ -66,7 +66,7 @@ def support_build(
                 emitter, request, params=host.params(emitter, job.cells.params), stop=stop, report=report
             ),
             overlap=settings.overlap,
-            connector=job.cells.connector,
+            connector=job.cells.ending,
             allow_surface=job.target == "generic",
             beams=_beams(job),
             gap=settings.gap,

@@ -26,6 +26,7 @@ from amprep.model import (
     silent,
 )
 from amprep.model.control import Report
+from amprep.model.endings import Connector
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.supports import SupportLayout, plan_supports
 from amprep.pipeline.trial import SEED, Case
@@ -39,9 +40,9 @@ def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
     emit = _emitter(host, listed)
     for name, part in (("a table top", _slab(10.0, 12.0)), ("two storeys", _two_slabs())):
         layout = _layout(host, part)
-        for connector in ("full", "extend"):
+        for connector in (Connector("full"), Connector("extend")):
             run, judge = _building(layout, part, emit, connector)
-            yield Case(f"{name}, connectors {connector}", run, judge, timed=False)
+            yield Case(f"{name}, connectors {connector.kind}", run, judge, timed=False)
 
 
 def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
@@ -50,7 +51,7 @@ def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, 
 
 
 def _building(
-    layout: SupportLayout, part: PlacedPart, emit: Callable[[CellRequest, Stop], Cells], connector: str
+    layout: SupportLayout, part: PlacedPart, emit: Callable[[CellRequest, Stop], Cells], connector: Connector
 ) -> tuple[Callable[[Stop], Any], Callable[[Any], Sequence[Violation]]]:
     """Return how to build the supports of `part`, and how to judge what was emitted and what was built."""
 

@@ -1,0 +1,144 @@
+"""The shape of teeth and points: shoulders that carry them, tapered bodies, necks."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.cell_edges import separate_edges
+from amprep.geometry.cell_solids import union
+from amprep.geometry.connector_sites import Sites, within
+from amprep.geometry.connectors import Patches, stand_on
+from amprep.geometry.solids import as_manifold
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+ROUND_SIDES = 16
+"""Of the polygon that stands for a circle."""
+
+_APART = 2e-4
+"""mm; tips of neighbouring cells keep twice that from each other."""
+
+_ROOT = 0.05
+"""Share of a cell that stays free on each side of a tip's root."""
+
+_DIP = 0.05
+"""mm; how far shapes reach below the connectors' base and above their top, where those cut them off."""
+
+
+class Profile(NamedTuple):
+    """Section of a tip from below: as wide as its cell, tapering to `width` over `height`, straight on up.
+
+    Attributes
+    ----------
+    width, height
+        mm.
+    neck, neck_height
+        mm; a neck of 0 is none. It lies `neck_height` below the lowest spot of the contact.
+    round
+        Whether sections are circles, else squares.
+    """
+
+    width: float
+    height: float
+    neck: float
+    neck_height: float
+    round: bool
+
+
+def tips(sites: Sites, profile: Profile, base: Floats, overlap: float) -> "Manifold":
+    """Return a solid that leaves of connectors only teeth or points, on the shoulders that carry them.
+
+    Each cell is filled up to `height` below the lowest spot of its contact, level; from there on the tip stands.
+
+    Parameters
+    ----------
+    base
+        ``(s,)`` mm, where the connector of each site begins.
+    overlap
+        mm that connectors reach into the part.
+    """
+    from manifold3d import Manifold
+
+    if not len(sites.column):
+        return Manifold()
+    rings = _rings(sites, profile, base, overlap)
+    return union([*_shoulders(sites, sites.lowest - profile.height, base), as_manifold(*_lofted(rings))])
+
+
+def _shoulders(sites: Sites, level: Floats, base: Floats) -> list["Manifold"]:
+    """Return the prisms of all cells up to their level; one solid for each storey of cells above one another."""
+    tall = np.flatnonzero(level > base + _DIP)
+    storey = _storeys(sites.square[tall], base[tall])
+    solids = []
+    for each in range(int(storey.max(initial=-1)) + 1):
+        own = tall[storey == each]
+        (x0, y0), (x1, y1), z = sites.lo[own].T, sites.hi[own].T, level[own]
+        corners = np.stack([np.column_stack(corner) for corner in
+                            ((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z))], axis=1)  # fmt: skip
+        nowhere = np.zeros((len(own), 2), np.int64)
+        patches = Patches(
+            corners.reshape(-1, 3), 4 * np.arange(len(own) + 1), nowhere, np.array([0, len(own)])
+        )
+        solids.append(as_manifold(*separate_edges(*stand_on(patches, base[own] - _DIP, 0.0))))
+    return solids
+
+
+def _storeys(square: Ints, base: Floats) -> Ints:
+    """Number cells in the same place from below."""
+    order = np.lexsort((base, square[:, 1], square[:, 0]))
+    ordered = square[order]
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    here = np.arange(len(order))
+    storey = np.empty(len(order), np.int64)
+    storey[order] = here - np.maximum.accumulate(np.where(new, here, 0))
+    return storey
+
+
+def _rings(sites: Sites, profile: Profile, base: Floats, overlap: float) -> Floats:
+    """Return the corners of each tip's sections from below, ``(s, r, n, 3)`` mm."""
+    lo, hi = sites.lo + _APART, sites.hi - _APART
+    top = within(sites.spot, profile.width, lo, hi)
+    rim = _ROOT * (hi - lo)
+    root = np.minimum(lo + rim, top[0]), np.maximum(hi - rim, top[1])
+    foot = sites.lowest - profile.height
+    levels = [(np.minimum(foot, base) - 2 * _DIP, root, False), (foot, root, False)]
+    if profile.neck:
+        neck = within(sites.spot, profile.neck, *top)
+        levels.append((sites.lowest - profile.neck_height, neck, profile.round))
+    levels += [(sites.lowest, top, profile.round), (sites.highest + overlap + _DIP, top, profile.round)]
+    return np.stack([_ring(*level, sides=ROUND_SIDES if profile.round else 4) for level in levels], axis=1)
+
+
+def _ring(z: Floats, box: tuple[Floats, Floats], circle: bool, *, sides: int) -> Floats:
+    """Return points ``(s, sides, 3)`` on the sides of boxes, or on the circles in them, counter-clockwise."""
+    angle = np.pi / 4 + 2 * np.pi * np.arange(sides) / sides
+    way = np.column_stack([np.cos(angle), np.sin(angle)])
+    if not circle:
+        way /= np.abs(way).max(axis=1)[:, None]
+    middle, half = (box[0] + box[1]) / 2.0, (box[1] - box[0]) / 2.0
+    plan = middle[:, None] + half[:, None] * way
+    return np.concatenate([plan, np.broadcast_to(z[:, None, None], (len(z), sides, 1))], axis=2)
+
+
+def _lofted(rings: Floats) -> tuple[Floats, Ints]:
+    """Return closed meshes through rings ``(s, r, n, 3)``, each one's from below upwards."""
+    count, levels, sides, _ = rings.shape
+    here = np.arange(sides)
+    after = (here + 1) % sides
+    faces = [np.column_stack([0 * here[1:-1], after[1:-1], here[1:-1]])]
+    for low in sides * np.arange(levels - 1):
+        high = low + sides
+        faces += [np.column_stack([low + here, low + after, high + after]),
+                  np.column_stack([low + here, high + after, high + here])]  # fmt: skip
+    last = sides * (levels - 1)
+    faces.append(last + np.column_stack([0 * here[1:-1], here[1:-1], after[1:-1]]))
+    one = np.concatenate(faces)
+    every = one[None] + (levels * sides * np.arange(count))[:, None, None]
+    return rings.reshape(-1, 3), every.reshape(-1, 3)
