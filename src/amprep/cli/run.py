@@ -31,6 +31,8 @@ def run(
     target: running.Target = None,
     supports_as: running.SupportsAs = None,
     lattice: running.Lattice = None,
+    connector: running.Connector = None,
+    base: running.Base = None,
     sets: running.Sets = None,
     seed: running.Seed = None,
     time_limit: running.TimeLimit = None,
@@ -75,4 +77,6 @@ def run(
         seed=seed,
         supports_as=supports_as,
         lattice=lattice,
+        connector=connector,
+        base=base,
     )

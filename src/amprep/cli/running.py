@@ -47,6 +47,18 @@ Lattice = Annotated[
         help="Struts of cells as beams (generic files only) or mesh; default: as the cell's parameters say.",
     ),
 ]
+Connector = Annotated[
+    str | None,
+    typer.Option(
+        "--connector", metavar="KIND", help="How supports end at the part: full, teeth, point or extend."
+    ),
+]
+Base = Annotated[
+    str | None,
+    typer.Option(
+        "--base", metavar="KIND", help="What supports stand on at the plate: direct, flange or raft."
+    ),
+]
 Sets = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),

@@ -40,6 +40,8 @@ def support(
     target: running.Target = None,
     supports_as: running.SupportsAs = None,
     lattice: running.Lattice = None,
+    connector: running.Connector = None,
+    base: running.Base = None,
     sets: running.Sets = None,
     seed: running.Seed = None,
     time_limit: running.TimeLimit = None,
@@ -83,4 +85,6 @@ def support(
         seed=seed,
         supports_as=supports_as,
         lattice=lattice,
+        connector=connector,
+        base=base,
     )

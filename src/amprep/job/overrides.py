@@ -41,6 +41,8 @@ def override(
     seed: int | None = None,
     supports_as: str | None = None,
     lattice: str | None = None,
+    connector: str | None = None,
+    base: str | None = None,
 ) -> Job:
     """Return the job with the options given; None keeps what the job says.
 
@@ -58,7 +60,11 @@ def override(
         if name is not None:
             section = _STRATEGIES[option]
             table[section] = _with_strategy(job, table.get(section, {}), section, name)
-    for section, key, word in (("supports", "write_as", supports_as), ("cells", "lattice", lattice)):
+    words = (
+        *(("supports", "write_as", supports_as), ("cells", "lattice", lattice)),
+        *(("cells", "connector", connector), ("cells", "base", base)),
+    )
+    for section, key, word in words:
         if word is not None:
             table[section] = {**table.get(section, {}), key: word}
     return _remade(job, table, "")

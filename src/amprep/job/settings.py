@@ -13,7 +13,7 @@ from amprep.job.printers import Printer
 from amprep.job.tables import require
 from amprep.model.arrays import Floats, frozen
 from amprep.model.build import Grounding, SupportsAs, Target
-from amprep.model.endings import Connector, ConnectorKind
+from amprep.model.endings import Base, BaseKind, Connector, ConnectorKind
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
@@ -21,6 +21,9 @@ from amprep.model.supports import Escalation
 
 LEAST_TIP = 0.05
 """mm; teeth, points, necks and windows finer than that are refused: nothing prints them."""
+
+LARGEST_BASE = 50.0
+"""mm; no flange or raft is wider or higher."""
 
 LARGEST_COUNT = 1_000_000
 """Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""
@@ -144,6 +147,8 @@ class CellSettings:
         Name of a lattice cell, or the path of a file that declares one: TOML, or a mesh.
     connector
         Kind of the connectors; `ending` says what the measures that follow it mean.
+    base
+        What supports stand on at the plate; `footing` says what the measures that follow it mean.
     lattice
         Struts as beams or as meshes; None leaves it to the cell's parameters.
     removability
@@ -167,6 +172,12 @@ class CellSettings:
     neck_mm: float = 0.0
     neck_height_mm: float = 0.3
     window_mm: float = 0.0
+    base: BaseKind = "direct"
+    flange_mm: float = 1.0
+    flange_height_mm: float = 0.6
+    raft_margin_mm: float = 2.0
+    raft_height_mm: float = 0.6
+    raft_hole_mm: float = 0.0
     lattice: Literal["beams", "mesh"] | None = None
     removability: bool = False
     powder_hole_mm: float = 0.2
@@ -188,7 +199,10 @@ class CellSettings:
         for name, width in (("tooth_pitch_mm", self.tooth_width_mm), ("point_pitch_mm", self.point_mm)):
             pitch = getattr(self, name)
             require(pitch is None or pitch > width, f"{name} is above the width, {width:g}", pitch)
-        for name in ("neck_mm", "window_mm"):
+        for name in ("flange_mm", "flange_height_mm", "raft_margin_mm", "raft_height_mm"):
+            value = getattr(self, name)
+            require(LEAST_TIP <= value <= LARGEST_BASE, f"{name} is {LEAST_TIP} to {LARGEST_BASE}", value)
+        for name in ("neck_mm", "window_mm", "raft_hole_mm"):
             value = getattr(self, name)
             require(value == 0 or value >= LEAST_TIP, f"{name} is 0 or at least {LEAST_TIP}", value)
         cut = self.neck_mm > 0 or self.window_mm > 0
@@ -213,6 +227,13 @@ class CellSettings:
         if self.connector == "point":
             sizes = (self.point_pitch_mm, self.point_mm, self.point_height_mm)
         return Connector(self.connector, *sizes, self.neck_mm, self.neck_height_mm, self.window_mm)
+
+    @property
+    def footing(self) -> Base:
+        """What supports stand on at the plate."""
+        if self.base == "raft":
+            return Base("raft", self.raft_margin_mm, self.raft_height_mm, self.raft_hole_mm)
+        return Base(self.base, self.flange_mm, self.flange_height_mm)
 
     @property
     def file(self) -> Path | None:

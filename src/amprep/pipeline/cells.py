@@ -1,11 +1,13 @@
 """From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.errors import JobError
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
 from amprep.model.arrays import CONTACT_TOLERANCE
-from amprep.model.endings import Connector
+from amprep.model.endings import Base, Connector
+from amprep.pipeline.cell_bases import make_bases, with_base
 from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
 from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_connectors import Ways, find_ways
@@ -15,6 +17,12 @@ from amprep.pipeline.cell_requests import Emit, checked, make_request
 from amprep.pipeline.cell_trunks import Emitted, sort_out
 from amprep.pipeline.support_layout import SupportLayout
 
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+DIRECT = Base()
+"""Supports stand on the plate as they are."""
+
 
 def build_supports(
     layout: SupportLayout,
@@ -23,6 +31,7 @@ def build_supports(
     *,
     overlap: float,
     connector: Connector,
+    base: Base = DIRECT,
     allow_surface: bool,
     stop: Stop,
     report: Report,
@@ -43,6 +52,8 @@ def build_supports(
         mm; less than `amprep.model.CONTACT_TOLERANCE` counts as that.
     connector
         Its kind and measures; walls without thickness always extend.
+    base
+        What supports stand on at the plate.
     allow_surface
         Whether the target reads walls without thickness.
     stop
@@ -73,45 +84,28 @@ def build_supports(
         return sort_out(request, checked(request, emit(request)))
 
     emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
-    if emitted.sheet.any() and len(layout.feet):
-        raise JobError(
-            "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
-        )
+    if emitted.sheet.any():
+        _require_no_feet(layout, base)
     ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts)
-    bodies: list[SupportBody] = []
-    count = len(layout.group_parts)
+    work = _Work(layout, parts, ways, obstacles, overlap, connector, gap)
+    solids, names = [], []
     for group, held in enumerate(layout.group_parts):
         if stop.cancelled.is_set():
             break
-        name = ", ".join(parts[part].label for part in held)
-        report(group / count, f"uniting supports of {name}")
-        solid = solid_of(
-            group,
-            emitted,
-            layout,
-            ways,
-            obstacles,
-            overlap=overlap,
-            connector=connector,
-        )
+        names.append(", ".join(parts[part].label for part in held))
+        report(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
+        solids.append(work.solid(group, emitted))
+    bodies: list[SupportBody] = []
+    bases = make_bases(solids, parts, base, space, gap)
+    for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
+        held = layout.group_parts[group]
+        whole = with_base(solid, stand)
         sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
-        if solid is not None and len(solid.triangles):
+        if whole is not None and len(whole.triangles):
             lattice = None
             if bare is not None and space is not None:
-                lattice = _lattice(
-                    group,
-                    bare,
-                    solid,
-                    layout,
-                    ways,
-                    obstacles,
-                    parts,
-                    space,
-                    overlap=overlap,
-                    gap=gap,
-                    connector=connector,
-                )
-            bodies.append(SupportBody(f"supports of {name}", solid, held, lattice=lattice))
+                lattice = work.lattice(group, bare, whole, stand, space)
+            bodies.append(SupportBody(f"supports of {name}", whole, held, lattice=lattice))
         if sheet is not None and len(sheet.triangles):
             bodies.append(
                 SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
@@ -136,39 +130,51 @@ def _ask(ask: Callable[..., Emitted], *, extend: bool, beams: bool | None) -> tu
     return emitted, bare
 
 
-def _lattice(
-    group: int,
-    bare: Emitted,
-    whole: Mesh,
-    layout: SupportLayout,
-    ways: Ways,
-    obstacles: Obstacles,
-    parts: tuple[PlacedPart, ...],
-    space: BuildVolume,
-    *,
-    overlap: float,
-    gap: float,
-    connector: Connector,
-) -> Lattice | None:
-    """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
-    overlap = max(overlap, CONTACT_TOLERANCE)
-    mine, held = of_group(bare.cells, group), layout.group_parts[group]
+def _require_no_feet(layout: SupportLayout, base: Base) -> None:
+    """Refuse what walls without thickness cannot have."""
+    if len(layout.feet):
+        raise JobError(
+            "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
+        )
+    if base.kind != "direct":
+        raise JobError(
+            f"cells.base = {base.kind!r} needs a cell with thickness: walls without any have no feet to widen"
+        )
 
-    def solid(emitted: Emitted, *, on_beams: bool) -> Mesh | None:
+
+class _Work(NamedTuple):
+    """What every support group is made from."""
+
+    layout: SupportLayout
+    parts: tuple[PlacedPart, ...]
+    ways: Ways
+    obstacles: Obstacles
+    overlap: float
+    connector: Connector
+    gap: float
+
+    def solid(self, group: int, emitted: Emitted, *, on_beams: bool = False) -> Mesh | None:
+        """Return the solid of a group, or with `on_beams` what of it beams carry."""
         return solid_of(
             group,
             emitted,
-            layout,
-            ways,
-            obstacles,
-            overlap=overlap,
-            connector=connector,
+            self.layout,
+            self.ways,
+            self.obstacles,
+            overlap=self.overlap,
+            connector=self.connector,
             on_beams=on_beams,
         )
 
-    beams = keep_out(mine, parts, held, space, overlap=overlap, gap=gap)
-    coarse = None
-    if len(whole.triangles) > MOST_STOOD_IN:
-        coarse = solid(sort_out(bare.request, prisms(bare.request)), on_beams=False)
-    boxes = foot_boxes(layout, group, overlap)
-    return lattice_of(beams, solid(bare, on_beams=True), whole, coarse, boxes, space)
+    def lattice(
+        self, group: int, bare: Emitted, whole: Mesh, stand: "Manifold | None", space: BuildVolume
+    ) -> Lattice | None:
+        """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
+        overlap, held = max(self.overlap, CONTACT_TOLERANCE), self.layout.group_parts[group]
+        mine = of_group(bare.cells, group)
+        beams = keep_out(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
+        coarse = None
+        if len(whole.triangles) > MOST_STOOD_IN:
+            coarse = with_base(self.solid(group, sort_out(bare.request, prisms(bare.request))), stand)
+        solids = with_base(self.solid(group, bare, on_beams=True), stand)
+        return lattice_of(beams, solids, whole, coarse, foot_boxes(self.layout, group, overlap), space)

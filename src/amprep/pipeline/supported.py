@@ -67,6 +67,7 @@ def support_build(
             ),
             overlap=settings.overlap,
             connector=job.cells.ending,
+            base=job.cells.footing,
             allow_surface=job.target == "generic",
             beams=_beams(job),
             gap=settings.gap,
