@@ -27,8 +27,9 @@ FINISHED, PAUSED, GAVE_UP = 0, 1, 2
 RESIDUAL, LOW, TOUCHING, CENTRE = 0, 1, 2, 3
 """Merits: least residual space left; lowest weighted far corner; most contact; nearest to the axis."""
 
-AXIS_X, AXIS_Y, RADIUS, GAP, SLACK, FLAT = 6, 7, 8, 9, 10, 11
-"""Places in the room after its corners: axis, radius less clearance (0: box), clearance, slack, flatness."""
+AXIS_X, AXIS_Y, RADIUS, GAP, SLACK, FLAT, LEAST = 6, 7, 8, 9, 10, 11, 12
+"""Places in the room after its corners: axis, radius less clearance (0: box), clearance, slack, flatness, and
+three residual spaces; points with less are of no use to any item."""
 
 KIND, WEIGHT, GRID, PHASE = 0, 1, 4, 5
 """Places in the style: merit, three weights of the far corner, most crossings of lines tried, phase.
@@ -39,6 +40,9 @@ across the rows.
 
 BUILD, INDEX, PLACED, POINTS, LINES, MOVED, LEFT, WORK = 0, 1, 2, 3, 4, 6, 7, 8
 """Places in the cursor: build, index in the order; its boxes, points, lines, items; items left, work."""
+
+LAST = 6
+"""Place in a point: the box that was last in the way."""
 
 MERIT, VARIANT, PLACE = 0, 1, 2
 """Places in the best candidate."""
@@ -74,11 +78,11 @@ class Scratch(NamedTuple):
     placed
         ``(m, 6)`` corners of the boxes in the open build, obstacles first.
     points
-        ``(p, 6)`` extreme points and their residual space.
+        ``(p, 7)`` extreme points, their residual space, and which box was last in the way there (-1: none).
     lines
         ``(2, l)`` where box sides lie in x and in y.
     candidates
-        ``(c, 4)`` places of one variant to be tried: x, y, z, residual space.
+        ``(c, 5)`` places of one variant to be tried: x, y, z, residual space, number of the point (-1: none).
     failed
         ``(kinds,)`` the last build in which a kind found no place.
     """
@@ -106,7 +110,10 @@ class Answer(NamedTuple):
 
 @helper
 def settle(first, last, x, y, z, highest, boxes, room, placed, count, standing):
-    """Return the least height from z to `highest` at which the boxes fit; -1 for none."""
+    """Return the least height from z to `highest` at which the boxes fit; or -2 - j, where box j is in the way.
+
+    It is -1 when the room is.
+    """
     slack = room[SLACK]
     k = first
     while k < last:
@@ -129,7 +136,7 @@ def settle(first, last, x, y, z, highest, boxes, room, placed, count, standing):
             if over_x and y0 < placed[j, 4] - give and placed[j, 1] + give < y1:
                 over_z = z0 < placed[j, 5] - give and placed[j, 2] + give < z1
                 if over_z and placed[j, 5] - boxes[k, 2] > highest:
-                    return -1.0
+                    return -2.0 - j
                 if over_z:
                     z = placed[j, 5] - boxes[k, 2]
                     raised = True
@@ -177,8 +184,28 @@ def _merit(variant, x, y, z, variants, room, style):
 
 
 @helper
-def choose(variant, known, found, shapes, room, style, placed, cursor, standing, candidates, best):
-    """Keep the feasible candidate of least merit in `best` (in place); those from `known` on may rise."""
+def _in_the_way(j, first, last, x, y, z, boxes, room, placed, standing):
+    """Whether placed box j overlaps one of the boxes."""
+    give = room[SLACK] if j < standing else PAIR_SLACK
+    for k in range(first, last):
+        over_x = x + boxes[k, 0] < placed[j, 3] - give and placed[j, 0] + give < x + boxes[k, 3]
+        over_y = y + boxes[k, 1] < placed[j, 4] - give and placed[j, 1] + give < y + boxes[k, 4]
+        if (
+            over_x
+            and over_y
+            and z + boxes[k, 2] < placed[j, 5] - give
+            and placed[j, 2] + give < z + boxes[k, 5]
+        ):
+            return True
+    return False
+
+
+@helper
+def choose(variant, known, found, shapes, room, style, placed, points, cursor, standing, candidates, best):
+    """Keep the feasible candidate of least merit in `best` (in place); those from `known` on may rise.
+
+    What was last in the way at a point often is again: it is looked at first, or thousands of boxes take long.
+    """
     count = cursor[PLACED]
     first, last = shapes.first_box[variant], shapes.first_box[variant + 1]
     simple = style[KIND] == LOW or style[KIND] == CENTRE
@@ -187,13 +214,20 @@ def choose(variant, known, found, shapes, room, style, placed, cursor, standing,
         merit = _merit(variant, x, y, z, shapes.variants, room, style) if simple else candidates[c, 3]
         if style[KIND] != TOUCHING and merit >= best[MERIT]:
             continue
-        highest = z
+        highest, point = z, int(candidates[c, 4]) if c < known else -1
+        if point >= 0 and points[point, LAST] >= 0.0:
+            cursor[WORK] += 1
+            j = int(points[point, LAST])
+            if _in_the_way(j, first, last, x, y, z, shapes.boxes, room, placed, standing):
+                continue
         if c >= known and room[FLAT] == 0.0:
             # no higher than where it would still be better than the best
             highest = z + (best[MERIT] - merit) / style[WEIGHT + 2] if simple else np.inf
         cursor[WORK] += count
         height = settle(first, last, x, y, z, highest, shapes.boxes, room, placed, count, standing)
         if height < 0.0:
+            if point >= 0 and height <= -2.0:
+                points[point, LAST] = -2.0 - height
             continue
         if style[KIND] == TOUCHING:
             low = style[WEIGHT] * x + style[WEIGHT + 1] * y + style[WEIGHT + 2] * height

@@ -22,6 +22,8 @@ from amprep.kernels.box_places import (
     GAVE_UP,
     GRID,
     INDEX,
+    LAST,
+    LEAST,
     LEFT,
     LINES,
     MERIT,
@@ -43,19 +45,41 @@ from amprep.kernels.box_places import (
 
 
 @helper
-def _shorten(p, points, box, placed):
-    """Shorten the residual space of a point in place by a box; say whether the box covers the point."""
-    x, y, z = points[p, 0] + PAIR_SLACK, points[p, 1] + PAIR_SLACK, points[p, 2] + PAIR_SLACK
-    in_x = placed[box, 0] <= x < placed[box, 3]
-    in_y = placed[box, 1] <= y < placed[box, 4]
-    in_z = placed[box, 2] <= z < placed[box, 5]
-    if in_y and in_z and placed[box, 0] > x:
-        points[p, 3] = min(points[p, 3], placed[box, 0] - points[p, 0])
-    if in_x and in_z and placed[box, 1] > y:
-        points[p, 4] = min(points[p, 4], placed[box, 1] - points[p, 1])
-    if in_x and in_y and placed[box, 2] > z:
-        points[p, 5] = min(points[p, 5], placed[box, 2] - points[p, 2])
-    return in_x and in_y and in_z
+def _shortened(x, y, z, space_x, space_y, space_z, x0, y0, z0, x1, y1, z1):
+    """Return the residual space of a point beside a box; the first is -1 when the box covers the point.
+
+    Numbers only: called for each point and box, it has to be inlined.
+    """
+    px, py, pz = x + PAIR_SLACK, y + PAIR_SLACK, z + PAIR_SLACK
+    in_x, in_y, in_z = x0 <= px < x1, y0 <= py < y1, z0 <= pz < z1
+    if in_y and in_z:
+        if in_x:
+            return -1.0, space_y, space_z
+        if x0 > px:
+            return min(space_x, x0 - x), space_y, space_z
+    elif in_x and in_z and y0 > py:
+        return space_x, min(space_y, y0 - y), space_z
+    elif in_x and in_y and z0 > pz:
+        return space_x, space_y, min(space_z, z0 - z)
+    return space_x, space_y, space_z
+
+
+@helper
+def _prune(points, new, placed, room, cursor):
+    """Shorten the residual spaces by a new box; drop points it covers or leaves too little (in place)."""
+    x0, y0, z0 = placed[new, 0], placed[new, 1], placed[new, 2]
+    x1, y1, z1 = placed[new, 3], placed[new, 4], placed[new, 5]
+    kept = 0
+    for p in range(cursor[POINTS]):
+        x, y, z, last = points[p, 0], points[p, 1], points[p, 2], points[p, LAST]
+        space_x, space_y, space_z = _shortened(
+            x, y, z, points[p, 3], points[p, 4], points[p, 5], x0, y0, z0, x1, y1, z1
+        )
+        if space_x >= room[LEAST] and space_y >= room[LEAST + 1] and space_z >= room[LEAST + 2]:
+            points[kept, 0], points[kept, 1], points[kept, 2], points[kept, LAST] = x, y, z, last
+            points[kept, 3], points[kept, 4], points[kept, 5] = space_x, space_y, space_z
+            kept += 1
+    cursor[POINTS] = kept
 
 
 @helper
@@ -80,13 +104,18 @@ def _add_point(x, y, z, room, placed, points, cursor):
     for p in range(known):
         if abs(points[p, 0] - x) + abs(points[p, 1] - y) + abs(points[p, 2] - z) <= PAIR_SLACK:
             return
-    points[known, 0], points[known, 1], points[known, 2] = x, y, z
-    points[known, 3], points[known, 4], points[known, 5] = room[3] - x, room[4] - y, room[5] - z
-    if min(points[known, 3], points[known, 4], points[known, 5]) <= PAIR_SLACK:
-        return
+    space_x, space_y, space_z = room[3] - x, room[4] - y, room[5] - z
     for j in range(cursor[PLACED]):
-        if _shorten(known, points, j, placed):
+        if space_x < room[LEAST] or space_y < room[LEAST + 1] or space_z < room[LEAST + 2]:
             return
+        space_x, space_y, space_z = _shortened(
+            x, y, z, space_x, space_y, space_z,
+            placed[j, 0], placed[j, 1], placed[j, 2], placed[j, 3], placed[j, 4], placed[j, 5],
+        )  # fmt: skip
+    if space_x < room[LEAST] or space_y < room[LEAST + 1] or space_z < room[LEAST + 2]:
+        return
+    points[known, 0], points[known, 1], points[known, 2], points[known, LAST] = x, y, z, -1.0
+    points[known, 3], points[known, 4], points[known, 5] = space_x, space_y, space_z
     cursor[POINTS] = known + 1
 
 
@@ -98,14 +127,8 @@ def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
         shift = x if axis == 0 else y if axis == 1 else z
         placed[new, axis], placed[new, axis + 3] = boxes[b, axis] + shift, boxes[b, axis + 3] + shift
     cursor[PLACED] = new + 1
-    kept = 0
-    for p in range(cursor[POINTS]):
-        if not _shorten(p, points, new, placed):
-            for i in range(6):
-                points[kept, i] = points[p, i]
-            kept += 1
-    cursor[POINTS] = kept
-    cursor[WORK] += 7 * kept + 12 * new
+    _prune(points, new, placed, room, cursor)
+    cursor[WORK] += 7 * cursor[POINTS] + 12 * new
     flat = room[FLAT] != 0.0
     for axis in range(2 if flat else 3):
         for fall in range(3):
@@ -165,7 +188,7 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer
     order
         ``(m,)`` int64 items.
     room
-        ``(12,)`` mm: corners, then what `AXIS_X` and so on name.
+        ``(15,)`` mm: corners, then what `AXIS_X` and so on name.
     obstacles, zones
         ``(m, 6)`` mm corners; the first `zones` stand in every build, the others in the first one.
     style
@@ -214,11 +237,12 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer
                             candidates[found, 1] = points[p, 1] - boxes[k, 1]
                             candidates[found, 2] = room[2] if flat else points[p, 2] - boxes[k, 2]
                             candidates[found, 3] = over_x + over_y + over_z
+                            candidates[found, 4] = p
                             found += 1
                 if empty and not np.isnan(variants[v, 3]):
                     for i in range(3):
                         candidates[found, i] = variants[v, 3 + i]
-                    candidates[found, 3] = 1e9
+                    candidates[found, 3], candidates[found, 4] = 1e9, -1.0
                     found += 1
                 known = found
                 if is_round:
@@ -227,7 +251,9 @@ def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer
                     found = crossings(first, last, boxes, room, lines, cursor, candidates, found)
                 if found:
                     cursor[WORK] += found
-                    choose(v, known, found, shapes, room, style, placed, cursor, standing, candidates, best)
+                    choose(
+                        v, known, found, shapes, room, style, placed, points, cursor, standing, candidates, best
+                    )  # fmt: skip
             if best[MERIT] == np.inf:
                 failed[kind] = build
                 continue

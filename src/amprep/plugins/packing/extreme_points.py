@@ -189,9 +189,17 @@ def _starts(lengths: list[int]) -> records.Indices:
 def _room(scene: Scene) -> Floats:
     """Return the kernel's room: items are longer by the clearance, so the upper walls are further by it."""
     space, gap = scene.space, scene.problem.clearance
-    return np.array(
-        [*space.lo, *(space.hi + gap), *space.axis, space.radius, gap, space.slack, float(space.flat)]
-    )
+    corners, rules = (*space.lo, *(space.hi + gap)), (gap, space.slack, float(space.flat))
+    return np.array([*corners, *space.axis, space.radius, *rules, *_least_space(scene)])
+
+
+def _least_space(scene: Scene) -> Floats:
+    """Return the residual space that a point needs to be of use, ``(3,)`` mm; for items of several boxes any."""
+    variants = [variant for kind in scene.kinds for variant in kind]
+    if not variants or any(len(variant.lo) > 1 for variant in variants):
+        return np.full(3, records.PAIR_SLACK)
+    least = np.min([variant.size for variant in variants], axis=0)
+    return np.asarray(np.maximum(least + scene.problem.clearance - scene.space.slack, records.PAIR_SLACK))
 
 
 def _obstacles(scene: Scene) -> Floats:
@@ -210,9 +218,9 @@ def _scratch(scene: Scene) -> records.Scratch:
     boxes = len(scene.space.zone_lo) + len(scene.standing_lo) + int(most[scene.kind[scene.free]].sum())
     return records.Scratch(
         placed=np.zeros((boxes + 1, 6)),
-        points=np.zeros((6 * boxes + 2, 6)),
+        points=np.zeros((6 * boxes + 2, 7)),
         lines=np.zeros((2, 2 * boxes + 1)),
-        candidates=np.zeros((int(most.max(initial=1)) * (6 * boxes + 2 + 4 * GRID) + 16 * boxes + 1000, 4)),
+        candidates=np.zeros((int(most.max(initial=1)) * (6 * boxes + 2 + 4 * GRID) + 16 * boxes + 1000, 5)),
         failed=np.full(len(scene.kinds), -1, np.int64),
         cursor=np.zeros(9, np.int64),
         best=np.zeros(5),
