@@ -267,10 +267,9 @@ def test_blockers_and_modifiers_of_prusaslicer_are_not_printed(tmp_path):
     (part,) = settled(pack(tmp_path / "a.3mf", three_boxes(), build, files=files))
     assert part.name == "Thing"
     assert part.volume_mm3 == pytest.approx(6)
-    (region,) = part.regions
-    assert (region.kind, region.name) == ("blocker", "v1")
-    assert region.mesh.signed_volume == pytest.approx(6)
-    assert region.mesh.bounds[0][0] == pytest.approx(-4.5)
+    assert [(region.kind, region.name) for region in part.regions] == [("blocker", "v1"), ("lattice", "v2")]
+    assert [region.mesh.signed_volume for region in part.regions] == pytest.approx([6, 6])
+    assert [region.mesh.bounds[0][0] for region in part.regions] == pytest.approx([-4.5, -8.5])
     assert any("modifier 'v2'" in note for note in part.notes)
 
 

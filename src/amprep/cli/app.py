@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, cells, plugins, printers, run, support, verify
+from amprep.cli import bench, cells, lattice, plugins, printers, run, support, verify
 
 app = typer.Typer(
     name="amprep",
@@ -17,6 +17,7 @@ app = typer.Typer(
 )
 app.command("run")(run.run)
 app.command("support")(support.support)
+app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")

@@ -1,9 +1,10 @@
 """Reading and writing 3MF; the only package that knows lib3mf, and it loads it only when a function runs."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from amprep.model.arrays import Floats, Ints
-from amprep.model.build import Build
+from amprep.model.build import Build, Lattice, Target
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 
@@ -22,11 +23,32 @@ def read_beams(path: Path) -> tuple[Floats, Ints, Floats] | None:
     return run(path)
 
 
+def modifier_note(name: str) -> str:
+    """Return what reading says of a modifier; see `amprep.threemf.reading_objects.modifier_note`."""
+    from amprep.threemf.reading_objects import modifier_note as run
+
+    return run(name)
+
+
 def write_build(build: Build, path: Path) -> None:
     """Write a build job; see `amprep.threemf.writing.write_build`."""
     from amprep.threemf.writing import write_build as run
 
     run(build, path)
+
+
+def write_parts(
+    parts: Sequence[Part],
+    path: Path,
+    *,
+    title: str,
+    target: Target = "generic",
+    lattices: Mapping[int, tuple[Lattice, Mesh]] | None = None,
+) -> None:
+    """Write parts as a job; see `amprep.threemf.writing_parts.write_parts`."""
+    from amprep.threemf.writing_parts import write_parts as run
+
+    run(parts, path, title=title, target=target, lattices=lattices)
 
 
 def read_build(path: Path) -> Build:
@@ -43,4 +65,12 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     run(mesh, path)
 
 
-__all__ = ["read_beams", "read_build", "read_parts", "write_build", "write_stl"]
+__all__ = [
+    "modifier_note",
+    "read_beams",
+    "read_build",
+    "read_parts",
+    "write_build",
+    "write_parts",
+    "write_stl",
+]

@@ -16,6 +16,7 @@ from amprep.threemf.package import Package, open_package
 from amprep.threemf.reading_arrays import Model3MF, load_model
 from amprep.threemf.reading_colours import appearance_of
 from amprep.threemf.reading_job import foreign, wishes_of
+from amprep.threemf.reading_loose import Loose, cura_role, with_loose
 from amprep.threemf.reading_objects import Gatherer, Shape, row_matrix
 from amprep.threemf.reading_slicer import parse_part_roles, parse_slicer_config
 
@@ -90,9 +91,13 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
     roles = parse_part_roles(package.part_config, str(path))
     gatherer = Gatherer(loaded.model, volumes, roles, package.paint, str(path))
     parts: list[Part] = []
+    loose: list[Loose] = []
     for item, positions in _items(loaded.model, package.unprintable):
-        shape = gatherer.shape_of(item.thing, item.linear)
-        if shape.vertices:
+        shape = gatherer.shape_of(item.thing, item.linear, cura_role(item.metadata, item.thing.GetName()))
+        if shape.regions and not sum(map(len, shape.triangles)):
+            loose += [(_scaled(region, scale), positions * scale) for region in shape.regions]
+            notes += shape.notes
+        elif shape.vertices:
             notes = [*notes, *shape.notes]
             parts.append(_part(item, positions * scale, shape, scale, tuple(dict.fromkeys(notes)), path))
             notes = []
@@ -100,7 +105,8 @@ def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
             notes += shape.notes
     if not parts:
         raise InputError(f"{path}: the build asks for nothing that can be printed{_because(notes)}")
-    return parts
+    parts[-1] = replace(parts[-1], notes=tuple(dict.fromkeys([*parts[-1].notes, *notes])))
+    return with_loose(parts, loose)
 
 
 def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_Item, Floats]]:

@@ -17,6 +17,7 @@ from amprep.threemf.reading_paint import Painted, painted_regions
 from amprep.threemf.reading_slicer import (
     BLOCKER,
     ENFORCER,
+    MODIFIER,
     NEGATIVE,
     SOLID,
     Role,
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 MOST_TRIANGLES = 50_000_000
 
-_REGIONS: dict[str, RegionKind] = {BLOCKER: "blocker", ENFORCER: "enforcer"}
+_REGIONS: dict[str, RegionKind] = {BLOCKER: "blocker", ENFORCER: "enforcer", MODIFIER: "lattice"}
 
 
 @dataclass
@@ -75,12 +76,12 @@ class Gatherer:
         self.where = where
         self._triangles = 0
 
-    def shape_of(self, thing: "Lib3MF.Object", linear: Floats) -> Shape:
-        """Return what an object shows under the ``(3, 3)`` map `linear` (row vectors)."""
+    def shape_of(self, thing: "Lib3MF.Object", linear: Floats, role: Role | None = None) -> Shape:
+        """Return what an object shows under the ``(3, 3)`` map `linear` (row vectors); `role` is what it is for."""
         shape = Shape()
         frame = np.eye(4)
         frame[:3, :3] = linear
-        self._gather(thing, frame, None, shape)
+        self._gather(thing, frame, role, shape)
         return shape
 
     def _gather(self, thing: "Lib3MF.Object", frame: Floats, role: Role | None, shape: Shape) -> None:
@@ -173,12 +174,16 @@ class Gatherer:
             )
         own = triangles[volume.first : volume.last + 1]
         printed[volume.first : volume.last + 1] = False
-        if volume.kind in _REGIONS:
-            used, corners = np.unique(own, return_inverse=True)
-            mesh = Mesh(vertices[used], corners.reshape(-1, 3).astype(np.int32))
-            shape.regions.append(Region(_REGIONS[volume.kind], volume.name, mesh=mesh))
-        else:
-            shape.notes.append(f"left out the modifier {volume.name!r}: amprep knows no such settings")
+        used, corners = np.unique(own, return_inverse=True)
+        mesh = Mesh(vertices[used], corners.reshape(-1, 3).astype(np.int32))
+        shape.regions.append(Region(_REGIONS[volume.kind], volume.name, mesh=mesh))
+        if volume.kind == MODIFIER:
+            shape.notes.append(modifier_note(volume.name))
+
+
+def modifier_note(name: str) -> str:
+    """Return what is said of a modifier that was read."""
+    return f"left out the modifier {name!r}; 'amprep lattice' fills it with cells"
 
 
 def row_matrix(transform: "Lib3MF.Transform") -> Floats:

@@ -40,12 +40,16 @@ def write_build(build: Build, path: Path) -> None:
     """
     _refuse_surfaces(build)
     merged = build.settings.target == "prusaslicer"
-    document = merged_document(build) if merged else components_document(build)
+    write_document(merged_document(build) if merged else components_document(build), path, slicer=merged)
+
+
+def write_document(document: Document, path: Path, *, slicer: bool) -> None:
+    """Write a 3MF package; with `slicer`, PrusaSlicer's own list of objects and volumes beside the model."""
     for body in document.bodies:
         check_geometry(body)
-    skeleton = make_skeleton(document, ["config"] if merged else [])
+    skeleton = make_skeleton(document, ["config"] if slicer else [])
     others = dict(skeleton.others)
-    if merged:
+    if slicer:
         others[CONFIG_NAME] = slicer_config(document.bodies, skeleton.object_ids)
     with replacing(path) as temporary:
         _write_readable(temporary, document, replace(skeleton, model=_finished(skeleton), others=others))

@@ -14,11 +14,15 @@ Metadata = tuple[tuple[str, str, str], ...]
 
 @dataclass(frozen=True)
 class Volume:
-    """A named run of triangles of a body, both ends included, that a slicer shows as a volume of its own."""
+    """A named run of triangles of a body, both ends included, that a slicer shows as a volume of its own.
+
+    `kind` is PrusaSlicer's word for what it is for.
+    """
 
     name: str
     first: int
     last: int
+    kind: str = "ModelPart"
 
 
 @dataclass(frozen=True, eq=False)

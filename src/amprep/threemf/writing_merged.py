@@ -162,7 +162,7 @@ def slicer_config(bodies: Sequence[Body], object_ids: Sequence[int]) -> bytes:
             lines += [
                 f'  <volume firstid="{volume.first}" lastid="{volume.last}">',
                 "   " + _entry("volume", "name", volume.name),
-                "   " + _entry("volume", "volume_type", "ModelPart"),
+                "   " + _entry("volume", "volume_type", volume.kind),
                 "  </volume>",
             ]
         lines.append(" </object>")
