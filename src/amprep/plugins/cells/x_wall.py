@@ -1,12 +1,13 @@
 """X-shaped walls that meet their neighbours only every n-th layer (thesis 3.5, figures 1 and 2)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from amprep.errors import JobError
-from amprep.model import CellRequest, Cells, Report, Role, Stop
-from amprep.plugins.cells.x_shapes import solid_x, surface_x
+from amprep.model import DIRECTIONS, CellRequest, Cells, Report, Role, Stop, Template
+from amprep.plugins.cells.x_shapes import Window, solid_x, surface_x
 
 HAIR = 1e-3
 """Share of the square: how much thinner oblique cells are half way up, times the number of their direction.
@@ -17,6 +18,12 @@ leaves triangles folded onto one another.
 
 _USUAL = 0.3
 """mm; what a fine scan track with its neighbour is wide, and what powder still runs through."""
+
+_NEAR, _AXIS = 0.7, 0.1
+"""How near to the cell's centre windows begin: in `arm`s (half of one is inside the crossing), at least a share."""
+
+_POST, _LEAST_WINDOW = 0.15, 0.3
+"""mm along the wall: what a window leaves of the arm's end where it is widest, and how wide it is at least."""
 
 
 @dataclass(frozen=True)
@@ -50,78 +57,79 @@ class XWallParams:
 
 @dataclass(frozen=True)
 class _Shares:
-    """The parameters as shares of the pitch: half of a wall's width along x, and half of a gap."""
+    """The parameters as shares of the pitch: half of a wall's width along x, half of a gap, windows if any."""
 
     arm: float
     inset: float
+    window: Window | None = None
 
 
 def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
     """Put an X under the map of each edge; its size at a plane depends on the plane alone.
 
     At both planes of every `join_every`-th layer the arms reach the sides of the square, at the others they
-    are drawn back, with a slope between. A layer between two joined ones has a waist.
+    are drawn back, with a slope between. A layer between two joined ones has a waist. Unless all layers are
+    joined, arms have windows where cells cross: powder leaves from between their walls.
     """
     shares = _shares(request.frame.pitch, params)
     if params.wall_mm == 0.0 and not request.allow_surface:
         raise JobError(
             "x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm"
         )
-    lower = request.plane - 1
-    low = np.where(_is_joined(lower, params.join_every), 0.0, shares.inset)
-    high = np.where(_is_joined(request.plane, params.join_every), 0.0, shares.inset)
-    waist = np.where(
-        lower % params.join_every == params.join_every - 1,
-        0.0,
-        np.where(low == high, shares.inset, (low + high) / 2),
-    )
-    whole = request.role == Role.CONNECTOR
-    low[whole], waist[whole], high[whole] = 0.0, 0.0, 0.0
-    rows = np.column_stack([low, waist, high])
-    if params.wall_mm == 0.0:
-        kinds, template = np.unique(rows, axis=0, return_inverse=True)
-        templates = tuple(surface_x(*insets) for insets in kinds.tolist())
-    else:
-        rows = np.column_stack([rows, HAIR * request.direction])
-        kinds, template = np.unique(rows, axis=0, return_inverse=True)
-        templates = tuple(solid_x(shares.arm, *kind) for kind in kinds.tolist())
+    rows = _insets(request.plane, params.join_every, shares.inset)
+    rows[request.role == Role.CONNECTOR] = 0.0
+    hair = np.where(params.wall_mm == 0.0, 0.0, HAIR * request.direction)
+    rows = np.column_stack([rows, hair, _beside_oblique(request)])
+    kinds, template = np.unique(rows, axis=0, return_inverse=True)
+    templates = tuple(_template(shares, kind[:3], kind[3], bool(kind[4])) for kind in kinds.tolist())
     return Cells(templates, template.ravel(), np.arange(len(request.plane)), request.matrices)
 
 
-def x_wall_material(pitch: float, step: float, params: XWallParams) -> tuple[float, float]:
-    """Volume in mm3 of an upright and of an oblique edge, on average over the layers (and the directions).
+def _beside_oblique(request: CellRequest) -> NDArray[np.bool_]:
+    """Tell which edges are oblique or have a square in common with one that is: their walls cross."""
+    aside = request.direction > 0
+    way = np.array(DIRECTIONS)[request.direction]
+    found = aside.copy()
+    for square in (
+        np.column_stack([request.plane, request.y, request.x]),
+        np.column_stack([request.plane - 1, request.y + way[:, 0], request.x + way[:, 1]]),
+    ):
+        number = np.unique(square, axis=0, return_inverse=True)[1].ravel()
+        found |= np.isin(number, number[aside])
+    return np.asarray(found & (request.role != Role.CONNECTOR))
 
-    The X with arms of half width a in a square with side q = 1 - 2 inset covers 4 a (q - a) of the unit
-    square. Between two sections both change linearly; shearing keeps the volume.
-    """
+
+def _insets(plane: NDArray[np.integer], every: int, inset: float) -> NDArray[np.float64]:
+    """Return how far the arms below each plane are drawn back at the bottom, half way up and at the top."""
+    lower = plane - 1
+    low, high = (np.where(_is_joined(each, every), 0.0, inset) for each in (lower, plane))
+    between = np.where(low == high, inset, (low + high) / 2)
+    return np.column_stack([low, np.where(lower % every == every - 1, 0.0, between), high])
+
+
+def _template(shares: "_Shares", insets: list[float], hair: float, pierced: bool) -> Template:
+    """Return an X, `pierced` by windows or not; the insets are those of `_insets`."""
+    low, waist, high = insets
+    window = shares.window if pierced else None
+    if shares.arm == 0.0:
+        return surface_x(low, waist, high, window)
+    return solid_x(shares.arm, low, waist, high, hair, window)
+
+
+def x_wall_material(pitch: float, step: float, params: XWallParams) -> tuple[float, float]:
+    """Volume in mm3 of an upright and of an oblique edge, on average over the layers (and the directions)."""
     shares = _shares(pitch, params)
     if params.wall_mm == 0.0:
         return 0.0, 0.0
-    full, back = 0.0, shares.inset
-    n = params.join_every
-    layers = [(full, full, full)]
-    if n == 2:
-        layers.append((full, back, full))
-    elif n > 2:
-        layers += [(full, back / 2, back), (back, back / 2, full)] + [(back, back, back)] * (n - 3)
-    upright = _mean_volume(shares.arm, layers, 0.0)
-    oblique = np.mean([_mean_volume(shares.arm, layers, HAIR * direction) for direction in range(1, 5)])
-    return upright * pitch * pitch * step, float(oblique) * pitch * pitch * step
+    layers = _insets(params.join_every * 2 + np.arange(params.join_every), params.join_every, shares.inset)
+    upright, *oblique = (_mean_volume(shares, layers, way) for way in range(5))
+    return upright * pitch * pitch * step, float(np.mean(oblique)) * pitch * pitch * step
 
 
-def _mean_volume(arm: float, layers: list[tuple[float, float, float]], hair: float) -> float:
+def _mean_volume(shares: "_Shares", layers: NDArray[np.float64], way: int) -> float:
     """Mean share of the prism that the X of each layer fills."""
-    total = 0.0
-    for low, waist, high in layers:
-        areas = [
-            4.0 * a * (1.0 - 2.0 * inset - a)
-            for a, inset in ((arm, low), (arm - hair, waist + hair), (arm, high))
-        ]
-        middles = [
-            4.0 * (arm - hair / 2) * (1.0 - (end + waist + hair) - (arm - hair / 2)) for end in (low, high)
-        ]
-        total += (areas[0] + 4 * middles[0] + 2 * areas[1] + 4 * middles[1] + areas[2]) / 12.0
-    return total / len(layers)
+    templates = [_template(shares, layer, HAIR * way, way > 0) for layer in layers.tolist()]
+    return float(np.mean([template.mesh.signed_volume for template in templates]))
 
 
 def _is_joined(plane: np.ndarray, every: int) -> np.ndarray:
@@ -144,4 +152,11 @@ def _shares(pitch: float, params: XWallParams) -> _Shares:
             f"x-wall: walls of {wall:g} mm with gaps of {gap:g} mm need a pitch of more than {needed:.3g} mm, "
             f"the grid has {pitch:.4g}; make wall_mm or gap_mm smaller or pitch_mm larger"
         )
-    return shares
+    return replace(shares, window=_window(pitch, shares)) if params.join_every > 1 else shares
+
+
+def _window(pitch: float, shares: _Shares) -> Window | None:
+    """Return the windows of the arms, None where there is no room for such as powder runs through."""
+    window = Window(max(_NEAR * shares.arm, _AXIS), _POST / np.sqrt(2.0) / pitch)
+    width = 0.5 - shares.inset - shares.arm / 2 - window.post - window.near
+    return window if width * np.sqrt(2.0) * pitch >= _LEAST_WINDOW else None
