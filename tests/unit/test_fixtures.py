@@ -56,6 +56,17 @@ def test_simple_solids_are_solids_on_the_plate(name):
     assert mesh.bounds[0][2] == 0.0
 
 
+def test_the_wheel_has_its_web_marked_as_a_modifier():
+    from amprep.threemf import read_parts
+
+    (wheel,) = read_parts(FOLDER / "wheel.3mf")
+    (web,) = wheel.regions
+    share = 96 / (2 * pi) * np.sin(2 * pi / 96)
+    assert (wheel.name, web.kind, web.name) == ("wheel", "lattice", "web")
+    assert wheel.mesh.signed_volume == pytest.approx(pi * (20**2 - 4**2) * 12 * share)
+    assert web.mesh.signed_volume == pytest.approx(pi * (16**2 - 7**2) * 14 * share)
+
+
 def test_the_ball_has_the_volume_and_the_cap_of_a_ball_of_radius_10():
     ball = load("ball.stl")
     exact = 4 / 3 * pi * 10**3

@@ -59,6 +59,14 @@ def pieces_of(points: Floats, triangles: Ints) -> int:
     return int((measure_shells(points, triangles).volume > CRUMB).sum()) if len(triangles) else 0
 
 
+def handles_of(points: Floats, triangles: Ints) -> int:
+    """Return how many handles all surfaces of a closed mesh have, each vertex of which is used by one of them."""
+    shells = len(measure_shells(points, triangles).volume)
+    used = len(np.unique(triangles))
+    euler = used - len(triangles) // 2  # of closed triangles 3 / 2 as many edges as triangles
+    return shells - euler // 2
+
+
 def _reaching_out(corners: Floats, label: Ints, count: int, region: Arrays) -> Bools:
     """Tell which shells have solid outside the region just below their surface, ``(count,)``."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -8,7 +8,7 @@ import numpy as np
 
 from amprep.errors import JobError, MeshError
 from amprep.geometry.cell_solids import arrays_of, evaluated, finish, union
-from amprep.geometry.islands import CRUMB, drop_islands
+from amprep.geometry.islands import CRUMB, drop_islands, handles_of
 from amprep.geometry.manifolds import accepted, as_manifold
 from amprep.model import CellRequest, Lattice, Mesh, Report, silent
 from amprep.pipeline.cell_requests import Emit, checked
@@ -39,7 +39,7 @@ class Filled:
     islands, islands_mm3
         Pieces of cells that nothing held, and so were dropped.
     genus
-        Of the part's surface: how many handles it has.
+        How many handles the part's surfaces have.
     lattice
         The part as solid and beams, where these are wanted; `room` is None, the part as it was cuts the beams.
     """
@@ -112,19 +112,19 @@ def fill_region(
     parted = drop_islands(points, triangles, arrays_of(hole), arrays(part))
     mesh, islands = Mesh(*parted.kept), Mesh(*parted.islands)
     loose = abs(islands.signed_volume) if len(islands.triangles) else 0.0
-    outside = arrays_of(evaluated(solid - hole))
+    around = evaluated(solid - hole)
     lattice = None
     if bare is not None:
-        lattice = lattice_of(bare, part, islands, shell=Mesh(*outside), whole=mesh)
+        lattice = lattice_of(bare, part, islands, shell=Mesh(*arrays_of(around)), whole=mesh)
     return Filled(
         mesh,
         Mesh(*arrays_of(cells)),
         region,
         count,
-        float((filled ^ cells).volume()) - loose,
+        max(mesh.signed_volume - float(around.volume()), 0.0),
         parted.number,
         loose,
-        int(as_manifold(*parted.kept).genus()),
+        handles_of(*parted.kept),
         lattice,
     )
 

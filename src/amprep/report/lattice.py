@@ -15,6 +15,9 @@ from amprep.threemf.writing_files import replacing
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+_MUCH = 0.05
+"""Share of the powder between the cells that has to be locked in before advice is given."""
+
 FORMAT = 1
 """Version of the layout; grows when a key changes its meaning or goes."""
 
@@ -36,7 +39,7 @@ class FilledRecord:
     islands, islands_mm3
         Pieces of cells that nothing held, and so were dropped.
     genus
-        How many handles the surface has.
+        How many handles its surfaces have.
     pockets
         Powder that cannot leave, largest first, whatever locks it in; `before` is what the part as it was locks in.
     """
@@ -171,9 +174,12 @@ def warnings_of(record: LatticeRecord) -> Iterator[str]:
     yield from record.warnings
     for part in record.parts:
         if part.trapped_mm3 > 0.0:
+            advice = "; let the region reach the part's surface, or choose a more open cell"
+            free = part.region_mm3 - part.cells_mm3
             yield (
-                f"{part.name}: {part.trapped_mm3:.4g} mm3 of powder cannot leave (ball of {record.hole_mm:g} mm); let "
-                "the region reach the part's surface, or choose a more open cell"
+                f"{part.name}: {part.trapped_mm3:.4g} mm3 of powder in {len(part.pockets)} pockets cannot leave, "
+                f"{part.trapped_mm3 / max(free, part.trapped_mm3):.1%} of what is between the cells (a ball of "
+                f"{record.hole_mm:g} mm finds no way out){advice if part.trapped_mm3 > _MUCH * free else ''}"
             )
         if part.islands:
             yield (
