@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
-Shorts = NDArray[np.uint16]
+Counts = NDArray[np.uint16] | NDArray[np.int32]
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 
 FAR = np.float32(1e30)
 """Distance of a square without a way to the plate."""
 
-UNBOUNDED = 65535
-"""Greatest flow an edge or square can record."""
+UNBOUNDED = 1 << 30
+"""Greatest number of paths at a square or on an edge where no other is set."""
 
 
 class Network(NamedTuple):
@@ -51,9 +51,9 @@ class Flows(NamedTuple):
     Attributes
     ----------
     flow
-        ``(squares, 5)`` uint16, paths on each edge downwards.
+        ``(squares, 5)`` uint16 or int32, paths on each edge downwards.
     through
-        ``(squares,)`` uint16, paths at each square.
+        ``(squares,)`` of the same type, paths at each square.
     special
         ``(squares,)`` uint8, 1 where an edge's price can differ from that of an unused edge.
     rows
@@ -66,8 +66,8 @@ class Flows(NamedTuple):
         ``(2,)`` int64, how many straight and how many oblique edges are in use.
     """
 
-    flow: Shorts
-    through: Shorts
+    flow: Counts
+    through: Counts
     special: Bytes
     rows: Bytes
     entry: Floats
@@ -256,37 +256,3 @@ def draw(
             if i < length:
                 load(flows, trail[i], ways[first[r] + i])
     return failed
-
-
-@njit(cache=True)
-def erase(
-    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
-) -> None:
-    """Take the paths of the chosen red squares back."""
-    for r in chosen:
-        if not drawn[r]:
-            continue
-        u = start[r]
-        for i in range(first[r], first[r + 1]):
-            flows.through[u] -= 1
-            relieve(flows, u, ways[i])
-            u = u - network.stride + network.offset[ways[i]]
-        flows.through[u] -= 1
-        drawn[r] = 0
-
-
-@njit(cache=True)
-def redo(
-    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
-) -> None:
-    """Put paths back where `ways` says, for the chosen red squares without one."""
-    for r in chosen:
-        if drawn[r]:
-            continue
-        u = start[r]
-        for i in range(first[r], first[r + 1]):
-            use(network, flows, u)
-            load(flows, u, ways[i])
-            u = u - network.stride + network.offset[ways[i]]
-        use(network, flows, u)
-        drawn[r] = 1

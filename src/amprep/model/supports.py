@@ -18,6 +18,7 @@ NO_WHITE_BELOW = "no white cube below"
 ENCLOSED = "enclosed"
 CAPACITY = "capacity"
 CONNECTOR_BLOCKED = "connector blocked"
+OUT_OF_TIME = "time limit"
 
 
 class Cube(IntEnum):

@@ -1,10 +1,11 @@
 """Paths drawn on the grid, taken back and drawn again: the moving state of `shortest-paths` and `tree`."""
 
 from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 
-from amprep.kernels.flow_network import Carried
+from amprep.kernels.flow_network import Carried, Room
 from amprep.kernels.routing import (
     FAR,
     UNBOUNDED,
@@ -12,22 +13,18 @@ from amprep.kernels.routing import (
     Longs,
     Prices,
     draw,
-    erase,
-    redo,
     sweep,
 )
-from amprep.kernels.routing_augment import Work, augment, untangle
-from amprep.model.arrays import Bools
-from amprep.model.control import Report, Stop
-from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem
+from amprep.kernels.routing_paths import erase, redo, untangle
+from amprep.model.control import Report, Stop, silent
+from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.escalation import escalate
-from amprep.plugins.supports.exact import task_of
+from amprep.plugins.supports.exact import Task, reasons_of, task_of
+from amprep.plugins.supports.extending import Extender
+from amprep.plugins.supports.min_cost_flow import MinCostFlow
 from amprep.plugins.supports.network import hard_limits, network_of, no_flows, plan_of
 from amprep.plugins.supports.params import ShortestPathsParams
 from amprep.plugins.supports.pushing import push
-
-_EFFORT = 20_000_000
-"""Arcs that augmenting searches may look at in one go; a fraction of a second."""
 
 
 class Drawing:
@@ -44,13 +41,14 @@ class Drawing:
     ) -> None:
         self.problem, self.params = problem, params
         self.network, self.start = network_of(problem)
-        self.flows = no_flows(self.network)
+        self.flows = no_flows(self.network, len(self.start))
         self.first = np.concatenate([[0], np.cumsum(problem.red[:, 0], dtype=np.int64)])
         self.ways = np.zeros(int(self.first[-1]), np.uint8)
         self.drawn = np.zeros(len(self.start), np.uint8)
         self.batch = 0
         capacities = problem.node_capacity or problem.edge_capacity or not params.paths_per_square
         self.soft = not capacities
+        self.carried = Carried(self.flows.flow, self.flows.through)
         soft = Limits(params.paths_per_square, params.paths_per_square, UNBOUNDED)
         self.limits = soft if self.soft else hard_limits(problem)
         self.plain = self._prices((1.0,), 0.0, problem.costs)
@@ -73,23 +71,26 @@ class Drawing:
         straight, oblique = costs
         return Prices(table, np.float32(straight), np.float32(oblique), np.float32(1.0 - discount))
 
-    def connect_all(self) -> None:
-        """Draw the first paths, by the plain costs; raise soft limits until every open red square has one."""
+    def connect_all(self, stop: Stop, report: Report) -> None:
+        """Draw the first paths, by the plain costs; raise limits until every open red square has one, if allowed."""
         self._draw(self.open, self.plain)
-        while self._lost().size and (self.soft or self.problem.escalation == "uniform"):
-            self.limits = _grown(self.limits, self.soft)
+        while self.soft and self._lost().size and not stop():
+            square = self.limits.square + max(1, self.limits.square // 4)
+            self.limits = Limits(square, square, UNBOUNDED)
             self._draw(self._lost(), self.plain)
+        if self.problem.escalation == "uniform" and not self.soft:
+            self.escalate(stop, report)
 
-    def adopt(self, carried: Carried, connected: Bools) -> None:
-        """Take over the paths of a flow instead; soft limits become as great as it needs."""
-        self.drawn[:] = connected
-        flowing = self.flows._replace(flow=carried.flow.astype(np.uint16))
-        untangle(self.network, flowing, self.start, self.first, self.ways, self.drawn)
-        self.drawn[:] = 0
-        self._redo(np.flatnonzero(connected))
+    def adopt(self, solved: MinCostFlow) -> None:
+        """Take over the paths of a flow instead, and the limits that it keeps."""
+        self.drawn[:] = solved.connected
+        self.flows.flow[:], self.flows.through[:] = solved.carried
+        self._follow()
+        room = solved.task.room
+        square, edge = int(room.square[0]), int(room.edge[0])
         if self.soft:
-            most = max(self.limits.square, int(carried.through.max(initial=0)))
-            self.limits = Limits(most, most, UNBOUNDED)
+            square = max(self.limits.square, int(self.flows.through.max(initial=0)))
+        self.limits = Limits(square, square if self.soft else UNBOUNDED, edge)
 
     @property
     def lost(self) -> int:
@@ -137,7 +138,7 @@ class Drawing:
 
     def _draw(self, chosen: Longs, prices: Prices) -> None:
         if self._try(chosen, prices):
-            self._augment()
+            self._extend()
 
     def _try(self, chosen: Longs, prices: Prices) -> int:
         """Draw the chosen paths; return how many found no way."""
@@ -161,45 +162,66 @@ class Drawing:
         lost: Longs = self.open[self.drawn[self.open] == 0]
         return lost
 
-    def _augment(self) -> None:
-        states = 2 * self.network.via.size
-        work = Work(
-            np.zeros(states, np.int32),
-            np.empty(states, np.int32),
-            np.empty(states, np.uint8),
-            np.empty(states, np.int32),
-        )
-        augment(self.network, self.flows, self.limits, self.start, self._lost(), self.drawn, work, _EFFORT)
+    def _extend(self) -> None:
+        """Make the flow as great as it can be within the limits; it may redirect any path."""
+        if self.soft:
+            self._extend_softly()
+        else:
+            connected, _ = push(self._task, self.carried, self.drawn == 1, stop=Stop(), report=silent)
+            self.drawn[:] = connected
+        self._follow()
+
+    @cached_property
+    def _task(self) -> Task:
+        """The problem within its capacities; `push` and `escalate` work on the flows drawn here."""
+        return task_of(self.problem)
+
+    def _extend_softly(self) -> None:
+        """Serve who can be: limits bind squares of the plate too, and few are left out by them."""
+        square, edge = (np.array([limit], np.int32) for limit in (self.limits.square, self.limits.edge))
+        ground = self.limits.ground - self.flows.through[: self.network.stride].astype(np.int32)
+        extender, served = Extender(self.network, self.carried, ground), np.ones(1, np.bool_)
+        while served.any():
+            lost = self._lost()
+            served, _ = extender.extend(Room(square, edge, 0), self.start[lost])
+            self.drawn[lost[served]] = 1
+
+    def _follow(self) -> None:
+        """Find the paths in a flow that has changed, count those on the plate, note whose prices may change."""
         untangle(self.network, self.flows, self.start, self.first, self.ways, self.drawn)
+        flow, through, stride, width = (
+            self.flows.flow,
+            self.flows.through,
+            self.network.stride,
+            self.network.width,
+        )
+        through[:stride] = 0
+        low = stride + np.flatnonzero(through[stride : 2 * stride])
+        for direction, step in enumerate(self.network.offset):
+            through[low - stride + step] += flow[low, direction]
+        used = np.flatnonzero(through)
+        for step in (0, 1, -1, width, -width):
+            self.flows.special[used + step] = 1
+            self.flows.rows[(used + step) // width] = 1
+        straight, *oblique = np.count_nonzero(flow[used], axis=0).tolist()
+        self.flows.used[:] = straight, sum(oblique)
 
     def plan(self, stop_reason: str) -> SupportPlan:
         """Return the plan as drawn so far."""
         way = np.zeros(len(self.start), np.bool_)
         way[self.open] = True
-        left = np.flatnonzero(self.drawn == 0)
-        reasons = [(int(red), CAPACITY if way[red] else ENCLOSED) for red in left]
+        reasons = reasons_of(self.drawn == 1, way, stop_reason)
         return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
 
     def escalate(self, stop: Stop, report: Report) -> str:
-        """Connect the red squares left over as far as there is room; return why it ended.
-
-        First the flow is made as great as it can be, for the searches while drawing are cut short. Then
-        capacities grow, if `problem.escalation` says so.
-        """
+        """Raise capacities for the red squares left over, if `problem.escalation` says so; return why it ended."""
         if not self._lost().size:
             return "finished"
-        task, flowing = task_of(self.problem), Carried(self.flows.flow, self.flows.through)
-        connected, stop_reason = push(task, flowing, self.drawn == 1, stop=stop, report=report)
-        if stop_reason == "finished":
-            _, connected, stop_reason = escalate(task, flowing, connected, stop=stop, report=report)
+        connected = self.drawn == 1
+        task, connected, stop_reason = escalate(self._task, self.carried, connected, stop=stop, report=report)
         self.drawn[:] = connected
+        if not task.room.each:
+            self._task = task
+            self.limits = Limits(int(task.room.square[0]), UNBOUNDED, int(task.room.edge[0]))
+        self._follow()
         return stop_reason
-
-
-def _grown(limits: Limits, soft: bool) -> Limits:
-    """Return limits that grow by a quarter when they are soft, else by one."""
-    if soft:
-        square = limits.square + max(1, limits.square // 4)
-        return Limits(square, square, UNBOUNDED)
-    square, edge = (min(limit + 1, UNBOUNDED) for limit in (limits.square, limits.edge))
-    return Limits(square, limits.ground, edge)

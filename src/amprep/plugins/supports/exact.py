@@ -9,7 +9,7 @@ import numpy as np
 from amprep.kernels.flow_network import UNREACHED, Carried, Room, measure
 from amprep.kernels.routing import Ints, Longs, Network
 from amprep.model.arrays import Bools
-from amprep.model.supports import CAPACITY, ENCLOSED, Status, SupportPlan, SupportProblem
+from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, Status, SupportPlan, SupportProblem
 from amprep.plugins.supports.network import network_of, plan_of
 
 
@@ -64,12 +64,13 @@ def exact_plan(
     task: Task, carried: Carried, connected: Bools, *, status: Status, stop_reason: str, objective: float
 ) -> SupportPlan:
     """Read the plan from the flows; an optimal one proves its own objective."""
-    plan = plan_of(task.problem, task.network, carried, _reasons(task, connected), stop_reason=stop_reason)
+    reasons = reasons_of(connected, task.open, stop_reason)
+    plan = plan_of(task.problem, task.network, carried, reasons, stop_reason=stop_reason)
     bound = objective if status == "optimal" else None
     return replace(plan, status=status, objective=objective, bound=bound)
 
 
-def _reasons(task: Task, connected: Bools) -> Iterable[tuple[int, str]]:
-    """Yield the red squares left and why: they had a way that others fill, or none at all."""
+def reasons_of(connected: Bools, way: Bools, stop_reason: str) -> Iterable[tuple[int, str]]:
+    """Yield the red squares left and why: others fill their way, it was not found in time, or there is none."""
     for red in np.flatnonzero(~connected):
-        yield int(red), CAPACITY if task.open[red] else ENCLOSED
+        yield int(red), (CAPACITY if stop_reason == "finished" else OUT_OF_TIME) if way[red] else ENCLOSED

@@ -1,6 +1,7 @@
 """A support problem as the routing kernels see it: padded planes, flows, and the plan read back."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -40,12 +41,13 @@ def _boxes(problem: SupportProblem, top: int) -> Longs:
     return box
 
 
-def no_flows(network: Network) -> Flows:
-    """Return flows of zero on `network`."""
+def no_flows(network: Network, most: int) -> Flows:
+    """Return flows of zero on `network`, in a type that holds `most` paths."""
     squares = network.via.size
+    kind: type[Any] = np.uint16 if most <= np.iinfo(np.uint16).max else np.int32
     return Flows(
-        flow=np.zeros((squares, len(DIRECTIONS)), np.uint16),
-        through=np.zeros(squares, np.uint16),
+        flow=np.zeros((squares, len(DIRECTIONS)), kind),
+        through=np.zeros(squares, kind),
         special=np.zeros(squares, np.uint8),
         rows=np.zeros(squares // network.width, np.uint8),
         entry=np.full(squares, FAR, np.float32),

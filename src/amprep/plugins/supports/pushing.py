@@ -18,6 +18,9 @@ from amprep.plugins.supports.exact import Task
 _EFFORT = 14
 """Arcs looked at for each square of the network until all labels are set anew."""
 
+_SLICE = 10_000_000
+"""Arcs looked at between two questions whether to stop: a fraction of a second."""
+
 
 def push(task: Task, carried: Carried, connected: Bools, *, stop: Stop, report: Report) -> tuple[Bools, str]:
     """Make the flow as great as it can be; return which red squares it connects, and why it ended.
@@ -39,14 +42,16 @@ def push(task: Task, carried: Carried, connected: Bools, *, stop: Stop, report: 
     rounds, effort = 0, int(_EFFORT * network.via.size)
     if connected.any():
         relabel_all(network, carried, room, preflow, progress, *lists)
-    stop_reason = "finished"
-    while not discharge(network, carried, room, preflow, progress, effort):
+    stop_reason, left = "finished", effort
+    while not discharge(network, carried, room, preflow, progress, min(left, _SLICE)):
         if stop():
             stop_reason = stop.reason
             break
-        rounds += 1
-        report(1.0 - 1.0 / (1.0 + rounds), "pushing flow down")
-        relabel_all(network, carried, room, preflow, progress, *lists)
+        left -= _SLICE
+        if left <= 0:
+            rounds, left = rounds + 1, effort
+            report(1.0 - 1.0 / (1.0 + rounds), "pushing flow down")
+            relabel_all(network, carried, room, preflow, progress, *lists)
     send_back(network, carried, preflow, supply)
     return task.open & (supply[task.start] == 1), stop_reason
 

@@ -34,7 +34,7 @@ def route_shortest_paths(
     """
     stop = stop.within(params.seconds)
     drawing = Drawing(problem, params)
-    drawing.connect_all()
+    drawing.connect_all(stop, report)
     stop_reason = "finished"
     for done, chosen in enumerate(drawing.choices(rng)):
         if stop():

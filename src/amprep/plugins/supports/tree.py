@@ -35,10 +35,10 @@ def route_tree(
     stop = stop.within(params.seconds)
     gather = ShortestPathsParams(paths_per_square=params.paths_per_square)
     gathered = Drawing(problem, gather)
-    gathered.connect_all()
+    gathered.connect_all(stop, silent)
     grown = Drawing(problem, gather, problem.material)
     flow = solve_min_cost_flow(_limited(problem, params), stop=stop, report=silent)
-    grown.adopt(flow.carried, flow.connected)
+    grown.adopt(flow)
     adopted = grown.material
     for drawing in (gathered, grown):
         _redraw(drawing, deepcopy(rng), stop)
@@ -46,7 +46,7 @@ def route_tree(
     gathered_material = gathered.material
     if adopted < best.material and flow.connected.sum() >= best.drawn.sum():
         best = Drawing(problem, gather, problem.material)
-        best.adopt(flow.carried, flow.connected)
+        best.adopt(flow)
     best.price(_G, 0.0, problem.material)
     stop_reason = _improve(best, params, rng, stop, report)
     if stop_reason == "finished":
