@@ -17,6 +17,21 @@ _SAME_ANGLE = 1e-3
 def separate_edges(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     """Copy vertices so that no edge of a closed mesh has more than two triangles.
 
+    Parameters
+    ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``, closed and without overlaps; an open mesh comes back as it is.
+    """
+    crowded = crowded_ends(triangles)
+    if crowded is None or not len(crowded):
+        return points, triangles
+    added, triangles = part_at(points, triangles, crowded)
+    return compact(np.concatenate([points, added]), triangles)
+
+
+def part_at(points: Floats, triangles: Ints, crowded: Ints) -> tuple[Floats, Ints]:
+    """Copy the vertices `crowded` so that no edge to them has more than two triangles.
+
     Of the triangles around an edge, each pairs with the next one across the solid. Where both ends of an
     edge hang together all the same, the edge is split in the middle, once for each pair: manifold3d would
     part it as well, but loses a corner of the solid now and then.
@@ -24,21 +39,44 @@ def separate_edges(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     Parameters
     ----------
     points, triangles
-        ``(n, 3)`` mm and ``(m, 3)``, closed and without overlaps; an open mesh comes back as it is.
+        ``(n, 3)`` mm and ``(m, 3)``: all triangles at the crowded vertices, and any others.
+
+    Returns
+    -------
+    added, triangles
+        Vertices that follow after `points`, and all triangles, those at crowded vertices last.
     """
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    ends = np.column_stack([np.minimum(start, end), np.maximum(start, end), np.zeros_like(start)])
-    edge, count = label_equal_rows(ends)
-    balance = np.bincount(edge, np.where(start < end, 1, -1), count)
-    crowded = np.bincount(edge, minlength=count) > 2
-    if not crowded.any() or balance.any():
-        return points, triangles
     touched = np.zeros(len(points), np.bool_)
-    touched[ends[crowded[edge], :2]] = True
-    halves = np.flatnonzero(touched[start] | touched[end])
-    first, second = _paired(points, triangles, halves, ends, edge)
-    points, triangles = _split(points, triangles, touched, first, second)
-    return compact(*_halve_doubled(points, triangles, first, second))
+    touched[crowded] = True
+    around = touched[triangles].any(axis=1)
+    near = triangles[around]
+    start, end = near.ravel(), np.roll(near, -1, axis=1).ravel()
+    ends = np.column_stack([np.minimum(start, end), np.maximum(start, end), np.zeros_like(start)])
+    edge, _ = label_equal_rows(ends)
+    first, second = _paired(points, near, np.flatnonzero(touched[start] | touched[end]), ends, edge)
+    source, near = _split(len(points), near, touched, first, second)
+    added = points[source]
+    middles, near = _halve_doubled(points, added, near, first, second)
+    return np.concatenate([added, middles]), np.concatenate([triangles[~around], near])
+
+
+def crowded_ends(triangles: Ints, first: int = 0) -> Ints | None:
+    """Return the vertices of edges with more than two triangles; None when some edge is not matched.
+
+    Only edges between vertices from `first` on count.
+    """
+    base = int(triangles.max(initial=0)) + 1
+    ways: list[Ints] = []
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        start, end = triangles[:, a], triangles[:, b]
+        counted = (start >= first) & (end >= first)
+        ways.append(np.where(start < end, start * base + end, -1 - (end * base + start))[counted])
+    keys = np.concatenate(ways)
+    forth, back = np.sort(keys[keys >= 0]), np.sort(-1 - keys[keys < 0])
+    if len(forth) != len(back) or (forth != back).any():
+        return None
+    twice = forth[1:][forth[1:] == forth[:-1]]
+    return np.unique(np.concatenate(np.divmod(twice, base)))
 
 
 def _paired(points: Floats, triangles: Ints, halves: Ints, ends: Ints, edge: Ints) -> tuple[Ints, Ints]:
@@ -65,8 +103,14 @@ def _paired(points: Floats, triangles: Ints, halves: Ints, ends: Ints, edge: Int
     return halves[order[begin + rank]], halves[order[begin + count + (rank + turn) % count]]
 
 
-def _split(points: Floats, triangles: Ints, touched: Bools, first: Ints, second: Ints) -> tuple[Floats, Ints]:
-    """Give each fan of triangles around a touched vertex its own copy of it."""
+def _split(count: int, triangles: Ints, touched: Bools, first: Ints, second: Ints) -> tuple[Ints, Ints]:
+    """Give each fan of triangles around a touched vertex its own copy of it, from vertex `count` on.
+
+    Returns
+    -------
+    source, triangles
+        The vertex that each copy is of.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -82,24 +126,27 @@ def _split(points: Floats, triangles: Ints, touched: Bools, first: Ints, second:
     _, fan = connected_components(graph, directed=False)
     _, first_corner = np.unique(fan, return_index=True)
     split = corner.copy()
-    split[at_touched] = len(points) + fan
-    return np.vstack([points, points[corner[at_touched[first_corner]]]]), split.reshape(-1, 3)
+    split[at_touched] = count + fan
+    return corner[at_touched[first_corner]], split.reshape(-1, 3)
 
 
-def _halve_doubled(points: Floats, triangles: Ints, first: Ints, second: Ints) -> tuple[Floats, Ints]:
-    """Put a vertex of its own into the middle of each pair's edge where two pairs share both vertices."""
+def _halve_doubled(
+    points: Floats, added: Floats, triangles: Ints, first: Ints, second: Ints
+) -> tuple[Floats, Ints]:
+    """Put a vertex of its own, after those added, into each pair's edge where two pairs share both vertices."""
     corner = triangles.ravel()
     start, end = corner[first], corner[_following(first)]
     ends = np.column_stack([np.minimum(start, end), np.maximum(start, end), np.zeros_like(start)])
     edge, count = label_equal_rows(ends)
     doubled = np.flatnonzero(np.bincount(edge, minlength=count)[edge] > 1)
     middle = np.full(len(corner), -1)
-    middle[first[doubled]] = middle[second[doubled]] = len(points) + np.arange(len(doubled))
-    points = np.vstack([points, kept((points[start[doubled]] + points[end[doubled]]) / 2)])
-    return points, _halved(triangles, middle.reshape(-1, 3))
+    count = len(points) + len(added)
+    middle[first[doubled]] = middle[second[doubled]] = count + np.arange(len(doubled))
+    low, high = added[start[doubled] - len(points)], added[end[doubled] - len(points)]
+    return kept((low + high) / 2), halved(triangles, middle.reshape(-1, 3))
 
 
-def _halved(triangles: Ints, middle: Ints) -> Ints:
+def halved(triangles: Ints, middle: Ints) -> Ints:
     """Split triangles at the vertices `middle` ``(m, 3)`` on their sides (-1 for none), a side at a time."""
     done = [triangles[(middle < 0).all(axis=1)]]
     open_ = (middle >= 0).any(axis=1)

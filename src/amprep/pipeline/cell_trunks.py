@@ -5,9 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.geometry.cell_junctions import fill_cubes, join_cubes
+from amprep.geometry.cell_pieces import Pieces
 from amprep.geometry.cell_prisms import join_prisms
 from amprep.geometry.cell_solids import is_solid
-from amprep.geometry.cell_tiling import Arrays, Tiles, expand, fills_unit_cube, plate, tile
+from amprep.geometry.cell_tiling import Arrays, Tiles, expand, fills_unit_cube, tile
 from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, Template
 from amprep.model.arrays import Bools, Floats, Ints
 from amprep.pipeline.support_layout import SupportLayout
@@ -26,6 +28,8 @@ class Emitted(NamedTuple):
         ``(n,)`` whether it is a surface; whether its edge is a connector.
     whole
         ``(k,)`` whether a template is the whole cube.
+    pieces
+        What cells come to where they share a cube, as far as it was needed yet.
     """
 
     request: CellRequest
@@ -35,6 +39,7 @@ class Emitted(NamedTuple):
     sheet: Bools
     connector: Bools
     whole: Bools
+    pieces: Pieces
 
     def of(self, group: int) -> Bools:
         """Which instances belong to the group."""
@@ -52,7 +57,7 @@ def sort_out(request: CellRequest, cells: Cells) -> Emitted:
     connector = request.role[cells.edge] == Role.CONNECTOR
     tiles = sound[cells.template] & own & alone
     whole = np.array([template.mesh.signed_volume > 1.0 - 1e-9 for template in cells.templates], np.bool_)
-    return Emitted(request, cells, templates, tiles, sheet, connector, sound & whole)
+    return Emitted(request, cells, templates, tiles, sheet, connector, sound & whole, Pieces(templates))
 
 
 def _is_tile(template: Template) -> bool:
@@ -67,7 +72,7 @@ def arrays(mesh: Mesh) -> Arrays:
 
 
 def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0) -> Iterator[Arrays]:
-    """Yield closed meshes of the chosen instances: one or two a direction that tiles, one for each other.
+    """Yield closed meshes of the chosen instances: one of all that tile, one for each other.
 
     Parameters
     ----------
@@ -75,26 +80,44 @@ def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: flo
         ``(k, 3)`` squares (plane, y, x) below which plates of `seat` mm go with the cells.
     """
     cells, request = emitted.cells, emitted.request
-    tiles, frame = chosen & emitted.tiles, request.frame
-    size = np.array([frame.pitch, frame.pitch, frame.step])
-    edge, template = cells.edge[tiles], cells.template[tiles].astype(np.int64)
+    tiles = chosen & emitted.tiles
+    frame, edge, template = request.frame, cells.edge[tiles], cells.template[tiles].astype(np.int64)
     square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 1]).astype(np.int64)
     shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
+    below = np.empty((0, 3), np.int64) if seats is None else seats[:, ::-1].astype(np.int64) - (0, 0, 1)
+    size = np.array([frame.pitch, frame.pitch, frame.step])
     if len(edge) and emitted.whole[template].all():
         yield join_prisms(square, shift, frame.origin, size)
-    else:
-        for each in np.unique(shift, axis=0):
-            own = (shift == each).all(axis=1)
-            # a run of cells of one direction is a column of tiles, sheared with them
-            place = square[own] + np.outer(square[own, 2], (*each, 0))
-            yield from tile(emitted.templates, Tiles(template[own], place, cells.matrix[tiles][own]))
-    if seats is not None and len(seats):
-        below = seats[:, ::-1].astype(np.int64) - (0, 0, 1)
-        yield from tile([plate(seat / frame.step)], _upright(np.zeros(len(below), np.int64), below, frame))
+        edge, template, square, shift = edge[:0], template[:0], square[:0], shift[:0]
+    if len(below):
+        lid = emitted.pieces.plate(seat / frame.step)
+        template = np.concatenate([template, np.full(len(below), lid)])
+        square, shift = np.concatenate([square, below]), np.concatenate([shift, np.zeros_like(below[:, :2])])
+    if len(template):
+        joined = join_cubes(
+            emitted.pieces, fill_cubes(emitted.pieces, template, square, shift), frame.origin, size
+        )
+        yield from [joined] if joined else _by_direction(emitted.pieces, template, square, shift, frame)
     for index in np.flatnonzero(chosen & ~emitted.tiles):
         one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
         points, triangles, _ = expand(emitted.templates, *one)
         yield points, triangles
+
+
+def _by_direction(
+    pieces: Pieces, template: Ints, square: Ints, shift: Ints, frame: GridFrame
+) -> Iterator[Arrays]:
+    """Yield closed meshes of cells that do not join on arrays: one or two a direction."""
+    size = np.array([frame.pitch, frame.pitch, frame.step])
+    for each in np.unique(shift, axis=0):
+        own = (shift == each).all(axis=1)
+        matrix = np.zeros((int(own.sum()), 3, 4))
+        matrix[:, [0, 1, 2], [0, 1, 2]] = size
+        matrix[:, :2, 2] = -each * frame.pitch
+        matrix[:, :, 3] = frame.origin + (square[own] + (*each, 0)) * size
+        # a run of cells of one direction is a column of tiles, sheared with them
+        place = square[own] + np.outer(square[own, 2], (*each, 0))
+        yield from tile(pieces.templates, Tiles(template[own], place, matrix))
 
 
 def ends(emitted: Emitted, chosen: Bools, seat: Floats, layout: SupportLayout) -> Iterator[Arrays]:

@@ -1,0 +1,310 @@
+"""Unite cells of all directions on arrays: each pattern of cells that share a cube once, the cubes side to side."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.cell_edges import crowded_ends, halved, part_at
+from amprep.geometry.cell_pieces import LATTICE, SIDES, Pieces
+from amprep.geometry.merging import degenerate
+from amprep.geometry.welding import label_equal_rows
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+class Cubes(NamedTuple):
+    """Cubes of the grid that hold something.
+
+    Attributes
+    ----------
+    place
+        ``(n, 3)`` x, y, layer.
+    piece
+        ``(n,)`` number of what each holds.
+    """
+
+    place: Ints
+    piece: Ints
+
+
+class _Facing(NamedTuple):
+    """Which of the six sides of each cube keep their surface ``(n, 6)``; what sides come to that differ.
+
+    Attributes
+    ----------
+    cube, axis, ours, theirs
+        ``(k,)`` a cube and the axis on whose far side the outlines `ours` and `theirs` (numbers) meet.
+    """
+
+    keep: Bools
+    cube: Ints
+    axis: Ints
+    ours: Ints
+    theirs: Ints
+
+
+class _Seams(NamedTuple):
+    """Copies of what two sides come to: corners ``(s, 3)`` on the lattice, triangles, splits (see `Seam`)."""
+
+    corners: Ints
+    triangles: Ints
+    splits: Ints
+
+
+class _Soup(NamedTuple):
+    """Triangles of all cubes; corners count inner points first, then those that others may share.
+
+    Attributes
+    ----------
+    points
+        ``(i + s, 3)`` mm; only the inner ones are there yet.
+    inner
+        How many these are.
+    shared
+        ``(s, 3)`` steps of the lattice from the grid's origin; several at each place.
+    closed, rim
+        Triangles of inner points alone, and the others.
+    splits
+        ``(r, 3)`` corners: edges and what they pass through.
+    """
+
+    points: Floats
+    inner: int
+    shared: Ints
+    closed: Ints
+    rim: Ints
+    splits: Ints
+
+
+def fill_cubes(pieces: Pieces, template: Ints, square: Ints, shift: Ints) -> Cubes:
+    """Sort cells into the cubes they pass through.
+
+    Parameters
+    ----------
+    template
+        ``(n,)`` of `pieces`.
+    square
+        ``(n, 3)`` x, y, layer of each cell's upper square.
+    shift
+        ``(n, 2)`` dx, dy to its lower square: at most one step, in x or in y.
+    """
+    kinds, kind = np.unique(np.column_stack([template, shift]), axis=0, return_inverse=True)
+    items = np.array([pieces.item(t, (dx, dy)) for t, dx, dy in kinds.tolist()], np.int64).reshape(-1, 2)
+    kind = kind.reshape(-1)
+    far = items[kind, 1] >= 0
+    lower = square[far] + np.column_stack([shift[far], np.zeros(int(far.sum()), np.int64)])
+    place = np.concatenate([square, lower])
+    item = np.concatenate([items[kind, 0], items[kind[far], 1]])
+    order = np.lexsort((item, *place.T))
+    rows = np.column_stack([place, item])[order]
+    rows = rows[np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])]
+    starts = np.flatnonzero(np.concatenate([[True], (rows[1:, :3] != rows[:-1, :3]).any(axis=1)]))
+    sizes = np.diff(np.append(starts, len(rows)))
+    piece = np.empty(len(starts), np.int64)
+    alone = sizes == 1
+    held = rows[starts, 3]
+    for each in np.unique(held[alone]):
+        piece[alone & (held == each)] = pieces.piece(np.array([each]))
+    for cube in np.flatnonzero(~alone):
+        piece[cube] = pieces.piece(rows[starts[cube] : starts[cube] + sizes[cube], 3])
+    return Cubes(rows[starts, :3], piece)
+
+
+def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tuple[Floats, Ints] | None:
+    """Return what cubes hold as one closed mesh; None where it cannot be joined on arrays.
+
+    Parameters
+    ----------
+    origin, size
+        ``(3,)`` mm, of the grid and of its cubes.
+    """
+    soup = _expanded(pieces, cubes, _face(pieces, cubes), origin, size)
+    if soup is None:
+        return None
+    inner = soup.inner
+    label, count = label_equal_rows(soup.shared)
+    shared = np.empty((count, 3), np.int64)
+    shared[label] = soup.shared
+    rim, outer = soup.rim, soup.rim >= inner
+    rim[outer] = (inner + label)[rim[outer] - inner]
+    rim = _at_splits(rim, inner + label[soup.splits - inner], inner + count)
+    rim = _at_lines(rim, shared, inner)
+    rim = rim[~degenerate(rim)]
+    crowded = crowded_ends(rim, inner)
+    if crowded is None:
+        return None
+    points = soup.points
+    points[inner : inner + count] = origin + shared * (size / LATTICE)
+    added, rim = part_at(points[: inner + count], rim, crowded)
+    used = np.zeros(inner + count + len(added), np.bool_)
+    used[:inner] = used[rim] = True
+    rest = np.concatenate([points[inner : inner + count], added])[used[inner:]]
+    return np.concatenate([points[:inner], rest]), np.concatenate([soup.closed, (np.cumsum(used) - 1)[rim]])
+
+
+def _face(pieces: Pieces, cubes: Cubes) -> _Facing:
+    """Look at what each cube's far sides face."""
+    keep = np.ones((len(cubes.place), 6), np.bool_)
+    outlines = np.array([piece.outlines for piece in pieces.made], np.int64)[cubes.piece]
+    low = cubes.place.min(axis=0)
+    extent = cubes.place.max(axis=0) - low + 2
+    step = np.array([1, extent[0], extent[0] * extent[1]])
+    key = (cubes.place - low) @ step
+    order = np.argsort(key)
+    differing = []
+    for axis in range(3):
+        at = np.minimum(np.searchsorted(key[order], key + step[axis]), len(key) - 1)
+        cube = np.flatnonzero(key[order][at] == key + step[axis])
+        other = order[at[cube]]
+        ours, theirs = outlines[cube, 2 * axis + 1], outlines[other, 2 * axis]
+        meet = (ours > 0) & (theirs > 0)
+        keep[cube[meet], 2 * axis + 1] = keep[other[meet], 2 * axis] = False
+        differ = meet & (ours != theirs)
+        differing.append([cube[differ], np.full(int(differ.sum()), axis), ours[differ], theirs[differ]])
+    return _Facing(keep, *(np.concatenate(column) for column in zip(*differing, strict=True)))
+
+
+def _expanded(pieces: Pieces, cubes: Cubes, facing: _Facing, origin: Floats, size: Floats) -> _Soup | None:
+    """Put copies of the pieces into the cubes, and between them what differing sides come to."""
+    seams = _placed_seams(pieces, cubes, facing)
+    if seams is None:
+        return None
+    used, which = np.unique(cubes.piece, return_inverse=True)
+    made = [pieces.made[number] for number in used]
+    copies = np.bincount(which, minlength=len(made)).tolist()
+    inner, triangles = (
+        np.concatenate([[0], np.cumsum([len(part) * n for part, n in zip(parts, copies, strict=True)])])
+        for parts in ([piece.points[: piece.inner] for piece in made], [piece.parts[0] for piece in made])
+    )
+    first = int(inner[-1])
+    room = sum((len(piece.points) - piece.inner) * n for piece, n in zip(made, copies, strict=True))
+    room += sum(len(seam.corners) for seam in seams)
+    points, closed = np.empty((first + room, 3)), np.empty((triangles[-1], 3), np.int64)
+    shared, rim = [], []
+    order = np.split(np.argsort(which, kind="stable"), np.cumsum(copies)[:-1])
+    for number, (piece, cube) in enumerate(zip(made, order, strict=True)):
+        place, inside, sides = cubes.place[cube], piece.points[: piece.inner], piece.points[piece.inner :]
+        into = points[inner[number] : inner[number + 1]].reshape(len(cube), -1, 3)
+        np.add((inside * (size / LATTICE))[None], (origin + place * size)[:, None], out=into)
+        starts = inner[number] + piece.inner * np.arange(len(cube))
+        faces = closed[triangles[number] : triangles[number + 1]].reshape(len(cube), -1, 3)
+        np.add(piece.parts[0][None], starts[:, None, None], out=faces)
+        shared.append((sides[None] + place[:, None] * LATTICE).reshape(-1, 3))
+        both = np.column_stack([starts, first - piece.inner + len(sides) * np.arange(len(cube))])
+        rim.append(_copied(piece.parts[1], piece.inner, both))
+        rim += [_copied(piece.parts[2 + side], piece.inner, both[facing.keep[cube, side]]) for side in SIDES]
+        first += len(sides) * len(cube)
+    return _Soup(
+        points,
+        int(inner[-1]),
+        np.concatenate([*shared, *(seam.corners for seam in seams)]),
+        closed,
+        np.concatenate([*rim, *(seam.triangles + first for seam in seams)]),
+        np.concatenate([np.empty((0, 3), np.int64), *(seam.splits + first for seam in seams)]),
+    )
+
+
+def _placed_seams(pieces: Pieces, cubes: Cubes, facing: _Facing) -> list[_Seams] | None:
+    """Put what differing sides come to between the cubes; None where some do not come to anything."""
+    rows = np.column_stack([facing.axis, facing.ours, facing.theirs])
+    kinds, kind = np.unique(rows, axis=0, return_inverse=True)
+    placed: list[_Seams] = []
+    first = 0
+    for number, (axis, ours, theirs) in enumerate(kinds.tolist()):
+        found = pieces.seam(ours, theirs)
+        if found is None:
+            return None
+        place = cubes.place[facing.cube[kind.reshape(-1) == number]]
+        corners = np.empty((len(found.points), 3), np.int64)
+        corners[:, axis], corners[:, [(axis + 1) % 3, (axis + 2) % 3]] = LATTICE, found.points
+        starts = (first + len(corners) * np.arange(len(place)))[:, None, None]
+        triangles = np.concatenate([found.ours, found.theirs[:, ::-1]])
+        copies = (
+            corners[None] + place[:, None] * LATTICE,
+            triangles[None] + starts,
+            found.splits[None] + starts,
+        )
+        placed.append(_Seams(*(each.reshape(-1, 3) for each in copies)))
+        first += len(corners) * len(place)
+    return placed
+
+
+def _copied(triangles: Ints, inner: int, starts: Ints) -> Ints:
+    """Copy triangles; their inner and outer corners count from different `starts` ``(n, 2)``."""
+    outer = (triangles >= inner).astype(np.int64)
+    return (triangles[None] + starts[:, outer]).reshape(-1, 3)
+
+
+def _at_splits(triangles: Ints, splits: Ints, count: int) -> Ints:
+    """Split triangles whose edges are known to pass through a point."""
+    if not len(splits):
+        return triangles
+    ends = np.sort(splits[:, :2], axis=1)
+    key, first = np.unique(ends[:, 0] * count + ends[:, 1], return_index=True)
+    through = splits[first, 2]
+    hot = np.zeros(count, np.bool_)
+    hot[splits[:, :2]] = True
+
+    def middle(start: Ints, end: Ints) -> Ints:
+        wanted = np.minimum(start, end) * count + np.maximum(start, end)
+        at = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
+        return np.where(key[at] == wanted, through[at], -1)
+
+    return _halved_until_none(triangles, hot, middle)
+
+
+def _at_lines(triangles: Ints, shared: Ints, first: int) -> Ints:
+    """Split triangles whose edges run along a line of the grid, at all corners there are on it.
+
+    Up to four cubes meet in such a line, and each two of them know of their own corners only.
+    """
+    used = np.zeros(len(shared), np.bool_)
+    used[triangles[triangles >= first] - first] = True
+    on_plane = shared % LATTICE == 0
+    for axis in range(3):
+        others = [(axis + 1) % 3, (axis + 2) % 3]
+        here = np.flatnonzero(used & on_plane[:, others].all(axis=1))
+        order = here[np.lexsort((shared[here, axis], *shared[here][:, others].T))]
+        rank = np.full(first + len(shared), -1)
+        rank[first + order] = np.arange(len(order))
+        line = np.full(first + len(shared), -1)
+        new = (shared[order[1:]][:, others] != shared[order[:-1]][:, others]).any(axis=1)
+        line[first + order] = np.cumsum(np.concatenate([[0], new])) if len(order) else 0
+
+        def middle(start: Ints, end: Ints, rank: Ints = rank, line: Ints = line, order: Ints = order) -> Ints:
+            between = np.abs(rank[start] - rank[end]) > 1
+            along = (line[start] == line[end]) & (line[start] >= 0) & between
+            half = (rank[start] + rank[end]) // 2
+            return np.where(along, first + order[np.where(along, half, 0)], -1)
+
+        if len(order):
+            triangles = _halved_until_none(triangles, line >= 0, middle)
+    return triangles
+
+
+def _halved_until_none(triangles: Ints, hot: Bools, middle: Callable[[Ints, Ints], Ints]) -> Ints:
+    """Split triangles at the middles of their edges, and what comes of it, until no edge has any.
+
+    Parameters
+    ----------
+    hot
+        Which points an edge with a middle may begin and end at.
+    middle
+        Gives the points on edges from start to end, -1 for none.
+    """
+    done = []
+    while len(triangles):
+        likely = hot[triangles].sum(axis=1) > 1
+        done.append(triangles[~likely])
+        triangles = triangles[likely]
+        middles = np.column_stack(
+            [middle(triangles[:, a], triangles[:, b]) for a, b in ((0, 1), (1, 2), (2, 0))]
+        )
+        open_ = (middles >= 0).any(axis=1)
+        done.append(triangles[~open_])
+        triangles = halved(triangles[open_], middles[open_])
+    return np.concatenate([*done, triangles])
