@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-ROUND_SIDES = 16
+ROUND_SIDES = 12
 """Of the polygon that stands for a circle."""
 
 _APART = 2e-4
@@ -107,13 +107,22 @@ def _rings(sites: Sites, profile: Profile, base: Floats, overlap: float) -> Floa
     top = within(sites.spot, profile.width, lo, hi)
     rim = _ROOT * (hi - lo)
     root = np.minimum(lo + rim, top[0]), np.maximum(hi - rim, top[1])
-    foot = sites.lowest - profile.height
-    levels = [(np.minimum(foot, base) - 2 * _DIP, root, False), (foot, root, False)]
+    levels = [(sites.lowest - profile.height - _DIP, root, False)]
     if profile.neck:
         neck = within(sites.spot, profile.neck, *top)
         levels.append((sites.lowest - profile.neck_height, neck, profile.round))
     levels += [(sites.lowest, top, profile.round), (sites.highest + overlap + _DIP, top, profile.round)]
-    return np.stack([_ring(*level, sides=ROUND_SIDES if profile.round else 4) for level in levels], axis=1)
+    rings = np.stack([_ring(*level, sides=ROUND_SIDES if profile.round else 4) for level in levels], axis=1)
+    return _shortened(rings, base - 2 * _DIP)
+
+
+def _shortened(rings: Floats, floor: Floats) -> Floats:
+    """Let tips begin at the floor that is cut away anyway: there may be other connectors further below."""
+    low, high = rings[:, 0, 0, 2], rings[:, 1, 0, 2]
+    deep = np.flatnonzero((low < floor) & (floor < high))
+    share = ((floor - low)[deep] / (high - low)[deep])[:, None, None]
+    rings[deep, 0] += share * (rings[deep, 1] - rings[deep, 0])
+    return rings
 
 
 def _ring(z: Floats, box: tuple[Floats, Floats], circle: bool, *, sides: int) -> Floats:
