@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from amprep.geometry.cell_edges import separate_edges
 from amprep.geometry.cell_solids import arrays_of, union
 from amprep.geometry.solids import as_manifold
-from amprep.geometry.welding import kept, weld
+from amprep.geometry.welding import kept, label_equal_rows, weld
 from amprep.kernels import cells as kernels
 from amprep.kernels import patches as patch_kernels
 
@@ -216,15 +216,20 @@ def connect(
     Returns
     -------
     meshes
-        Closed ones that may touch one another: one of all columns where nothing is in the way, and one for
-        each other column.
+        Closed ones that may touch one another: of all columns where nothing is in the way one for each surface
+        that hangs together, and one for each other column. Surfaces that only touch in plan stay apart: the
+        walls between them lie in each other, and manifold3d joins them without fault, but tidies them badly.
     """
     rise = np.where(own, overlap, -overlap)
     held, below = _without_hidden(held, surface, find_below(held, surface), overlap, rise)
     cutting, rise = surface.chosen(below), rise[below]
     covered = np.diff(cutting.of_column) > 0
     free = held.chosen(~covered[held.owner[:, 0]])
-    meshes = [separate_edges(*stand_on(free, base[free.owner[:, 0]], overlap))] if len(free.owner) else []
+    meshes = []
+    surface_of = _label_surfaces(free)
+    for each in range(int(surface_of.max(initial=-1)) + 1):
+        whole = free.chosen(surface_of == each)
+        meshes.append(separate_edges(*stand_on(whole, base[whole.owner[:, 0]], overlap)))
     for column in np.flatnonzero(covered).tolist():
         way = union(list(_prisms(*held.in_column(column), overlap, base[column])))
         first, last = cutting.of_column[column : column + 2]
@@ -232,6 +237,23 @@ def connect(
         if not way.is_empty():
             meshes.append(arrays_of(way))
     return meshes
+
+
+def _label_surfaces(patches: Patches) -> Ints:
+    """Number the surfaces that patches form where they share whole edges, ``(n,)``."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = len(patches.owner)
+    corner, _ = label_equal_rows(kept(patches.points).view(np.int64))
+    patch = np.repeat(np.arange(count), np.diff(patches.start))
+    here = np.arange(len(corner))
+    after = np.where(here + 1 == patches.start[1:][patch], patches.start[:-1][patch], here + 1)
+    ends = np.sort(np.column_stack([corner, corner[after]]), axis=1)
+    edge, edges = label_equal_rows(np.column_stack([ends, np.zeros(len(ends), np.int64)]))
+    graph = coo_array((np.ones(len(edge), np.int8), (patch, count + edge)), shape=(count + edges,) * 2)
+    label = connected_components(graph, directed=False)[1][:count]
+    return np.asarray(np.unique(label, return_inverse=True)[1], np.int64)
 
 
 def _without_hidden(
