@@ -50,6 +50,23 @@ def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats,
     return start[owner] + share[:, None] * (end - start)[owner], owner
 
 
+def sample_triangles(corners: Floats, spacing: float) -> Floats:
+    """Return points of triangles ``(n, 3, 3)``, edges and corners included, in rows at most `spacing` mm apart."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    length = np.linalg.norm(sides, axis=2)
+    longest = length.argmax(axis=1)
+    every = np.arange(len(corners))
+    a, b, c = (corners[every, (longest + i) % 3] for i in range(3))
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    rows = np.maximum(np.ceil(area / np.maximum(length.max(axis=1, initial=0.0), 1e-12) / spacing), 1).astype(
+        np.int64
+    )
+    owner = np.repeat(every, rows + 1)
+    share = (np.arange(len(owner)) - np.repeat(np.cumsum(rows + 1) - rows - 1, rows + 1)) / rows[owner]
+    start, end = (each[owner] + share[:, None] * (c - each)[owner] for each in (a, b))
+    return sample_segments(start, end, spacing)[0]
+
+
 def _lattice(vertices: Floats, faces: Longs, spacing: float) -> tuple[Floats, Longs]:
     from amprep.kernels.sampling import lattice_points
 

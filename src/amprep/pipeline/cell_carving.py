@@ -1,4 +1,4 @@
-"""Keeps connectors out of parts: nothing of them stays deeper than the overlap, nor hangs in the air then."""
+"""Keeps supports out of parts: nothing of them stays deeper than the overlap, nor hangs in the air then."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -6,22 +6,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.geometry.cell_solids import union
 from amprep.geometry.contacts import contact_corners
 from amprep.geometry.merging import compact
 from amprep.geometry.shells import label_shells
 from amprep.geometry.solids import as_manifold
 from amprep.model import CONTACT_TOLERANCE, PlacedPart
 from amprep.model.arrays import Floats, Ints
+from amprep.pipeline.cell_clearance import Clearance
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 
 class Obstacles:
-    """The solid parts of a build, ready to be cut out of connectors; each is made when first needed."""
+    """The solid parts of a build, ready to be cut out of supports; each is made when first needed."""
 
-    def __init__(self, parts: Sequence[PlacedPart]) -> None:
+    def __init__(self, parts: Sequence[PlacedPart], clearance: Clearance | None = None) -> None:
         self._parts = [(index, placed.mesh) for index, placed in enumerate(parts) if placed.part.is_solid]
+        self._clearance = clearance
         self._solid = cache(lambda index: as_manifold(*self._arrays(index)))
 
     def _arrays(self, index: int) -> tuple[Floats, Ints]:
@@ -45,6 +48,13 @@ class Obstacles:
             shift = depth + CONTACT_TOLERANCE / 2
             connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
         return connectors
+
+    def trim(self, solids: list["Manifold"]) -> list["Manifold"]:
+        """Return finished solids, cut where they come nearer to walls of parts than the clearance."""
+        if self._clearance is None or not solids:
+            return solids
+        whole = union(solids)
+        return [self._clearance.keep(whole)]
 
     def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
         """Return the triangles ``(t, 3, 3)`` mm of the parts held that lie in the connectors."""

@@ -58,7 +58,7 @@ def solid_of(
     ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
-    solids = [as_manifold(*mesh) for mesh in stems] + ups + _extras(emitted, group)
+    solids = obstacles.trim([as_manifold(*mesh) for mesh in stems] + ups + _extras(emitted, group))
     if on_beams:
         return Mesh(*finish(solids)) if solids else None
     boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))

@@ -10,6 +10,7 @@ from amprep.model.endings import Base, Connector
 from amprep.pipeline.cell_bases import make_bases, with_base
 from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
 from amprep.pipeline.cell_carving import Obstacles
+from amprep.pipeline.cell_clearance import Clearance
 from amprep.pipeline.cell_connectors import Ways, find_ways
 from amprep.pipeline.cell_feet import foot_boxes
 from amprep.pipeline.cell_groups import sheet_of, solid_of
@@ -61,7 +62,7 @@ def build_supports(
     beams
         Whether struts become beams: None as the cell's parameters say, False never.
     gap
-        mm that beams keep from walls of parts; other cells keep to white cubes.
+        mm that supports keep from walls of parts, sideways; walls without thickness only keep to white cubes.
     space
         What cuts beams off; without it all supports are meshes.
 
@@ -86,7 +87,8 @@ def build_supports(
     emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
     if emitted.sheet.any():
         _require_no_feet(layout, base)
-    ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts)
+    clearance = Clearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
+    ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts, clearance)
     work = _Work(layout, parts, ways, obstacles, overlap, connector, gap)
     solids, names = [], []
     for group, held in enumerate(layout.group_parts):

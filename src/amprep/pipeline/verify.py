@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from amprep.checks import cells, coverage
+from amprep.checks import cells, coverage, gap
 from amprep.checks.cells import check_bodies
 from amprep.checks.coverage import check_coverage
+from amprep.checks.gap import check_gap
 from amprep.checks.placed import check_placed
 from amprep.checks.violation import Violation
 from amprep.model import Build, Report, Stop, silent
@@ -22,6 +23,7 @@ PROMISES = (
     cells.INSIDE,
     cells.STANDING,
     cells.PENETRATION,
+    gap.PROMISE,
     coverage.PROMISE,
 )
 """The names of all promises, in the order they are judged."""
@@ -32,7 +34,7 @@ def verify_build(build: Build, *, stop: Stop | None = None, report: Report = sil
     stop = stop or Stop()
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
         ("parts", lambda: check_placed(build.parts, build.settings, stop)),
-        ("supports", lambda: check_bodies(build, stop)),
+        ("supports", lambda: [*check_bodies(build, stop), *check_gap(build, stop)]),
         ("coverage", lambda: check_coverage(build)),
     )
     violations: list[Violation] = []
