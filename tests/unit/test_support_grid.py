@@ -7,7 +7,7 @@ import pytest
 from amprep.errors import JobError, PluginError
 from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
 from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, Cube
-from amprep.pipeline.supports import choose_pitch, plan_supports
+from amprep.pipeline.supports import Wishes, choose_pitch, plan_supports
 from amprep.plugins.supports.auto import route_auto
 from amprep.plugins.supports.params import ShortestPathsParams
 from amprep.plugins.supports.shortest_paths import route_shortest_paths
@@ -36,8 +36,9 @@ def route(problem, stop, report):
 
 
 def layout(parts, space=SPACE, **settings):
-    settings = {"pitch": 1.0, "route": route, "stop": Stop(), "report": silent} | settings
-    return plan_supports(parts, space, **settings)
+    given = {name: settings.pop(name) for name in ("route", "only", "stop") if name in settings}
+    wishes = Wishes(**{"pitch": 1.0} | settings)
+    return plan_supports(parts, space, wishes, **{"route": route, "stop": Stop(), "report": silent} | given)
 
 
 def columns(plan):
@@ -181,7 +182,7 @@ def test_supports_are_shared_only_where_there_is_no_other_way():
     plan = layout(shaft(1), least_area=0.0)
     assert plan.connected.all()
     assert plan.group_parts == ((1, 2),)
-    assert plan.notes == ("share supports: p1, p2",)
+    assert plan.shared == ("share supports: p1, p2",)
     assert plan.flow.max() == 32
     apart = layout(shaft(5), least_area=0.0)
     assert apart.connected.all()
@@ -221,7 +222,9 @@ def test_notes_say_what_the_router_says_that_capacities_are_raised_and_that_time
     plan = layout(shaft(2), route=auto, node_capacity=3, escalation="cut", least_area=0.0)
     assert plan.connected.all()
     assert any(note.startswith("p1: auto chose the router tree") for note in plan.notes)
-    assert "p2: capacities are raised by up to 1, as supports.escalation allows" in plan.notes
+    assert (
+        "capacities are raised by up to 5, as supports.escalation allows" in plan.notes
+    )  # 32 paths, 4 squares
     late = layout(placed(TABLE), route=auto, stop=Stop.after(0.0))
     assert "p0: routing ended early: time limit" in late.notes
 

@@ -26,8 +26,7 @@ from amprep.pipeline.bench_slicer import STYLES, rival_volume
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.pipeline.support_red import RedSquares
-from amprep.pipeline.support_routing import Route
-from amprep.pipeline.supports import plan_supports
+from amprep.pipeline.supports import Route, Wishes, plan_supports
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -176,7 +175,13 @@ def _volume(
     params = host.params(emitter, {})
     material = host.material(emitter, pitch, pitch, params)
     layout = plan_supports(
-        (part,), SPACE, route=route, pitch=pitch, material=material, only=free_below, stop=stop, report=silent
+        (part,),
+        SPACE,
+        Wishes(pitch=pitch, material=material),
+        route=route,
+        only=free_below,
+        stop=stop,
+        report=silent,
     )
     bodies = build_supports(
         layout,

@@ -33,7 +33,8 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),
-        shared=() if layout is None else layout.notes,
+        shared=() if layout is None else layout.shared,
+        notes=() if layout is None else layout.notes,
     )
 
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from amprep.model.arrays import Bools, Bytes, Ints
 from amprep.model.supports import Cube
+from amprep.pipeline.support_edges import cube_users
 from amprep.pipeline.support_grid import PartCubes
 from amprep.pipeline.support_red import RedSquares
-from amprep.pipeline.support_routing import cube_users
 
 DEEPEST = 2
 """Cubes below a green square that its foot may pass on its way to the surface."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.model.arrays import Bytes, Ints
 from amprep.model.supports import DIRECTIONS, Cube, GridFrame
-from amprep.pipeline.support_routing import components, cube_users, lower_squares
+from amprep.pipeline.support_edges import components, cube_users, lower_squares
 
 FARTHEST_MM = 15.0
 """mm sideways; struts are no longer than this."""

@@ -48,7 +48,9 @@ class SupportLayout:
     group_parts
         Placed parts each group holds; more than one only where squares are shared.
     notes
-        Sentences for the user, for instance which parts share supports.
+        Sentences for the user: what the router says, which columns stand on parts or are joined.
+    shared
+        Which parts share supports, one sentence for each group of more than one part.
     """
 
     frame: GridFrame
@@ -72,6 +74,7 @@ class SupportLayout:
     edge_group: Ints
     group_parts: tuple[tuple[int, ...], ...]
     notes: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
     feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
 
     def __post_init__(self) -> None:

@@ -23,7 +23,7 @@ from amprep.pipeline.cells import build_supports
 from amprep.pipeline.removability import removal_of
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.support_grid import usual_pitch
-from amprep.pipeline.supports import SupportLayout, choose_pitch, plan_supports
+from amprep.pipeline.supports import SupportLayout, Wishes, choose_pitch, plan_supports
 from amprep.report.removability import Removal
 
 
@@ -144,29 +144,32 @@ def _plan(
     def route(problem: SupportProblem, stop: Stop, report: Report) -> SupportPlan:
         return host.call(router, problem, params=params, rng=rng, stop=stop, report=report)
 
+    material = host.material(
+        emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)
+    )
     return plan_supports(
-        parts,
-        job.printer.space,
-        route=route,
-        overhang_angle_deg=wishes.overhang_angle_deg,
-        strut_angle_deg=angle,
+        parts, job.printer.space, _wishes(job, pitch, material), route=route, stop=stop, report=report
+    )
+
+
+def _wishes(job: Job, pitch: float, material: tuple[float, float]) -> Wishes:
+    asked = job.supports
+    return Wishes(
+        overhang_angle_deg=asked.overhang_angle_deg,
+        strut_angle_deg=asked.strut_angle_deg,
         pitch=pitch,
-        gap=wishes.gap_mm,
-        grounding=wishes.grounding,
-        memory_mb=wishes.memory_mb,
-        edge_capacity=wishes.capacity,
-        node_capacity=wishes.node_capacity,
-        escalation=wishes.escalation,
-        load_area=wishes.load_area_mm2,
-        load_height=wishes.load_height_mm,
-        costs=(wishes.vertical_cost, wishes.oblique_cost),
-        material=host.material(
-            emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)
-        ),
-        least_area=wishes.least_area_mm2,
-        least_length=wishes.least_length_mm,
-        share_between_parts=wishes.share_between_parts,
-        slender=wishes.slender if wishes.join_columns else None,
-        stop=stop,
-        report=report,
+        gap=asked.gap_mm,
+        grounding=asked.grounding,
+        memory_mb=asked.memory_mb,
+        edge_capacity=asked.capacity,
+        node_capacity=asked.node_capacity,
+        escalation=asked.escalation,
+        load_area=asked.load_area_mm2,
+        load_height=asked.load_height_mm,
+        costs=(asked.vertical_cost, asked.oblique_cost),
+        material=material,
+        least_area=asked.least_area_mm2,
+        least_length=asked.least_length_mm,
+        share_between_parts=asked.share_between_parts,
+        slender=asked.slender if asked.join_columns else None,
     )

@@ -1,57 +1,68 @@
 """Plans the supports of a build: needs, grid, red squares, routing, groups (thesis 3.2)."""
 
 from collections.abc import Callable, Sequence
-from typing import Literal
+from typing import NamedTuple
 
 import numpy as np
 
 from amprep.checks.needs import needs_of
+from amprep.geometry.overhangs import Overhangs
 from amprep.model.arrays import Bools, Bytes, Ints
-from amprep.model.build import Grounding, PlacedPart
+from amprep.model.build import PlacedPart
 from amprep.model.control import Report, Stop
+from amprep.model.mesh import Mesh
 from amprep.model.space import BuildVolume
-from amprep.model.supports import Escalation
-from amprep.pipeline.support_grid import MEMORY_MB, choose_pitch, coloured, cubes_of, frame_of
+from amprep.model.supports import GridFrame
+from amprep.pipeline.support_edges import merge_edges
+from amprep.pipeline.support_grid import PartCubes, choose_pitch, coloured, cubes_of, frame_of
 from amprep.pipeline.support_grounding import stand_on_parts
+from amprep.pipeline.support_groups import groups_of
 from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_layout import SupportLayout
+from amprep.pipeline.support_network import Network, Route
 from amprep.pipeline.support_red import RedSquares, close_gap, red_squares
-from amprep.pipeline.support_routing import (
-    Network,
-    Route,
-    Rules,
-    components,
-    merge_edges,
-    route_apart,
-    route_together,
-)
+from amprep.pipeline.support_routing import Routed, route_apart, route_together
+from amprep.pipeline.support_wishes import Wishes
 
-__all__ = ["Route", "SupportLayout", "choose_pitch", "plan_supports"]
+__all__ = ["Route", "SupportLayout", "Wishes", "choose_pitch", "plan_supports"]
+
+Only = Callable[[Bytes, RedSquares], Bools]
+"""Tells from the cubes which red squares to connect."""
+
+
+class _Needs(NamedTuple):
+    """What needs support, part by part: meshes in build coordinates, and indices into them."""
+
+    meshes: tuple[Mesh, ...]
+    overhangs: tuple[Overhangs, ...]
+
+
+class _Laid(NamedTuple):
+    """The grid: its cubes, how many parts meet each, the cubes of each part, and the red squares."""
+
+    frame: GridFrame
+    cubes: Bytes
+    meeting: Bytes
+    blocks: tuple[PartCubes, ...]
+    red: RedSquares
+
+
+class _Standing(NamedTuple):
+    """Supports that stand: edges (rows as in `Routed.edges`), feet on parts, which red squares are held."""
+
+    edges: Ints
+    feet: Ints
+    connected: Bools
+    notes: tuple[str, ...]
 
 
 def plan_supports(
     parts: Sequence[PlacedPart],
     space: BuildVolume,
+    wishes: Wishes,
     *,
     route: Route,
-    overhang_angle_deg: float = 45.0,
-    strut_angle_deg: float = 45.0,
-    pitch: float | None = None,
-    gap: float = 0.0,
-    grounding: Grounding = "plate",
-    memory_mb: int = MEMORY_MB,
-    edge_capacity: int = 0,
-    node_capacity: int = 0,
-    costs: tuple[int, int] = (1, 2),
-    material: tuple[float, float] = (1.0, 1.0),
-    escalation: Escalation = "none",
-    load_area: float = 0.0,
-    load_height: float = 0.0,
-    least_area: float = 0.5,
-    least_length: float = 0.5,
-    share_between_parts: Literal["avoid", "allow"] = "avoid",
-    slender: float | None = None,
-    only: Callable[[Bytes, RedSquares], Bools] | None = None,
+    only: Only | None = None,
     stop: Stop,
     report: Report,
 ) -> SupportLayout:
@@ -61,23 +72,10 @@ def plan_supports(
     ----------
     route
         The chosen router; it may be called once for each part.
-    pitch
-        mm; None chooses one by `choose_pitch`.
-    gap
-        Least distance between supports and parts sideways, mm; 0 for none.
-    grounding
-        ``plate``, or ``anywhere``: what finds no way to the plate may stand on the part it belongs to.
-    memory_mb
-        What the grid may take.
-    load_area, load_height
-        mm2 of overhang on one edge, and mm up to which that holds (`Rules`); 0 for no limit.
-    share_between_parts
-        ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
-        one network.
-    slender
-        Columns higher than so many times their width are joined to others; None joins none.
     only
-        Tells from the cubes which red squares to connect; the others are left out. None connects all.
+        Red squares that it does not name are left out; None connects all.
+    stop
+        Ends the routing; what has no way by then is listed.
 
     Raises
     ------
@@ -86,67 +84,104 @@ def plan_supports(
     PluginError
         When the router returns a plan that breaks its promise.
     """
-    limits = {
-        "overhang_angle_deg": overhang_angle_deg,
-        "least_area": least_area,
-        "least_length": least_length,
-    }
-    found = [needs_of(placed, **limits) for placed in parts]
-    meshes, needs = [each.mesh for each in found], [each.overhangs for each in found]
+    needs = _find_needs(parts, wishes)
     report(0.05, "overhangs found")
-    pitch = pitch or choose_pitch(parts, space, strut_angle_deg, memory_mb)
-    frame = frame_of(meshes, needs, space, pitch=pitch, strut_angle_deg=strut_angle_deg, memory_mb=memory_mb)
-    blocks = [
-        cubes_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
-        for placed, mesh, own in zip(parts, meshes, needs, strict=True)
+    laid = _lay_grid(parts, needs, space, wishes, only)
+    report(0.15, "grid laid")
+    network = Network(laid.frame, laid.cubes, laid.red, wishes.rules, route, stop)
+    routed = _route(network, wishes, report)
+    told = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
+    standing = _joined(laid, _grounded(laid, routed, wishes), wishes)
+    return _layout(parts, needs, laid, standing, routed.reasons, told)
+
+
+def _find_needs(parts: Sequence[PlacedPart], wishes: Wishes) -> _Needs:
+    found = [
+        needs_of(
+            placed,
+            overhang_angle_deg=wishes.overhang_angle_deg,
+            least_area=wishes.least_area,
+            least_length=wishes.least_length,
+        )
+        for placed in parts
     ]
+    return _Needs(tuple(each.mesh for each in found), tuple(each.overhangs for each in found))
+
+
+def _lay_grid(
+    parts: Sequence[PlacedPart], needs: _Needs, space: BuildVolume, wishes: Wishes, only: Only | None
+) -> _Laid:
+    """Lay the grid, colour its cubes, find the red squares, and close what is too near to parts."""
+    angle, memory, gap = wishes.strut_angle_deg, wishes.memory_mb, wishes.gap
+    pitch = wishes.pitch or choose_pitch(parts, space, angle, memory)
+    frame = frame_of(*needs, space, pitch=pitch, strut_angle_deg=angle, memory_mb=memory)
+    blocks = tuple(
+        cubes_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
+        for placed, mesh, own in zip(parts, *needs, strict=True)
+    )
     cubes, meeting = coloured(frame, space, blocks)
     red = red_squares(cubes, meeting, blocks)
     if only is not None:
         keep = only(cubes, red)
         red = RedSquares(*(each[keep] for each in red))
     if gap > 0:
-        close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=overhang_angle_deg)
-    report(0.15, "grid laid")
-    rules = Rules(edge_capacity, node_capacity, costs, material, escalation, load_area, load_height)
-    network = Network(frame, cubes, red, rules, route, stop)
+        close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=wishes.overhang_angle_deg)
+    return _Laid(frame, cubes, meeting, blocks, red)
 
+
+def _route(network: Network, wishes: Wishes, report: Report) -> Routed:
     def routing(share: float, words: str) -> None:
         report(0.15 + 0.85 * share, words)
 
-    routed = (route_apart if share_between_parts == "avoid" else route_together)(network, routing)
+    if wishes.share_between_parts == "avoid":
+        return route_apart(network, routing)
+    return route_together(network, routing)
+
+
+def _grounded(laid: _Laid, routed: Routed, wishes: Wishes) -> _Standing:
+    """Stand what found no way to the plate on the part it belongs to, where that is allowed."""
     connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
-    grounded = stand_on_parts(
-        cubes, meeting, blocks, red, ~connected & (grounding == "anywhere"), routed.edges
-    )
+    left = ~connected & (wishes.grounding == "anywhere")
+    grounded = stand_on_parts(laid.cubes, laid.meeting, laid.blocks, laid.red, left, routed.edges)
     edges = merge_edges(np.concatenate([routed.edges, grounded.edges]))
-    connected |= grounded.served
-    notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
-    if len(grounded.feet):
-        notes.append(f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows")
-    if slender is not None:
-        joined = join_columns(frame, cubes, edges, slender)
-        edges = merge_edges(np.concatenate([edges, joined.edges]))
-        notes.append(
-            f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
-        )
-    group, edge_group, group_parts = _groups(edges, red, connected, len(parts))
-    shared = [group for group in group_parts if len(group) > 1]
-    notes += ["share supports: " + ", ".join(parts[part].label for part in group) for group in shared]
+    notes = (f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows",)
+    return _Standing(edges, grounded.feet, connected | grounded.served, notes if len(grounded.feet) else ())
+
+
+def _joined(laid: _Laid, standing: _Standing, wishes: Wishes) -> _Standing:
+    """Brace slender columns, when asked to."""
+    if wishes.slender is None:
+        return standing
+    joined = join_columns(laid.frame, laid.cubes, standing.edges, wishes.slender)
+    note = f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
+    edges = merge_edges(np.concatenate([standing.edges, joined.edges]))
+    return standing._replace(edges=edges, notes=(*standing.notes, note))
+
+
+def _layout(
+    parts: Sequence[PlacedPart],
+    needs: _Needs,
+    laid: _Laid,
+    standing: _Standing,
+    reasons: Sequence[str],
+    told: Sequence[str],
+) -> SupportLayout:
+    """Gather everything, with the groups that the supports form."""
+    edges, red, connected = standing.edges, laid.red, standing.connected
+    red_group, edge_group, group_parts = groups_of(edges, red, connected, len(parts))
+    shared = [", ".join(parts[part].label for part in group) for group in group_parts if len(group) > 1]
     return SupportLayout(
-        frame=frame,
-        cubes=cubes,
-        meshes=tuple(meshes),
-        overhangs=tuple(needs),
+        frame=laid.frame,
+        cubes=laid.cubes,
+        meshes=needs.meshes,
+        overhangs=needs.overhangs,
         red=red.square,
         red_part=red.part,
         red_region=red.region,
         red_rise=red.rise,
         connected=connected,
-        reasons=tuple(
-            "" if done else reason for done, reason in zip(connected.tolist(), routed.reasons, strict=True)
-        ),
-        feet=grounded.feet,
+        reasons=tuple("" if done else why for done, why in zip(connected.tolist(), reasons, strict=True)),
+        feet=standing.feet,
         plane=edges[:, 0],
         y=edges[:, 1],
         x=edges[:, 2],
@@ -154,29 +189,9 @@ def plan_supports(
         flow=edges[:, 4],
         capacity=edges[:, 5],
         edge_part=edges[:, 6],
-        red_group=group,
+        red_group=red_group,
         edge_group=edge_group,
         group_parts=group_parts,
-        notes=tuple(notes),
+        notes=(*told, *standing.notes),
+        shared=tuple(f"share supports: {names}" for names in shared),
     )
-
-
-def _groups(
-    edges: Ints, red: RedSquares, connected: Bools, count: int
-) -> tuple[Ints, Ints, tuple[tuple[int, ...], ...]]:
-    """Make one group per part, and one of all parts whose supports meet in a square."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    _, of_red = components(edges, red.square[connected])
-    part = red.part[connected]
-    owner = np.full(int(of_red.max(initial=-1)) + 1, -1)
-    owner[of_red[::-1]] = part[::-1]
-    graph = coo_array((np.ones(len(part)), (part, owner[of_red])), shape=(count, count))
-    label = connected_components(graph, directed=False)[1]
-    used, number = np.unique(label[part], return_inverse=True)
-    group = np.full(len(red.part), -1, np.int32)
-    group[connected] = number
-    edge_group = np.searchsorted(used, label[edges[:, 6]]).astype(np.int32)
-    held = [sorted(set(part[number == i].tolist())) for i in range(len(used))]
-    return group, edge_group, tuple(tuple(each) for each in held)

@@ -28,7 +28,7 @@ from amprep.model import (
 from amprep.model.control import Report
 from amprep.model.endings import Connector
 from amprep.pipeline.cells import build_supports
-from amprep.pipeline.supports import SupportLayout, plan_supports
+from amprep.pipeline.supports import SupportLayout, Wishes, plan_supports
 from amprep.pipeline.trial import SEED, Case
 from amprep.pipeline.trial_problems import box_mesh
 
@@ -98,7 +98,7 @@ def _layout(host: Host, part: PlacedPart) -> SupportLayout:
         rng = np.random.default_rng(SEED)
         return host.call(router, problem, params=params, rng=rng, stop=stop, report=report)
 
-    return plan_supports((part,), _SPACE, route=route, pitch=PITCH, stop=Stop(), report=silent)
+    return plan_supports((part,), _SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), report=silent)
 
 
 def _slab(side: float, height: float) -> PlacedPart:

@@ -264,11 +264,11 @@ def _verification(record: RunRecord) -> str:
 
 
 def _words(record: RunRecord) -> str:
-    shared = [words for entry in record.builds for words in entry.shared]
-    if not (record.warnings or record.notes or shared):
+    supports = [words for entry in record.builds for words in (*entry.notes, *entry.shared)]
+    if not (record.warnings or record.notes or supports):
         return ""
     items = [f'<li class="look">{escape(words)}</li>' for words in record.warnings]
-    items += [f"<li>{escape(words)}</li>" for words in (*record.notes, *shared)]
+    items += [f"<li>{escape(words)}</li>" for words in (*record.notes, *supports)]
     return f'<ul class="words">{"".join(items)}</ul>'
 
 

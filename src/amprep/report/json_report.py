@@ -83,6 +83,7 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
             "unsupported": [_unsupported(entry, region) for region in build.unsupported],
             "bodies": [_body(entry, index) for index in range(len(build.supports))],
             "shared": list(entry.shared),
+            "notes": list(entry.notes),
         },
         "verified": entry.verification is not None,
         "violations": [

@@ -27,7 +27,7 @@ class UnconnectedRecord:
     part, region
         For people: the placed part's label, the overhang's.
     reason
-        One of the four reasons of `amprep.model.supports`.
+        One of the reasons of `amprep.model.supports`.
     square
         Plane, y, x in the support grid.
     position_mm
@@ -101,6 +101,8 @@ class BuildRecord:
         What `amprep verify` found; None when the build was not verified.
     shared
         Supports that hold several parts, one sentence each.
+    notes
+        What else the supports' planning has to say, one sentence each.
     overhangs
         Everything that needs support.
     advice
@@ -123,6 +125,7 @@ class BuildRecord:
     verification: tuple[Violation, ...] | None = None
     stl_files: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
     columns: tuple[Columns, ...] = ()
     advice: tuple[str, ...] = ()

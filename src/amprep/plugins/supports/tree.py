@@ -49,13 +49,13 @@ def route_tree(
         best.adopt(flow)
     best.price(_G, 0.0, problem.material)
     stop_reason = _improve(best, params, rng, stop, report)
-    if stop_reason == "finished":
-        stop_reason = best.escalate(stop, report)
     note = (
         f"tree takes {best.material:.6g} mm3 of material: {_less(best.material, gathered_material)} "
         f"shortest-paths, {_less(best.material, adopted)} min-cost-flow"
     )
-    return replace(best.plan(stop_reason), notes=(note,))
+    if stop_reason == "finished":
+        stop_reason = best.escalate(stop, report)
+    return replace(best.plan(stop_reason), notes=(note,) if best.drawn.any() else ())
 
 
 def _limited(problem: SupportProblem, params: TreeParams) -> SupportProblem:
