@@ -41,7 +41,7 @@ class Profile(NamedTuple):
     neck, neck_height
         mm; a neck of 0 is none. It lies `neck_height` below the lowest spot of the contact.
     round
-        Whether sections are circles, else squares.
+        Whether sections are circles, else squares; at the side of a cell they are squares.
     """
 
     width: float
@@ -107,11 +107,14 @@ def _rings(sites: Sites, profile: Profile, base: Floats, overlap: float) -> Floa
     top = within(sites.spot, profile.width, lo, hi)
     rim = _ROOT * (hi - lo)
     root = np.minimum(lo + rim, top[0]), np.maximum(hi - rim, top[1])
-    levels = [(sites.lowest - profile.height - _DIP, root, False)]
+    # a circle that was pushed into its cell may miss the spot: a square does not
+    pushed = np.linalg.norm((top[0] + top[1]) / 2.0 - sites.spot, axis=1) > 0.4 * profile.width
+    circle = ~pushed & profile.round
+    levels = [(sites.lowest - profile.height - _DIP, root, np.zeros_like(circle))]
     if profile.neck:
         neck = within(sites.spot, profile.neck, *top)
-        levels.append((sites.lowest - profile.neck_height, neck, profile.round))
-    levels += [(sites.lowest, top, profile.round), (sites.highest + overlap + _DIP, top, profile.round)]
+        levels.append((sites.lowest - profile.neck_height, neck, circle))
+    levels += [(sites.lowest, top, circle), (sites.highest + overlap + _DIP, top, circle)]
     rings = np.stack([_ring(*level, sides=ROUND_SIDES if profile.round else 4) for level in levels], axis=1)
     return _shortened(rings, base - 2 * _DIP)
 
@@ -125,14 +128,13 @@ def _shortened(rings: Floats, floor: Floats) -> Floats:
     return rings
 
 
-def _ring(z: Floats, box: tuple[Floats, Floats], circle: bool, *, sides: int) -> Floats:
+def _ring(z: Floats, box: tuple[Floats, Floats], circle: Bools, *, sides: int) -> Floats:
     """Return points ``(s, sides, 3)`` on the sides of boxes, or on the circles in them, counter-clockwise."""
     angle = np.pi / 4 + 2 * np.pi * np.arange(sides) / sides
     way = np.column_stack([np.cos(angle), np.sin(angle)])
-    if not circle:
-        way /= np.abs(way).max(axis=1)[:, None]
+    square = way / np.abs(way).max(axis=1)[:, None]
     middle, half = (box[0] + box[1]) / 2.0, (box[1] - box[0]) / 2.0
-    plan = middle[:, None] + half[:, None] * way
+    plan = middle[:, None] + half[:, None] * np.where(circle[:, None, None], way, square)
     return np.concatenate([plan, np.broadcast_to(z[:, None, None], (len(z), sides, 1))], axis=2)
 
 
