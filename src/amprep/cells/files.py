@@ -72,7 +72,7 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
 def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[CellEmitter]:
     """Yield the offers of all cells in a folder, in the order of their names.
 
-    Each TOML file is a cell, and so is each STL, OBJ or 3MF file without a TOML that names it.
+    Each TOML file but ``pyproject.toml`` is a cell, and so is each STL, OBJ or 3MF file without a TOML that names it.
 
     Parameters
     ----------
@@ -82,11 +82,12 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
     Raises
     ------
     InputError
-        When a TOML file is not what a cell needs; a mesh is read, and refused, when its cell is used.
+        When a TOML file is not what a cell needs, or there is no cell; a mesh is read, and refused, when its cell
+        is used.
     """
     place = Path(folder)
     place = place.parent if place.is_file() else place
-    files = sorted(place.glob("*.toml"))
+    files = sorted(path for path in place.glob("*.toml") if path.name != "pyproject.toml")
     tables = [read_cell_table(path) for path in files]
     shapes = [
         shape
@@ -94,10 +95,16 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
         for shape in (table, *variants_of(table, path))
     ]
     named = {str(shape.get("mesh", "")) for shape in shapes}
+    count = 0
     for path in sorted(place.iterdir()):
         alone = path.suffix.lower() in (".stl", ".obj", ".3mf") and path.name not in named
         if path in files or (alone and path.with_suffix(".toml") not in files):
+            count += 1
             yield _offer_of(path, read_mesh or _plain_mesh)
+    if not count:
+        raise InputError(
+            f"{place}: no cell in this folder; a package has to bring its TOML and mesh files along when it is installed"
+        )
 
 
 def _offer_of(path: Path, read_mesh: ReadMesh) -> CellEmitter:
