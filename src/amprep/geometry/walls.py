@@ -167,8 +167,8 @@ def beside(walls: Walls, gap: float) -> list["Manifold"]:
 def wall_distance(points: Floats, walls: Walls, reach: float, slack: float) -> tuple[Floats, Floats]:
     """Return how far each point ``(n, 3)`` is from the nearest wall on whose outer side it lies, sideways.
 
-    Points less than `slack` mm out of a wall's plane are on neither side of it: they may be on what holds the
-    face below, flush with the wall.
+    Points less than `slack` mm out of a wall's plane are on neither side of it, and walls end `slack` before their
+    lowest and highest corner: what holds the face below may be flush with the wall.
 
     Returns
     -------

@@ -23,7 +23,7 @@ def nearest_walls(
 ) -> None:
     """Find for each point the nearest wall within `reach` on whose outer side it lies, in its horizontal plane.
 
-    Points less than `slack` out of the wall's plane are on neither side.
+    Points less than `slack` out of a wall's plane are on neither side, within `slack` of its ends above or below it.
 
     Points ``(n, 3)`` are sorted by square ``y * nx + x`` of a grid of `side` mm from 0; `first` says where those
     of each square begin. `away` ``(n,)`` comes in as infinity and holds the distance afterwards, `foot` ``(n, 2)``
@@ -33,7 +33,7 @@ def nearest_walls(
     for t in range(corners.shape[0]):
         x_low, x_high = corners[t, :, 0].min() - reach, corners[t, :, 0].max() + reach
         y_low, y_high = corners[t, :, 1].min() - reach, corners[t, :, 1].max() + reach
-        z_low, z_high = corners[t, :, 2].min(), corners[t, :, 2].max()
+        z_low, z_high = corners[t, :, 2].min() + slack, corners[t, :, 2].max() - slack
         for iy in range(max(int(np.floor(y_low / side)), 0), min(int(np.floor(y_high / side)), ny - 1) + 1):
             for ix in range(
                 max(int(np.floor(x_low / side)), 0), min(int(np.floor(x_high / side)), nx - 1) + 1
