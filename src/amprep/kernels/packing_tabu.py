@@ -28,6 +28,9 @@ EVEN, FEWER = 3, 4
 WORK, STARTED, ALONE = 0, 1, 2
 """Places in the cursor: comparisons made; whether exploring has begun, with the last item of its build."""
 
+MOST_A_CALL = 40_000_000
+"""Comparisons after which `sub_heuristic` gives up, some two seconds."""
+
 PENALTY = 0
 """Place in `least`: the least penalty that is not tabu."""
 
@@ -63,8 +66,10 @@ def _meets(axis, p, boxes, x, y, z, placed, j):
 
 
 @njit(cache=True)
-def _best_place(v, build, shapes, room, standing, bins, best, cursor):
+def _best_place(v, build, shapes, room, standing, bins, best, cursor, last_work):
     """Keep in `best` the admissible place of variant v in a build with the most contact (in place).
+
+    Ends early when the work goes beyond `last_work`.
 
     Admissible: a wall or a box touches it below, at the left and at the back, and nothing overlaps. Loops
     run over what touches below (j), at the left (i) and at the back (k), -1 for the wall, and over which of
@@ -83,6 +88,8 @@ def _best_place(v, build, shapes, room, standing, bins, best, cursor):
             q, i = first + (left - 1) % own, (left - 1) // own if left else -1
             x = room[0] if i < 0 else placed[i, 3] - boxes[q, 0]
             cursor[WORK] += 1
+            if cursor[WORK] > last_work:
+                return
             if x < room[0] - PAIR_SLACK or x + shapes.variants[v, 0] > room[3] + PAIR_SLACK + room[SLACK]:
                 continue
             if i >= 0 and not _overlaps(2, z + boxes[q, 2], z + boxes[q, 5], placed, i):
@@ -114,7 +121,8 @@ def sub_heuristic(order, shapes, room, zones, most, trial, bins, best, cursor):
     """Pack the items of `order` where most of their surface touches; return the number of builds used.
 
     An item with no admissible place in any open build starts a new one; more than `most` are not opened,
-    and ``most + 1`` is returned (thesis 2.4, sub-heuristic). `zones` ``(m, 6)`` stand in every build.
+    and ``most + 1`` is returned (thesis 2.4, sub-heuristic), as it is after `MOST_A_CALL` comparisons: what is
+    tried grows with the third power of the boxes in a build. `zones` ``(m, 6)`` stand in every build.
 
     Parameters
     ----------
@@ -123,14 +131,16 @@ def sub_heuristic(order, shapes, room, zones, most, trial, bins, best, cursor):
     trial, bins, best, cursor
         Modified in place; `best` has 6 places.
     """
-    used = 0
+    used, last_work = 0, cursor[WORK] + MOST_A_CALL
     for item in order:
         kind = shapes.kind[item]
         first, last = shapes.first_variant[kind], shapes.first_variant[kind + 1]
         best[0] = -1.0
         for build in range(used):
             for v in range(first, last):
-                _best_place(v, build, shapes, room, zones.shape[0], bins, best, cursor)
+                _best_place(v, build, shapes, room, zones.shape[0], bins, best, cursor, last_work)
+        if cursor[WORK] > last_work:
+            return most + 1
         if best[0] < 0.0:
             if used == most:
                 return most + 1

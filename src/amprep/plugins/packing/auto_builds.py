@@ -10,10 +10,11 @@ from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.bounds import builds_bound
 from amprep.plugins.packing.cover_bound import CoverBound
-from amprep.plugins.packing.extreme_points import Runner, Solution, as_packing
+from amprep.plugins.packing.extreme_points import Runner
 from amprep.plugins.packing.params import AutoParams
 from amprep.plugins.packing.scene import prepare
 from amprep.plugins.packing.search import Search
+from amprep.plugins.packing.solution import Solution, as_packing
 from amprep.plugins.packing.sortings import passes
 
 

@@ -7,9 +7,10 @@ from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.block_building import fill_by_blocks
 from amprep.plugins.packing.block_building_scene import is_of_single_boxes
 from amprep.plugins.packing.bounds import fill_bound
-from amprep.plugins.packing.extreme_points import Runner, Solution, as_packing
+from amprep.plugins.packing.extreme_points import Runner
 from amprep.plugins.packing.params import AutoParams, BlockBuildingParams
 from amprep.plugins.packing.scene import Scene, prepare
+from amprep.plugins.packing.solution import Solution, as_packing
 from amprep.plugins.packing.sortings import Pass, passes
 
 DISTURBANCE = 0.1

@@ -11,9 +11,9 @@ from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.block_building_scene import Whole, whole_scene
 from amprep.plugins.packing.block_building_worker import Filling, Manner, Worker
-from amprep.plugins.packing.extreme_points import Solution, as_packing, value_of
 from amprep.plugins.packing.params import BlockBuildingParams
 from amprep.plugins.packing.scene import Scene, prepare
+from amprep.plugins.packing.solution import Solution, as_packing, value_of
 from amprep.plugins.packing.sortings import Pass
 
 MANNERS = (Manner(), Manner(fill=1.0, power=3, margin=0.0, density=1.0))

@@ -1,41 +1,20 @@
 """The packer `extreme-points`: the best of many sortings, each packed by the compiled kernel."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from amprep.kernels import box_places as records
 from amprep.kernels.extreme_points import pack
 from amprep.model.arrays import Floats
 from amprep.model.control import Report, Stop
-from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
-from amprep.plugins.packing.bounds import builds_bound, fill_bound
+from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.params import ExtremePointsParams
-from amprep.plugins.packing.scene import Scene, placements, prepare
+from amprep.plugins.packing.rows import with_rows
+from amprep.plugins.packing.scene import Scene, prepare
+from amprep.plugins.packing.solution import Solution, as_packing, value_of
 from amprep.plugins.packing.sortings import GRID, Pass, enough_passes, passes
 
 PAUSE = 10_000_000
 """Comparisons between two looks at `stop`, some 20 ms."""
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """What a pass found: per item its build (-1: none), variant and place.
-
-    Attributes
-    ----------
-    rank
-        Smaller for a better one.
-    complete
-        False when it was stopped on its way.
-    """
-
-    plan: Pass
-    rank: tuple[float, ...]
-    complete: bool
-    build: records.Indices
-    variant: records.Indices
-    place: Floats
 
 
 def pack_extreme_points(
@@ -85,7 +64,10 @@ class Runner:
         self.scratch = _scratch(scene)
 
     def run(self, plan: Pass, best: Solution | None, stop: Stop) -> Solution:
-        """Run a pass; it gives up once it needs more builds than `best`, and ends when told to stop."""
+        """Run a pass; it gives up once it needs more builds than `best`, and ends when told to stop.
+
+        Without a `best` what then has no place yet is put into rows, if it can be.
+        """
         n = len(self.scene.kind)
         most = 1 if self.scene.problem.objective == "fill" else n if best is None else int(best.rank[1])
         answer = records.Answer(
@@ -113,7 +95,8 @@ class Runner:
                 break
         complete = code != records.PAUSED or not len(plan.order)
         variant = answer.variant - self.shapes.first_variant[self.scene.kind]
-        return Solution(plan, self._rank(answer), complete, answer.build, variant, answer.place)
+        found = Solution(plan, self._rank(answer), complete, answer.build, variant, answer.place)
+        return found if complete or best is not None else with_rows(self.scene, found)
 
     def _rank(self, answer: records.Answer) -> tuple[float, ...]:
         """Return what is smaller for a better answer."""
@@ -121,50 +104,6 @@ class Runner:
         if self.scene.problem.objective == "fill":
             return (-value_of(self.scene, answer.build), *looks)
         return (float(self.scratch.cursor[records.LEFT]), float(answer.build.max(initial=-1) + 1), *looks)
-
-
-def value_of(scene: Scene, build: records.Indices) -> float:
-    """Return the value of what is placed, fixed items included."""
-    fixed = [placement.item for placement in scene.problem.fixed]
-    return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])
-
-
-def as_packing(scene: Scene, best: Solution, stop_reason: str, *, proved: int | None = None) -> Packing:
-    """Return the solution as a packing, with what is known: the builds it takes are `proved`, or bounded here."""
-    filling = scene.problem.objective == "fill"
-    builds = _builds(scene, best)
-    left = "out of time" if not best.complete else "no room left" if filling else "too large"
-    reasons = {int(i): "too large" for i in np.flatnonzero(scene.too_large)}
-    reasons |= {int(i): left for i in np.flatnonzero(scene.free & (best.build < 0))}
-    bound = fill_bound(scene) if filling else float(builds_bound(scene) if proved is None else proved)
-    reached = value_of(scene, best.build) if filling else float(len(builds))
-    return Packing(
-        builds=builds,
-        unplaced=tuple(Unplaced(i, reasons[i]) for i in sorted(reasons)),
-        bound=bound,
-        status=_status(scene, best, reached, bound),
-        stop_reason=stop_reason,
-    )
-
-
-def _status(scene: Scene, best: Solution, reached: float, bound: float) -> Status:
-    """Return ``optimal`` when the bound is met, ``infeasible`` when an item to be built fits nowhere."""
-    if scene.problem.objective == "fill":
-        return "optimal" if reached >= bound - 1e-9 * abs(bound) else "feasible"
-    if scene.too_large.any():
-        return "infeasible"
-    return "optimal" if best.complete and reached <= bound else "feasible"
-
-
-def _builds(scene: Scene, best: Solution) -> tuple[tuple[Placement, ...], ...]:
-    """Return the builds, the fixed placements first, then by item."""
-    count = max(int(best.build.max(initial=-1)) + 1, 1 if scene.problem.fixed else 0)
-    builds: list[tuple[Placement, ...]] = []
-    for number in range(count):
-        items = np.flatnonzero(best.build == number)
-        placed = placements(scene, items.tolist(), best.variant[items].tolist(), best.place[items])
-        builds.append((*(scene.problem.fixed if number == 0 else ()), *placed))
-    return tuple(builds)
 
 
 def _shapes(scene: Scene) -> records.Shapes:

@@ -4,8 +4,11 @@ import numpy as np
 
 from amprep.model.arrays import Floats
 
-MOST_THRESHOLDS = 200
-"""Lengths tried as p and q, at most: fewer give a weaker bound, but one in time for thousands of sizes."""
+MOST_THRESHOLDS, FEWEST_THRESHOLDS, MANY = 200, 20, 2000
+"""Lengths tried as p and q, at most, and how many there are to choose from when it gets fewer.
+
+Fewer give a weaker bound, but one in time for thousands of sizes.
+"""
 
 
 def l2_bound(size: Floats, room: Floats, gap: float) -> int:
@@ -52,8 +55,9 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
 def _thresholds(length: Floats) -> Floats:
     """Return the different lengths, evenly chosen when they are too many."""
     found = np.unique(length)
-    if len(found) > MOST_THRESHOLDS:
-        found = found[np.linspace(0, len(found) - 1, MOST_THRESHOLDS).astype(np.int64)]
+    most = max(FEWEST_THRESHOLDS, min(MOST_THRESHOLDS, MOST_THRESHOLDS * MANY // max(len(length), 1)))
+    if len(found) > most:
+        found = found[np.linspace(0, len(found) - 1, most).astype(np.int64)]
     return found
 
 

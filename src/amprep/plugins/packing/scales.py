@@ -15,8 +15,8 @@ from amprep.kernels.box_places import Indices
 from amprep.model.arrays import Floats
 
 ROUNDING = 1e-12
-MOST_CUTS = 20
-"""Thresholds tried an axis."""
+MOST_CUTS, FEWEST_CUTS, MANY = 20, 3, 1000
+"""Thresholds tried an axis, and the kinds beyond which they get fewer: many small boxes are bounded by volume."""
 
 MULTIPLES = np.arange(2.0, 7.0)
 """k + 1 of u^(k)."""
@@ -42,8 +42,9 @@ def _cuts(length: Floats) -> Floats:
     cuts = np.concatenate((length, 1.0 - length))
     cuts = cuts[np.unique(np.round(cuts, 12), return_index=True)[1]]
     cuts = cuts[(cuts > 1e-6) & (cuts <= 0.5 + ROUNDING)]
-    if len(cuts) > MOST_CUTS:
-        cuts = cuts[np.linspace(0, len(cuts) - 1, MOST_CUTS).astype(int)]
+    most = max(FEWEST_CUTS, min(MOST_CUTS, MOST_CUTS * MANY // max(len(length), 1)))
+    if len(cuts) > most:
+        cuts = cuts[np.linspace(0, len(cuts) - 1, most).astype(int)]
     return np.asarray(cuts)
 
 

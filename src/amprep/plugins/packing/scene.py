@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class Variant:
     shift: Floats
     home: Floats
 
-    @property
+    @cached_property
     def size(self) -> Floats:
         """The enclosing box, ``(3,)`` mm."""
         return np.asarray(self.hi.max(axis=0))

@@ -8,10 +8,11 @@ from amprep.kernels import box_places as records
 from amprep.kernels import packing_search as kernel
 from amprep.model.arrays import Floats
 from amprep.model.control import Stop
-from amprep.plugins.packing.extreme_points import Runner, Solution
+from amprep.plugins.packing.extreme_points import Runner
 from amprep.plugins.packing.params import AutoParams
 from amprep.plugins.packing.partition import MOST_KINDS, Pool, choose_builds
 from amprep.plugins.packing.scene import Scene
+from amprep.plugins.packing.solution import Solution
 from amprep.plugins.packing.sortings import Pass, passes
 
 PAUSE = 1_000_000

@@ -11,10 +11,15 @@ from amprep.model.arrays import Floats
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packing.bounds import builds_bound
-from amprep.plugins.packing.extreme_points import Runner, Solution, as_packing
+from amprep.plugins.packing.extreme_points import Runner
 from amprep.plugins.packing.params import TabuParams
+from amprep.plugins.packing.rows import best_rows
 from amprep.plugins.packing.scene import Scene, prepare
+from amprep.plugins.packing.solution import Solution, as_packing
 from amprep.plugins.packing.sortings import Pass
+
+MOST_BINS = 20_000_000
+"""Boxes that may be in builds, a build for each item, 48 bytes each."""
 
 PAUSE = 4_000_000
 """Comparisons between two looks at `stop`, some 20 ms."""
@@ -81,9 +86,9 @@ class TabuSearch:
         self._allocate()
         self.current = self._start()
         self._best = self.current.copy()
-        if len(self.items) and params.start == "separate":
+        if len(self.items):
             # a solution to fall back on should the time be short; the search itself starts as in the thesis
-            packed = self._heuristic()
+            packed = (self._heuristic() if params.start == "separate" else None) or self._rows()
             self._best = packed if packed.build.max() < self._best.build.max() else self._best
         self.target = self._by_filling()[0] if len(self.items) else 0
 
@@ -172,20 +177,32 @@ class TabuSearch:
     def _start(self) -> State:
         n = len(self.scene.kind)
         self.current = State(np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3)))
-        if self.params.start == "heuristic" and len(self.items):
-            return self._heuristic()
-        self._separate(self.items)
-        return self.current
+        packed = self._heuristic() if self.params.start == "heuristic" and len(self.items) else None
+        if packed is None:
+            self._separate(self.items)
+        return packed or self.current
 
-    def _heuristic(self) -> State:
-        """Return the sub-heuristic's packing of everything."""
-        n = len(self.items)
-        bins = kernel.Bins(np.zeros((n, self.bins.placed.shape[1], 6)), np.zeros(n, np.int64))
+    def _heuristic(self) -> State | None:
+        """Return the sub-heuristic's packing of everything, None where that takes too long."""
+        n, boxes = len(self.items), self.bins.placed.shape[1]
+        if n * boxes > MOST_BINS:
+            return None
+        bins = kernel.Bins(np.zeros((n, boxes, 6)), np.zeros(n, np.int64))
         self.trial.build[:] = -1
-        kernel.sub_heuristic(
+        used = kernel.sub_heuristic(
             self.items, self.shapes, self.room, self.zones, n, self.trial, bins, self.place, self.cursor
         )
+        if used > n:
+            return None
         return State(self.trial.build.copy(), self.trial.variant.copy(), self.trial.place.copy())
+
+    def _rows(self) -> State:
+        """Return rows of everything; with zones, where they cannot be, what the search starts from."""
+        if len(self.zones):
+            return self.current.copy()
+        rows = best_rows(self.scene, self.items)
+        first = self.shapes.first_variant[self.scene.kind]
+        return State(rows.build, np.where(rows.build >= 0, rows.variant + first, 0), rows.place)
 
     def _renumber(self) -> None:
         """Give the builds the numbers from 0 on, without gaps."""
