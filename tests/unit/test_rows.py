@@ -44,17 +44,17 @@ def pack_without_time(packer, task):
 
 
 @pytest.mark.parametrize(
-    ("packer", "rules"),
+    ("packer", "count", "rules"),
     [
-        ("extreme-points", {}),
-        ("extreme-points", {"clearance": 0.5}),
-        ("auto", {"stacking": False}),
-        ("tabu", {"clearance": 0.5}),
+        ("extreme-points", 800, {}),
+        ("extreme-points", 800, {"clearance": 0.5}),
+        ("auto", 800, {"stacking": False}),
+        ("tabu", 200, {"clearance": 0.5}),
     ],
     ids=str,
 )
-def test_a_packer_without_any_time_places_everything(packer, rules):
-    packing = pack_without_time(packer, small_boxes(800, **rules))
+def test_a_packer_without_any_time_places_everything(packer, count, rules):
+    packing = pack_without_time(packer, small_boxes(count, **rules))
     assert packing.unplaced == ()
     assert len(packing.builds) <= 2 * packing.bound + 1
 
