@@ -9,7 +9,7 @@ from manifold3d import Manifold
 from amprep.checks.gap import check_gap
 from amprep.geometry.overhangs import find_overhangs
 from amprep.geometry.sampling import sample_triangles
-from amprep.geometry.walls import Walls, beside, near, wall_distance, walls_of
+from amprep.geometry.walls import Walls, beside, occupied, wall_distance, walls_of
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, SupportBody
 
 GAP = 0.5
@@ -128,10 +128,10 @@ def test_no_triangle_that_is_near_a_box_is_overlooked():
     aside = np.array([GAP, GAP, 0.0])
     low, high = corners.min(axis=1) - aside, corners.max(axis=1) + aside
     meets = ((low[:, None] <= hi) & (high[:, None] >= lo)).all(axis=2).any(axis=1)
-    found = near(corners, GAP, lo, hi)
+    found = occupied(lo, hi).near(corners, GAP)
     assert (found >= meets).all()
     assert found.sum() < 0.8 * len(corners)
-    assert not near(corners, GAP, lo[:0], hi[:0]).any()
+    assert not occupied(lo[:0], hi[:0]).near(corners, GAP).any()
 
 
 def test_points_on_triangles_leave_no_place_farther_than_their_spacing():

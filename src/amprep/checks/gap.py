@@ -7,7 +7,7 @@ from amprep.checks.placed import TOLERANCE
 from amprep.checks.violation import Violation
 from amprep.geometry.inside import inside
 from amprep.geometry.sampling import sample_triangles
-from amprep.geometry.walls import Walls, near, wall_distance, walls_of
+from amprep.geometry.walls import Walls, occupied, wall_distance, walls_of
 from amprep.model.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
@@ -16,6 +16,9 @@ PROMISE = "gap to walls"
 
 SPACING = 0.3
 """mm between the points of a support that are judged, at most; the gap itself if that is less."""
+
+_GRANT = 0.005
+"""mm; along a nearly level wall a place that a file rounds up or down moves that far sideways."""
 
 _GRANT_DEG = 0.02
 """Faces this much steeper than the threshold still count as held, so that rounding in a file breaks no promise."""
@@ -41,10 +44,11 @@ def check_gap(build: Build, stop: Stop) -> list[Violation]:
 
 def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Violation]:
     """Judge one support beside one part."""
-    reach = build.settings.gap - 2.0 * TOLERANCE
+    reach = build.settings.gap - _GRANT
     walls = _walls(placed, build, stood_on=placed in [build.parts[index] for index in body.parts])
     corners = body.mesh.vertices[body.mesh.triangles]
-    corners = corners[near(corners, reach, walls.corners.min(axis=1), walls.corners.max(axis=1))]
+    by_walls = occupied(walls.corners.min(axis=1), walls.corners.max(axis=1))
+    corners = corners[by_walls.near(corners, reach)]
     points = sample_triangles(corners, min(SPACING, build.settings.gap))
     for up in (0.0, 2.0 * TOLERANCE):  # what is in the part, or right below a face, is contact
         points = points[~inside(points + (0.0, 0.0, up), placed.mesh.vertices, placed.mesh.triangles)]

@@ -22,7 +22,8 @@ _UP = 1e-3
 _CORNERS = 9
 """Of the polygon around the half disc that a wall is swept by: at most 2 % farther out than its radius."""
 
-_MOST_CELLS = 2_000_000
+_MOST_CELLS, _LONGEST, _FINEST = 2_000_000, 2000, 0.5
+"""Cells of a grid over all and along its longest side; mm of a cell."""
 
 
 class Walls(NamedTuple):
@@ -99,55 +100,57 @@ def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDA
     return np.array(found).reshape(-1, 3, 3), np.array(owner, np.int64)
 
 
-def near(corners: Floats, distance: float, lo: Floats, hi: Floats) -> Bools:
-    """Tell which triangles ``(n, 3, 3)`` may have one of the boxes `lo`, `hi` ``(k, 3)`` within `distance` mm sideways.
+class Occupied(NamedTuple):
+    """The cells of a grid that boxes lie in.
 
-    Of the others it is certain that they have none.
+    Attributes
+    ----------
+    origin, side
+        Corner ``(3,)`` of the grid and size of a cell, mm.
+    before
+        ``(nx + 1, ny + 1, nz + 1)`` how many cells that are taken lie before each corner of the grid, on all axes.
     """
-    if not len(corners) or not len(lo):
-        return np.zeros(len(corners), np.bool_)
-    aside = np.array([distance, distance, 0.0])
-    low, high = corners.min(axis=1) - aside, corners.max(axis=1) + aside
-    origin, extent = lo.min(axis=0), np.maximum(np.ptp([lo.min(axis=0), hi.max(axis=0)], axis=0), 1e-6)
-    side = max(float(np.cbrt(extent.prod() / _MOST_CELLS)), float(extent.max()) / 2000, distance, 0.5)
+
+    origin: Floats
+    side: float
+    before: NDArray[np.int64]
+
+    def near(self, corners: Floats, distance: float) -> Bools:
+        """Tell which triangles ``(n, 3, 3)`` may have one of the boxes within `distance` mm sideways.
+
+        Of the others it is certain that they have none.
+        """
+        aside = np.array([distance, distance, 0.0])
+        shape = np.array(self.before.shape) - 1
+        first = np.floor((corners.min(axis=1) - aside - self.origin) / self.side)
+        behind = np.floor((corners.max(axis=1) + aside - self.origin) / self.side) + 1
+        first, behind = (np.clip(each, 0, shape).astype(np.int64) for each in (first, behind))
+        found = np.zeros(len(corners), np.int64)
+        for end in np.ndindex(2, 2, 2):
+            sign = 1 - 2 * ((3 - sum(end)) % 2)
+            found += sign * self.before[tuple(np.where(end, behind, first).T)]
+        return np.asarray(found > 0)
+
+
+def occupied(lo: Floats, hi: Floats) -> Occupied:
+    """Lay a grid over boxes from `lo` to `hi` ``(k, 3)`` mm, and mark the cells that they lie in."""
+    if not len(lo):
+        return Occupied(np.zeros(3), 1.0, np.zeros((2, 2, 2), np.int64))
+    origin = lo.min(axis=0)
+    extent = np.maximum(hi.max(axis=0) - origin, _FINEST)
+    side = max(float(np.cbrt(extent.prod() / _MOST_CELLS)), float(extent.max()) / _LONGEST, _FINEST)
     shape = np.floor(extent / side).astype(np.int64) + 1
-    taken = _summed(_counted(_cells(lo, origin, side, shape), _cells(hi, origin, side, shape), shape) > 0)
-    first, last = _cells(low, origin, side, shape), _cells(high, origin, side, shape)
-    meets = (low <= origin + extent).all(axis=1) & (high >= origin).all(axis=1)
-    return np.asarray(meets & (_within(taken, first, last + 1) > 0))
-
-
-def _cells(points: Floats, origin: Floats, side: float, shape: NDArray[np.int64]) -> NDArray[np.int64]:
-    return np.clip(np.floor((points - origin) / side).astype(np.int64), 0, shape - 1)
-
-
-def _counted(
-    first: NDArray[np.int64], last: NDArray[np.int64], shape: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Return how many boxes, from cell `first` to cell `last`, cover each cell of a grid."""
-    change = np.zeros(tuple(shape + 1), np.int64)
-    for corner in np.ndindex(2, 2, 2):
-        sign = 1 - 2 * (sum(corner) % 2)
-        np.add.at(change, tuple(np.where(corner, last + 1, first).T), sign)
-    return change.cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)[:-1, :-1, :-1]
-
-
-def _summed(taken: Bools) -> NDArray[np.int64]:
-    """Return for each corner of the grid how many taken cells lie before it on all axes."""
-    total = np.zeros(np.array(taken.shape) + 1, np.int64)
-    total[1:, 1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1).cumsum(axis=2)
-    return total
-
-
-def _within(
-    total: NDArray[np.int64], first: NDArray[np.int64], behind: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Return how many taken cells lie in each range, from the sums of `_summed`."""
-    found = np.zeros(len(first), np.int64)
-    for corner in np.ndindex(2, 2, 2):
-        sign = 1 - 2 * ((3 - sum(corner)) % 2)
-        found += sign * total[tuple(np.where(corner, behind, first).T)]
-    return found
+    first, last = (
+        np.clip(np.floor((each - origin) / side), 0, shape - 1).astype(np.int64) for each in (lo, hi)
+    )
+    change = np.zeros(int((shape + 1).prod()))
+    for end in np.ndindex(2, 2, 2):
+        place = np.ravel_multi_index(tuple(np.where(end, last + 1, first).T), tuple(shape + 1))
+        change += (1 - 2 * (sum(end) % 2)) * np.bincount(place, minlength=len(change))
+    covers = change.reshape(shape + 1).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)[:-1, :-1, :-1]
+    before = np.zeros(shape + 1, np.int64)
+    before[1:, 1:, 1:] = (covers > 0.5).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
+    return Occupied(origin, side, before)
 
 
 def beside(walls: Walls, gap: float) -> list["Manifold"]:

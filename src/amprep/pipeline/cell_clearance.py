@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from amprep.geometry.cell_solids import arrays_of
-from amprep.geometry.walls import beside, near, walls_of
+from amprep.geometry.walls import beside, occupied, walls_of
 from amprep.pipeline.support_layout import SupportLayout
 
 if TYPE_CHECKING:
@@ -30,9 +30,8 @@ class Clearance:
 
         points, triangles = arrays_of(solid)
         corners = points[triangles]
-        lo, hi = corners.min(axis=1), corners.max(axis=1)
+        taken = occupied(corners.min(axis=1), corners.max(axis=1))
         cutters: list[Manifold] = []
         for walls in self._walls:
-            close = walls.chosen(near(walls.corners, self._gap, lo, hi))
-            cutters += beside(close, self._gap)
+            cutters += beside(walls.chosen(taken.near(walls.corners, self._gap)), self._gap)
         return solid - Manifold.batch_boolean(cutters, OpType.Add) if cutters else solid
