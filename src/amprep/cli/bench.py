@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
+from amprep.cli.bench_merging import merging
 from amprep.cli.bench_support_volume import support_volume
 from amprep.cli.bench_supports import supports
 from amprep.errors import InputError
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True, help="Benchmarks: rerun published instances; every answer is judged anew."
 )
+app.command("merging")(merging)
 app.command("supports")(supports)
 app.command("support-volume")(support_volume)
 

@@ -1,7 +1,7 @@
 """Unite cells of all directions on arrays: each pattern of cells that share a cube once, the cubes side to side."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,8 +66,10 @@ class _Soup(NamedTuple):
         How many these are.
     shared
         ``(s, 3)`` steps of the lattice from the grid's origin; several at each place.
-    closed, rim
-        Triangles of inner points alone, and the others.
+    triangles, closed
+        Those of inner points alone come first, so many; there is room for more.
+    near, rim
+        Triangles with one shared corner, and with more.
     splits
         ``(r, 3)`` corners: edges and what they pass through.
     """
@@ -75,9 +77,29 @@ class _Soup(NamedTuple):
     points: Floats
     inner: int
     shared: Ints
-    closed: Ints
+    triangles: NDArray[np.int32]
+    closed: int
+    near: Ints
     rim: Ints
     splits: Ints
+
+
+def join_cells(
+    pieces: Pieces, template: Ints, square: Ints, shift: Ints, origin: Floats, size: Floats
+) -> tuple[Floats, Ints] | None:
+    """Return the union of cells as one closed mesh; None where it cannot be made on arrays.
+
+    Cells are cut where they pass from one cube of the grid into the next, what shares a cube is united, each
+    pattern of it once, and sides that face each other keep what the other does not cover.
+
+    Parameters
+    ----------
+    template, square, shift
+        As for `fill_cubes`.
+    origin, size
+        ``(3,)`` mm, of the grid and of its cubes.
+    """
+    return join_cubes(pieces, fill_cubes(pieces, template, square, shift), origin, size)
 
 
 def fill_cubes(pieces: Pieces, template: Ints, square: Ints, shift: Ints) -> Cubes:
@@ -129,9 +151,10 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
     label, count = label_equal_rows(soup.shared)
     shared = np.empty((count, 3), np.int64)
     shared[label] = soup.shared
-    rim, outer = soup.rim, soup.rim >= inner
-    rim[outer] = (inner + label)[rim[outer] - inner]
-    rim = _at_splits(rim, inner + label[soup.splits - inner], inner + count)
+    for triangles in (soup.near, soup.rim):
+        outer = triangles >= inner
+        triangles[outer] = (inner + label)[triangles[outer] - inner]
+    rim = _at_splits(soup.rim, inner + label[soup.splits - inner], inner + count)
     rim = _at_lines(rim, shared, inner)
     rim = rim[~degenerate(rim)]
     crowded = crowded_ends(rim, inner)
@@ -139,11 +162,22 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
         return None
     points = soup.points
     points[inner : inner + count] = origin + shared * (size / LATTICE)
-    added, rim = part_at(points[: inner + count], rim, crowded)
+    added, rim = part_at(points[: inner + count], np.concatenate([soup.near, rim]), crowded)
     used = np.zeros(inner + count + len(added), np.bool_)
-    used[:inner] = used[rim] = True
+    used[rim] = True
+    number = inner + np.cumsum(used[inner:]) - 1
+    outer = rim >= inner
+    rim[outer] = number[rim[outer] - inner]
     rest = np.concatenate([points[inner : inner + count], added])[used[inner:]]
-    return np.concatenate([points[:inner], rest]), np.concatenate([soup.closed, (np.cumsum(used) - 1)[rim]])
+    return _appended(points, inner, rest), _appended(soup.triangles, soup.closed, rim)
+
+
+def _appended(room: NDArray[Any], count: int, rows: NDArray[Any]) -> NDArray[Any]:
+    """Put rows after the first ones, in place where there is room."""
+    if count + len(rows) > len(room):
+        return np.concatenate([room[:count], rows])
+    room[count : count + len(rows)] = rows
+    return room[: count + len(rows)]
 
 
 def _face(pieces: Pieces, cubes: Cubes) -> _Facing:
@@ -183,26 +217,32 @@ def _expanded(pieces: Pieces, cubes: Cubes, facing: _Facing, origin: Floats, siz
     first = int(inner[-1])
     room = sum((len(piece.points) - piece.inner) * n for piece, n in zip(made, copies, strict=True))
     room += sum(len(seam.corners) for seam in seams)
-    points, closed = np.empty((first + room, 3)), np.empty((triangles[-1], 3), np.int64)
-    shared, rim = [], []
+    points = np.empty((first + room, 3))
+    closed = int(triangles[-1])
+    all_ = sum(sum(map(len, piece.parts)) * n for piece, n in zip(made, copies, strict=True))
+    faces = np.empty((all_ + sum(len(seam.triangles) for seam in seams), 3), np.int32)
+    shared, near, rim = [], [], []
     order = np.split(np.argsort(which, kind="stable"), np.cumsum(copies)[:-1])
     for number, (piece, cube) in enumerate(zip(made, order, strict=True)):
         place, inside, sides = cubes.place[cube], piece.points[: piece.inner], piece.points[piece.inner :]
         into = points[inner[number] : inner[number + 1]].reshape(len(cube), -1, 3)
         np.add((inside * (size / LATTICE))[None], (origin + place * size)[:, None], out=into)
         starts = inner[number] + piece.inner * np.arange(len(cube))
-        faces = closed[triangles[number] : triangles[number + 1]].reshape(len(cube), -1, 3)
-        np.add(piece.parts[0][None], starts[:, None, None], out=faces)
+        into = faces[triangles[number] : triangles[number + 1]].reshape(len(cube), -1, 3)
+        np.add(piece.parts[0][None].astype(np.int32), starts[:, None, None].astype(np.int32), out=into)
         shared.append((sides[None] + place[:, None] * LATTICE).reshape(-1, 3))
         both = np.column_stack([starts, first - piece.inner + len(sides) * np.arange(len(cube))])
-        rim.append(_copied(piece.parts[1], piece.inner, both))
-        rim += [_copied(piece.parts[2 + side], piece.inner, both[facing.keep[cube, side]]) for side in SIDES]
+        near.append(_copied(piece.parts[1], piece.inner, both))
+        rim.append(_copied(piece.parts[2], piece.inner, both))
+        rim += [_copied(piece.parts[3 + side], piece.inner, both[facing.keep[cube, side]]) for side in SIDES]
         first += len(sides) * len(cube)
     return _Soup(
         points,
         int(inner[-1]),
         np.concatenate([*shared, *(seam.corners for seam in seams)]),
+        faces,
         closed,
+        np.concatenate(near),
         np.concatenate([*rim, *(seam.triangles + first for seam in seams)]),
         np.concatenate([np.empty((0, 3), np.int64), *(seam.splits + first for seam in seams)]),
     )
@@ -269,20 +309,23 @@ def _at_lines(triangles: Ints, shared: Ints, first: int) -> Ints:
         others = [(axis + 1) % 3, (axis + 2) % 3]
         here = np.flatnonzero(used & on_plane[:, others].all(axis=1))
         order = here[np.lexsort((shared[here, axis], *shared[here][:, others].T))]
-        rank = np.full(first + len(shared), -1)
-        rank[first + order] = np.arange(len(order))
-        line = np.full(first + len(shared), -1)
+        if not len(order):
+            continue
+        rank, line = np.full(len(shared), -1), np.full(len(shared), -1)
+        rank[order] = np.arange(len(order))
         new = (shared[order[1:]][:, others] != shared[order[:-1]][:, others]).any(axis=1)
-        line[first + order] = np.cumsum(np.concatenate([[0], new])) if len(order) else 0
+        line[order] = np.cumsum(np.concatenate([[0], new]))
 
         def middle(start: Ints, end: Ints, rank: Ints = rank, line: Ints = line, order: Ints = order) -> Ints:
+            outer = np.minimum(start, end) >= first
+            start, end = np.maximum(start - first, 0), np.maximum(end - first, 0)
             between = np.abs(rank[start] - rank[end]) > 1
-            along = (line[start] == line[end]) & (line[start] >= 0) & between
+            along = outer & (line[start] == line[end]) & (line[start] >= 0) & between
             half = (rank[start] + rank[end]) // 2
             return np.where(along, first + order[np.where(along, half, 0)], -1)
 
-        if len(order):
-            triangles = _halved_until_none(triangles, line >= 0, middle)
+        hot = np.concatenate([np.zeros(first, np.bool_), line >= 0])
+        triangles = _halved_until_none(triangles, hot, middle)
     return triangles
 
 

@@ -1,20 +1,20 @@
 """What cubes of the grid hold: cells cut where they pass from one cube to the next, united once for each pattern."""
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.geometry.cell_edges import crowded_ends
 from amprep.geometry.cell_sides import Seam, seam
 from amprep.geometry.cell_solids import arrays_of, union
 from amprep.geometry.cell_tiling import plate
-from amprep.geometry.merging import count_edges, edges_match
+from amprep.geometry.manifolds import as_manifold
+from amprep.geometry.merging import count_edges
 from amprep.geometry.welding import cancel_opposite, label_equal_rows
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,7 +41,8 @@ class Piece(NamedTuple):
     inner
         How many these are.
     parts
-        Triangles: of inner points alone, with some on a side, then those that lie in each of the six sides.
+        Triangles: of inner points alone, with one other corner, with more, then those that lie in each of the
+        six sides.
     outlines
         Number of the outline of what lies in each side; 0 where nothing does. The same on opposite sides
         means that the same is there.
@@ -69,6 +70,7 @@ class Pieces:
         self._buckets: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
         self._items: dict[tuple[int, ...], int] = {}
         self._meshes: list[Arrays] = []
+        self._solid = cache(lambda item: as_manifold(*self._meshes[item]))
         self._number: dict[bytes, int] = {}
         self._outline_number: dict[bytes, int] = {b"": 0}
         self._outlines: list[Ints] = [np.empty((0, 2, 2), np.int64)]
@@ -102,7 +104,7 @@ class Pieces:
         axis = 0 if shift[0] else 1
         outward = np.zeros(3)
         outward[axis] = shift[axis]
-        beyond, within = _solid(moved, triangles).split_by_plane(
+        beyond, within = as_manifold(moved, triangles).split_by_plane(
             outward.tolist(), LATTICE if shift[axis] > 0 else 0
         )
         (near, faces), (far, far_faces) = arrays_of(within), arrays_of(beyond)
@@ -140,11 +142,11 @@ class Pieces:
         """Number the piece that is the union of ascending items."""
         key = items.tobytes()
         if key not in self._number:
-            meshes = [self._meshes[item] for item in items]
-            if len(meshes) > 1:
-                meshes = [arrays_of(union([_solid(*mesh) for mesh in meshes if len(mesh[1])]))]
+            mesh = self._meshes[items[0]]
+            if len(items) > 1:
+                mesh = arrays_of(union([self._solid(item) for item in items.tolist()]))
             self._number[key] = len(self.made)
-            self.made.append(self._sorted_out(*meshes[0]))
+            self.made.append(self._sorted_out(*mesh))
         return self._number[key]
 
     def _sorted_out(self, points: Floats, triangles: Ints) -> Piece:
@@ -157,20 +159,23 @@ class Pieces:
         used, where = np.unique(triangles, return_inverse=True)
         merged, triangles = merged[used], where.reshape(-1, 3)
         outer = ((merged == 0) | (merged == LATTICE)).any(axis=1)
-        edges, uses, _ = count_edges(triangles)
-        outer[edges[uses > 2]] = True  # so that solids which touch in an edge are parted there
+        crowded = crowded_ends(triangles)
+        outer[crowded if crowded is not None else []] = True  # so that solids which touch there are parted
         order = np.argsort(outer, kind="stable")
         place = np.empty(len(order), np.int64)
         place[order] = np.arange(len(order))
         merged, triangles, inner = merged[order], place[triangles], int((~outer).sum())
         side = _sides(merged[triangles])
-        rim = (side < 0) & (triangles >= inner).any(axis=1)
-        parts = (triangles[(side < 0) & ~rim], triangles[rim], *(triangles[side == each] for each in SIDES))
-        outlines = tuple(self._outlined(merged, parts[2 + each], each) for each in SIDES)
+        outer_corners = (triangles >= inner).sum(axis=1)
+        kind = np.where(side < 0, np.minimum(outer_corners, 2), 3 + side)
+        parts = tuple(triangles[kind == each] for each in range(9))
+        outlines = tuple(self._outlined(merged, parts[3 + each], each) for each in SIDES)
         return Piece(merged, inner, parts, outlines)
 
     def _outlined(self, points: Ints, triangles: Ints, side: int) -> int:
         """Number the outline of triangles in a side, seen against its axis."""
+        if not len(triangles):
+            return 0
         edges, _, balance = count_edges(triangles)
         turned = (balance > 0) == (side % 2 == 1)
         edges = np.where(turned[:, None], edges, edges[:, ::-1])[balance != 0]
@@ -195,14 +200,3 @@ def _sides(corners: Ints) -> Ints:
     flush = np.stack([(corners == 0).all(axis=1), (corners == LATTICE).all(axis=1)], axis=2)
     flush = flush.reshape(len(corners), 6)
     return np.where(flush.any(axis=1), flush.argmax(axis=1), -1)
-
-
-def _solid(points: Floats, triangles: Ints) -> "Manifold":
-    """Return a solid none of whose corners may go: each triangle counts as a face of its own."""
-    from manifold3d import Manifold, Mesh64
-
-    if not edges_match(triangles):
-        return Manifold()
-    corners = np.array(points, np.float64, order="C")
-    faces = np.arange(len(triangles), dtype=np.uint64)
-    return Manifold(Mesh64(corners, triangles.astype(np.uint64, order="C"), face_id=faces))

@@ -68,6 +68,7 @@ def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
     balance
         ``(e,)`` how many more run along it from the lower to the higher vertex than back; 0 where they match.
     """
+    triangles = triangles.astype(np.int64, copy=False)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     low, high = np.minimum(start, end), np.maximum(start, end)
     base = int(triangles.max(initial=0)) + 1
@@ -78,6 +79,7 @@ def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
 
 def edges_match(triangles: Ints) -> bool:
     """Tell whether every edge is run along as often one way as the other."""
+    triangles = triangles.astype(np.int64, copy=False)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     base = int(triangles.max(initial=0)) + 1
     there, back = start < end, start > end

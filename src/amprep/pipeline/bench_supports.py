@@ -167,7 +167,7 @@ def _run(
     start = time.monotonic()
     plan = _route(host, listed, problem, seed, {})
     took = time.monotonic() - start
-    peak = _peak_mb()
+    peak = peak_mb()
     wrong = check_plan(problem, plan)
     if blank.nodes <= _MOST_FOR_RAISES:
         wrong += check_raises(problem, plan)
@@ -201,7 +201,7 @@ def _run_rival(rival: Rival, problem: SupportProblem, ours: Result, blank: Resul
     flow, cost, took = rival.solve(problem)
     same = flow == ours.flow and cost in (None, ours.cost)
     times = took / ours.seconds if ours.seconds else None
-    peak = _peak_mb()
+    peak = peak_mb()
     return replace(blank, seconds=took, flow=flow, cost=cost, peak_mb=peak, validated=same, times_ours=times)
 
 
@@ -249,7 +249,7 @@ def _forget_peak() -> None:
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 
 
-def _peak_mb() -> int | None:
+def peak_mb() -> int | None:
     """Return the greatest memory of this process since the last reset; None where the system does not tell."""
     with suppress(OSError):
         status = Path("/proc/self/status").read_text(encoding="ascii")

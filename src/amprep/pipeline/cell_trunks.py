@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.geometry.cell_junctions import fill_cubes, join_cubes
+from amprep.geometry.cell_junctions import join_cells
 from amprep.geometry.cell_pieces import Pieces
 from amprep.geometry.cell_prisms import join_prisms
 from amprep.geometry.cell_solids import is_solid
@@ -94,9 +94,7 @@ def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: flo
         template = np.concatenate([template, np.full(len(below), lid)])
         square, shift = np.concatenate([square, below]), np.concatenate([shift, np.zeros_like(below[:, :2])])
     if len(template):
-        joined = join_cubes(
-            emitted.pieces, fill_cubes(emitted.pieces, template, square, shift), frame.origin, size
-        )
+        joined = join_cells(emitted.pieces, template, square, shift, frame.origin, size)
         yield from [joined] if joined else _by_direction(emitted.pieces, template, square, shift, frame)
     for index in np.flatnonzero(chosen & ~emitted.tiles):
         one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
