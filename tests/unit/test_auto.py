@@ -4,21 +4,15 @@ import numpy as np
 import pytest
 
 from amprep.checks.packing import check_packing
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packing.auto import pack_auto
 from amprep.plugins.packing.extreme_points import pack_extreme_points
 from amprep.plugins.packing.params import AutoParams, ExtremePointsParams
 from amprep.plugins.packing.search import _nothing_seen
 
-
-def problem(sizes, room=(10, 10, 10), orientations=None, **rules):
-    allowed = orientations or Orientations()
-    items = tuple(
-        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), float(np.prod(s)), allowed)
-        for i, s in enumerate(sizes)
-    )
-    return PackingProblem(items, BuildVolume(np.array(room, float)), **rules)
+from .boxes import boxes_problem as problem
+from .boxes import cut
 
 
 def run(task, stop=None, **params):
@@ -27,17 +21,6 @@ def run(task, stop=None, **params):
     )
     assert check_packing(task, packing) == []
     return packing
-
-
-def cut(rng, size, count):
-    """Boxes that fill a room: the greatest is cut in two until there are `count`."""
-    boxes = [list(size)]
-    while len(boxes) < count:
-        box = boxes.pop(int(np.argmax([np.prod(b) for b in boxes])))
-        axis = int(np.argmax(box))
-        at = int(rng.integers(1, box[axis]))
-        boxes += [[*box[:axis], at, *box[axis + 1 :]], [*box[:axis], box[axis] - at, *box[axis + 1 :]]]
-    return boxes
 
 
 def test_three_rooms_cut_up_without_waste_are_put_together_again():

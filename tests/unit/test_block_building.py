@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amprep.checks.packing import check_packing
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packing.block_building import fill_by_blocks, pack_block_building
 from amprep.plugins.packing.block_building_blocks import build_blocks
@@ -16,23 +16,14 @@ from amprep.plugins.packing.block_building_scene import whole_scene
 from amprep.plugins.packing.params import BlockBuildingParams
 from amprep.plugins.packing.scene import prepare
 
+from .boxes import boxes_problem, cut
+
 TURNS = Orientations("list", axis_rotations())
 
 
-def problem(sizes, room=(10, 10, 10), *, values=None, turns=False, **rules):
-    """Boxes to fill one room; the value of a box is its volume unless given."""
-    values = [float(np.prod(s)) for s in sizes] if values is None else values
-    items = tuple(
-        Item(
-            i,
-            0,
-            Boxes(np.zeros((1, 3)), np.array([s], float)),
-            float(v),
-            TURNS if turns else Orientations(),
-        )
-        for i, (s, v) in enumerate(zip(sizes, values, strict=True))
-    )
-    return PackingProblem(items, BuildVolume(np.array(room, float)), "fill", **rules)
+def problem(sizes, room=(10, 10, 10), *, turns=False, **rules):
+    """Boxes to fill one room."""
+    return boxes_problem(sizes, room, orientations=TURNS if turns else None, objective="fill", **rules)
 
 
 def run(task, stop=None, **params):
@@ -49,17 +40,6 @@ def run(task, stop=None, **params):
 
 def value(task, packing):
     return sum(task.items[p.item].value for build in packing.builds for p in build)
-
-
-def cut(rng, size, count):
-    """Boxes that fill a room: the greatest is cut in two until there are `count`."""
-    boxes = [list(size)]
-    while len(boxes) < count:
-        box = boxes.pop(int(np.argmax([np.prod(b) for b in boxes])))
-        axis = int(np.argmax(box))
-        at = int(rng.integers(1, box[axis]))
-        boxes += [[*box[:axis], at, *box[axis + 1 :]], [*box[:axis], box[axis] - at, *box[axis + 1 :]]]
-    return boxes
 
 
 @pytest.mark.parametrize("count", [5, 12, 20])

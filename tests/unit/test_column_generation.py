@@ -19,12 +19,11 @@ from amprep.plugins.packing.ip import pack_ip
 from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpParams
 from amprep.plugins.packing.scene import prepare
 
+from .boxes import boxes_problem
+
 
 def problem(sizes, room=4, **rules):
-    items = tuple(
-        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([size], float)), 1.0) for i, size in enumerate(sizes)
-    )
-    return PackingProblem(items, BuildVolume(np.full(3, float(room))), "builds", **rules)
+    return boxes_problem(sizes, room, **rules)
 
 
 def run(given_problem, stop=None, **params):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amprep.kernels.box_relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_together, relation_scratch
-from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
+from amprep.model import Stop, silent
 from amprep.pipeline.bench_instances import mpv_instance
 from amprep.plugins.packing.auto import pack_auto
 from amprep.plugins.packing.bounds import builds_bound
@@ -19,13 +19,7 @@ from amprep.plugins.packing.relaxed_boxes import relaxed_boxes
 from amprep.plugins.packing.scales import heaviest_scale, heavy_scales, measures
 from amprep.plugins.packing.scene import prepare
 
-
-def problem(sizes, room=(10, 10, 10), **rules):
-    items = tuple(
-        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), float(np.prod(s)))
-        for i, s in enumerate(sizes)
-    )
-    return PackingProblem(items, BuildVolume(np.array(room, float)), **rules)
+from .boxes import boxes_problem as problem
 
 
 def proved(task, work=50e6):

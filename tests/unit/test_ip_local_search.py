@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amprep.checks.packing import check_packing
-from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
+from amprep.model import Stop, silent
 from amprep.plugins.packing.extreme_points import pack_extreme_points
 from amprep.plugins.packing.ip import pack_ip
 from amprep.plugins.packing.ip_arrangement import arrangement_of
@@ -19,13 +19,11 @@ from amprep.plugins.packing.ip_solver import solve
 from amprep.plugins.packing.params import ExtremePointsParams
 from amprep.plugins.packing.scene import prepare
 
+from .boxes import boxes_problem
+
 
 def problem(sizes, room):
-    items = tuple(
-        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([size], float)), float(np.prod(size)))
-        for i, size in enumerate(sizes)
-    )
-    return PackingProblem(items, BuildVolume(np.full(3, float(room))), "fill")
+    return boxes_problem(sizes, room, objective="fill")
 
 
 def value(given_problem, packing):

@@ -24,25 +24,10 @@ from amprep.model import (
 from amprep.plugins.packing.extreme_points import pack_extreme_points
 from amprep.plugins.packing.params import ExtremePointsParams
 
+from .boxes import boxes_problem
+
 QUARTER_TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 Z90 = Orientations(matrices=np.array([np.eye(3), QUARTER_TURN]))
-
-
-def boxes_problem(sizes, room, *, values=None, orientations=None, **rules):
-    """Each size is an item of one box; `room` is three sizes or a build volume."""
-    values = values or [float(np.prod(size)) for size in sizes]
-    items = tuple(
-        Item(
-            i,
-            0,
-            Boxes(np.zeros((1, 3)), np.array([size], dtype=float)),
-            value,
-            orientations or Orientations(),
-        )
-        for i, (size, value) in enumerate(zip(sizes, values, strict=True))
-    )
-    space = room if isinstance(room, BuildVolume) else BuildVolume(np.array(room, dtype=float))
-    return PackingProblem(items, space, **rules)
 
 
 def pack(problem, *, params=None, stop=None, report=silent):

@@ -4,19 +4,12 @@ import numpy as np
 import pytest
 
 from amprep.checks.packing import check_packing
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
+from amprep.model import Orientations, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packing.params import SweepParams
 from amprep.plugins.packing.sweep import pack_sweep
 
-
-def problem(sizes, room=(10, 10, 10), orientations=None, **rules):
-    allowed = orientations or Orientations()
-    items = tuple(
-        Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), float(np.prod(s)), allowed)
-        for i, s in enumerate(sizes)
-    )
-    return PackingProblem(items, BuildVolume(np.array(room, float)), **rules)
+from .boxes import boxes_problem as problem
 
 
 def run(task, stop=None, **params):

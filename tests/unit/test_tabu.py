@@ -6,15 +6,12 @@ import pytest
 from amprep.checks.packing import check_packing
 from amprep.errors import PluginError
 from amprep.host import Host
-from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
+from amprep.model import BuildVolume, PackingProblem, Stop, silent
 from amprep.plugins.packing.params import TabuParams
 from amprep.plugins.packing.scene import prepare
 from amprep.plugins.packing.tabu import TabuSearch, pack_tabu
 
-
-def problem(sizes, room=(10, 10, 10), **rules):
-    items = [Item(i, 0, Boxes(np.zeros((1, 3)), np.array([s], float)), 1.0) for i, s in enumerate(sizes)]
-    return PackingProblem(tuple(items), BuildVolume(np.array(room, float)), **rules)
+from .boxes import boxes_problem as problem
 
 
 def run(task, stop=None, **params):
