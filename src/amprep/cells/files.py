@@ -103,7 +103,7 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
             yield _offer_of(path, read_mesh or _plain_mesh)
     if not count:
         raise InputError(
-            f"{place}: no cell in this folder; a package has to bring its TOML and mesh files along when it is installed"
+            f"{place}: no cell in this folder; a package has to bring its TOML and mesh files along when installed"
         )
 
 
