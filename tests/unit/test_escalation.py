@@ -8,38 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amprep.checks.supports import check_plan, check_raises
-from amprep.host import Host
 from amprep.model.control import Stop, silent
-from amprep.model.supports import CAPACITY, Cube, GridFrame, SupportProblem
+from amprep.model.supports import CAPACITY
 from amprep.plugins.supports.min_cost_flow import solve_min_cost_flow
 from amprep.plugins.supports.min_cost_flow_proof import find_gaps
 
-HOST = Host.load()
+from .grids import Late, floor_with_holes, random_problem, route
+
 ROUTERS = ["min-cost-flow", "push-relabel", "shortest-paths"]
-
-
-def problem(cubes, red, **rules):
-    cubes = np.asarray(cubes, np.uint8)
-    red = np.array(red, np.int32).reshape(-1, 3)
-    nothing = np.zeros(len(red), np.int32)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
-    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE, **rules)
-
-
-def floor_with_holes(holes, **rules):
-    """Seven red squares in a row, high above a floor with holes at the given x."""
-    cubes = np.zeros((12, 3, 7), np.uint8)
-    cubes[11, 1] = cubes[1] = Cube.BLACK
-    cubes[1, 1, list(holes)] = Cube.WHITE
-    return problem(cubes, [(11, 1, x) for x in range(7)], **rules)
-
-
-def route(router, task, stop=None):
-    listed = HOST.choose("router", router)
-    rng = np.random.default_rng(0)
-    return HOST.call(
-        listed, task, params=HOST.params(listed, {}), rng=rng, stop=stop or Stop(), report=silent
-    )
 
 
 @pytest.mark.parametrize("router", ROUTERS)
@@ -77,15 +53,8 @@ def test_without_escalation_they_are_listed(router):
 
 @pytest.mark.parametrize("router", ["min-cost-flow", "push-relabel"])
 def test_a_stopped_escalation_is_a_legal_plan(router):
-    class Late(Stop):
-        """Says stop from the second time on."""
-
-        def __call__(self):
-            late, self.__dict__["asked"] = "asked" in self.__dict__, True
-            return late
-
     task = floor_with_holes([3], node_capacity=1, escalation="cut")
-    plan = route(router, task, Late())
+    plan = route(router, task, Late(1))
     assert check_plan(task, plan) == []
     assert plan.stop_reason != "finished"
 
@@ -93,11 +62,7 @@ def test_a_stopped_escalation_is_a_legal_plan(router):
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 100_000), st.sampled_from(["cut", "uniform"]))
 def test_every_red_square_with_a_way_is_served_and_what_was_raised_was_needed(seed, escalation):
-    rng = np.random.default_rng(seed)
-    cubes = (rng.random(tuple(rng.integers(3, 7, 3))) < rng.uniform(0.1, 0.5)).astype(np.uint8)
-    red = [(p, y, x) for p, y, x in np.argwhere(cubes) if p > 0 and not cubes[p - 1, y, x]]
-    edge, node = (int(each) for each in rng.integers(0, 3, 2))
-    task = problem(cubes, red, edge_capacity=edge, node_capacity=node, escalation=escalation)
+    task = random_problem(seed, escalation=escalation)
     for router in ROUTERS:
         plan = route(router, task)
         assert check_plan(task, plan) == check_raises(task, plan) == []

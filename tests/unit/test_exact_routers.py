@@ -9,50 +9,23 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from amprep.checks.supports import check_plan
+from amprep.errors import JobError
 from amprep.model.control import Stop, silent
 from amprep.model.support_graph import to_networkx
-from amprep.model.supports import CAPACITY, ENCLOSED, Cube, GridFrame, SupportProblem
+from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, Cube
 from amprep.pipeline.bench_supports_rivals import RIVALS
 from amprep.plugins.supports import pushing
-from amprep.plugins.supports.min_cost_flow import route_min_cost_flow, solve_min_cost_flow
+from amprep.plugins.supports.min_cost_flow import solve_min_cost_flow
 from amprep.plugins.supports.min_cost_flow_proof import find_gaps
-from amprep.plugins.supports.push_relabel import route_push_relabel
 
-ROUTERS = {"min-cost-flow": route_min_cost_flow, "push-relabel": route_push_relabel}
+from . import grids
+from .grids import Late, hanging, random_problem
 
-
-def problem(cubes, red, **rules):
-    cubes = np.asarray(cubes, np.uint8)
-    red = np.array(red, np.int32).reshape(-1, 3)
-    nothing = np.zeros(len(red), np.int32)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
-    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE, **rules)
-
-
-def hanging(shape, squares, **rules):
-    """An empty grid of `shape` cubes whose top layer is black over the given ``(y, x)`` squares."""
-    cubes = np.zeros(shape, np.uint8)
-    top = shape[0] - 1
-    for y, x in squares:
-        cubes[top, y, x] = Cube.BLACK
-    return problem(cubes, [(top, y, x) for y, x in squares], **rules)
-
-
-def random_problem(seed):
-    """Small random grids, capacities and costs; in a third of them paths can pass through red squares."""
-    rng = np.random.default_rng(seed)
-    cubes = (rng.random(tuple(rng.integers(3, 7, 3))) < rng.uniform(0.1, 0.5)).astype(np.uint8)
-    if rng.random() < 0.3:
-        red = [at for at in np.add(np.argwhere(cubes[:-1] == Cube.WHITE), (1, 0, 0)) if rng.random() < 0.5]
-    else:
-        red = [(p, y, x) for p, y, x in np.argwhere(cubes) if p > 0 and not cubes[p - 1, y, x]]
-    edge, node = rng.integers(0, 4, 2)
-    costs = [(1, 2), (0, 1), (3, 4), (1, 7)][rng.integers(4)]
-    return problem(cubes, red, edge_capacity=int(edge), node_capacity=int(node), costs=costs)
+ROUTERS = ["min-cost-flow", "push-relabel"]
 
 
 def route(router, task, stop=None):
-    plan = ROUTERS[router](task, stop=stop or Stop(), report=silent)
+    plan = grids.route(router, task, stop)
     assert check_plan(task, plan) == []
     return plan
 
@@ -118,8 +91,20 @@ def test_a_stopped_run_gives_what_it_has():
 
 
 def test_high_costs_need_no_more_than_larger_buckets():
-    plan = route("min-cost-flow", one_hole((1, 3, 4), node_capacity=2, costs=(0, 1_000_000)))
-    assert plan.objective == 4_000_000
+    plan = route("min-cost-flow", one_hole((1, 3, 4), node_capacity=2, costs=(0, 10_000)))
+    assert plan.objective == 40_000
+
+
+def test_costs_that_cannot_be_counted_are_refused():
+    with pytest.raises(JobError, match="from 0 to 10000"):
+        hanging((3, 3, 3), [(1, 1)], costs=(1, 10_001))
+    tall = hanging((107_400, 1, 1), [(0, 0)], costs=(10_000, 1))
+    with pytest.raises(JobError, match="over 107399 planes: choose smaller ones"):
+        grids.route("push-relabel", tall)
+    assert (
+        route("min-cost-flow", hanging((107_300, 1, 1), [(0, 0)], costs=(10_000, 1))).objective
+        == 1_072_990_000
+    )
 
 
 @settings(max_examples=60, deadline=None)
@@ -181,6 +166,33 @@ def crowd():
     cubes[2] = Cube.BLACK
     cubes[2, 3:6, 3:6] = Cube.WHITE
     return replace(task, cubes=cubes)
+
+
+@pytest.mark.parametrize("router", ["min-cost-flow", "push-relabel", "shortest-paths", "tree", "auto"])
+@pytest.mark.parametrize("rules", [{}, {"edge_capacity": 1, "escalation": "cut"}], ids=str)
+def test_whenever_it_is_stopped_a_plan_is_legal_and_says_so(router, rules):
+    task = random_problem(11, **rules)
+    whole = grids.route(router, task, Late(10**9))
+    for number in (0, 1, 2, 5, 20):
+        stop = Late(number)
+        plan = grids.route(router, task, stop)
+        assert check_plan(task, plan) == []
+        if stop.asked <= number:
+            assert plan.unconnected == whole.unconnected
+        else:
+            assert (plan.stop_reason, plan.bound) == ("time limit", None)
+            assert {each.reason for each in plan.unconnected} <= {ENCLOSED, OUT_OF_TIME}
+
+
+def test_more_paths_than_16_bits_count_meet_in_a_square():
+    """Red squares throughout a shaft of 16 x 16 x 270 cubes that is closed at the bottom but for one hole."""
+    cubes = np.zeros((270, 16, 16), np.uint8)
+    cubes[0] = Cube.BLACK
+    cubes[0, 8, 8] = Cube.WHITE
+    task = grids.problem(cubes, np.argwhere(np.ones((254, 16, 16))) + (17, 0, 0))
+    plan = grids.route("shortest-paths", task, rounds=0)
+    assert check_plan(task, plan) == []
+    assert (plan.unconnected, int(plan.flow.max())) == ((), 254 * 16 * 16)
 
 
 def test_relabelling_all_at_any_time_changes_nothing_in_the_value(monkeypatch):

@@ -111,7 +111,7 @@ def test_every_section_is_read(job_file):
         ("[supports]\nstrut_angle_deg = 9", "strut_angle_deg is between 10 and 80, got 9"),
         ("[supports]\npitch_mm = 0", "pitch_mm is above 0, got 0"),
         ("[supports]\ncapacity = -1", "capacity is between 0 and 1000000, got -1"),
-        ("[supports]\nvertical_cost = 0", "vertical_cost is between 1 and 1000000, got 0"),
+        ("[supports]\nvertical_cost = 0", "vertical_cost is between 1 and 10000, got 0"),
         ("[supports]\ngap_mm = -1", "gap_mm is at least 0"),
         ('[supports]\noverhang_angle_deg = "x"', "overhang_angle_deg: expected a number, got the text 'x'"),
         ("[cells]\noverlap_mm = -0.1", "overlap_mm is at least 0, got -0.1"),

@@ -17,7 +17,7 @@ from amprep.model.endings import Base, BaseKind, Connector, ConnectorKind
 from amprep.model.packing import Objective
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
-from amprep.model.supports import Escalation
+from amprep.model.supports import LARGEST_COST, Escalation
 
 LEAST_TIP = 0.05
 """mm; teeth, points, necks and windows finer than that are refused: nothing prints them."""
@@ -131,10 +131,12 @@ class SupportSettings:
         require(self.slender >= 1, "slender is at least 1", self.slender)
         for name in ("least_area_mm2", "least_length_mm", "gap_mm", "load_area_mm2", "load_height_mm"):
             require(getattr(self, name) >= 0, f"{name} is at least 0", getattr(self, name))
-        least = {"memory_mb": 1, "capacity": 0, "node_capacity": 0, "vertical_cost": 1, "oblique_cost": 1}
-        for name, low in least.items():
+        for name, low in (("memory_mb", 1), ("capacity", 0), ("node_capacity", 0)):
             value = getattr(self, name)
             require(low <= value <= LARGEST_COUNT, f"{name} is between {low} and {LARGEST_COUNT}", value)
+        for name in ("vertical_cost", "oblique_cost"):
+            value = getattr(self, name)
+            require(1 <= value <= LARGEST_COST, f"{name} is between 1 and {LARGEST_COST}", value)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from amprep.errors import JobError
 from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
 
 Status = Literal["optimal", "feasible", "infeasible"]
@@ -19,6 +20,10 @@ ENCLOSED = "enclosed"
 CAPACITY = "capacity"
 CONNECTOR_BLOCKED = "connector blocked"
 OUT_OF_TIME = "time limit"
+
+
+LARGEST_COST = 10_000
+"""Bound on the integer cost of an edge: sums over a path stay far inside 32 bits."""
 
 
 class Cube(IntEnum):
@@ -78,7 +83,7 @@ class SupportProblem:
     escalation
         What gives way when the capacities leave out red squares that have a way.
     costs
-        Integer cost of one unit over a vertical and over an oblique edge.
+        Integer cost of one unit over a vertical and over an oblique edge, from 0 to `LARGEST_COST`.
     material
         Material of a vertical and of an oblique edge in the chosen cell, mm3.
     """
@@ -101,6 +106,8 @@ class SupportProblem:
         object.__setattr__(self, "red_part", frozen(self.red_part, np.int32))
         object.__setattr__(self, "red_region", frozen(self.red_region, np.int32))
         object.__setattr__(self, "green", frozen(self.green, np.bool_))
+        if not all(0 <= cost <= LARGEST_COST for cost in self.costs):
+            raise JobError(f"costs of edges must be from 0 to {LARGEST_COST}, got {list(self.costs)}")
 
 
 @dataclass(frozen=True)

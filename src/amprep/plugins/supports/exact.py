@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from amprep.errors import JobError
 from amprep.kernels.flow_network import UNREACHED, Carried, Room, measure
 from amprep.kernels.routing import Ints, Longs, Network
 from amprep.model.arrays import Bools
@@ -37,8 +38,16 @@ class Task(NamedTuple):
 
 
 def task_of(problem: SupportProblem) -> Task:
-    """Return the network of a problem with all distances; a capacity of 0 becomes one that never binds."""
+    """Return the network of a problem with all distances; a capacity of 0 becomes one that never binds.
+
+    Raises
+    ------
+    JobError
+        When the costs of a way can add up to more than `UNREACHED`.
+    """
     network, start = network_of(problem)
+    if network.box.shape[0] * max(problem.costs) >= UNREACHED:
+        raise uncountable(problem)
     distance = np.full(network.via.size, UNREACHED, np.int32)
     straight, oblique = problem.costs
     measure(network, straight, oblique, distance)
@@ -47,6 +56,14 @@ def task_of(problem: SupportProblem) -> Task:
     square, edge = problem.node_capacity or len(start), problem.edge_capacity or len(start)
     room = Room(np.array([square], np.int32), np.array([edge], np.int32), 0)
     return Task(problem, network, start, distance, distance[start] < UNREACHED, room)
+
+
+def uncountable(problem: SupportProblem) -> JobError:
+    """Return the error that a problem's costs are too high for its planes."""
+    return JobError(
+        f"costs of {problem.costs[0]} and {problem.costs[1]} an edge add up to more than can be counted over "
+        f"{int(problem.red[:, 0].max(initial=0))} planes: choose smaller ones (supports.vertical_cost, oblique_cost)"
+    )
 
 
 def nothing_carried(task: Task) -> Carried:

@@ -21,7 +21,7 @@ from amprep.model.arrays import Bools
 from amprep.model.control import Report, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.supports.escalation import escalate
-from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of
+from amprep.plugins.supports.exact import Task, exact_plan, nothing_carried, task_of, uncountable
 
 _CLOSED = 1 << 14
 """Potential of states without a way, as long as 16 bits are enough for all others."""
@@ -31,6 +31,10 @@ _WORTH = 4
 
 _FEW = 4000
 """Buckets up to which 16 bits are enough for the distances of several searches."""
+
+
+_MANY = 1 << 16
+"""Buckets to begin with, at most; a search that needs more gets more."""
 
 
 class MinCostFlow(NamedTuple):
@@ -108,7 +112,8 @@ class _Routing:
         self.potential = _narrow(task.distance)
         self.connected = np.zeros(len(task.start), np.bool_)
         self.prices = Prices(*task.problem.costs)
-        self.work = _work(self.potential.size, 4 * task.network.box.shape[0] * max(task.problem.costs) + 16)
+        buckets = 4 * task.network.box.shape[0] * max(task.problem.costs) + 16
+        self.work = _work(self.potential.size, min(buckets, _MANY))
         self.number, self._last = 0, 0
 
     def connect(self, stop: Stop, report: Report) -> str:
@@ -186,6 +191,8 @@ class _Routing:
             highest = _CLOSED - 1 if self.potential.dtype == np.int16 else UNREACHED - 1
             distance, served = search(*state, exits, start, lift, highest, self.work, self.number)
             if distance == TOO_HIGH:
+                if self.potential.dtype != np.int16:
+                    raise uncountable(self.task.problem)
                 self.potential = self.potential.astype(np.int32)
                 state = (*state[:-1], self.potential)
                 continue
