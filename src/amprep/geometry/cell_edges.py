@@ -46,6 +46,8 @@ def part_at(points: Floats, triangles: Ints, crowded: Ints) -> tuple[Floats, Int
     added, triangles
         Vertices that follow after `points`, and all triangles, those at crowded vertices last.
     """
+    if not len(crowded):
+        return points[:0], triangles
     touched = np.zeros(len(points), np.bool_)
     touched[crowded] = True
     around = touched[triangles].any(axis=1)

@@ -114,26 +114,32 @@ def fill_cubes(pieces: Pieces, template: Ints, square: Ints, shift: Ints) -> Cub
     shift
         ``(n, 2)`` dx, dy to its lower square: at most one step, in x or in y.
     """
-    kinds, kind = np.unique(np.column_stack([template, shift]), axis=0, return_inverse=True)
-    items = np.array([pieces.item(t, (dx, dy)) for t, dx, dy in kinds.tolist()], np.int64).reshape(-1, 2)
-    kind = kind.reshape(-1)
+    _, first, kind = np.unique(
+        9 * template + 3 * shift[:, 0] + shift[:, 1], return_index=True, return_inverse=True
+    )
+    held = [pieces.item(int(template[each]), tuple(shift[each].tolist())) for each in first]
+    items = np.array(held, np.int64).reshape(-1, 2)
     far = items[kind, 1] >= 0
     lower = square[far] + np.column_stack([shift[far], np.zeros(int(far.sum()), np.int64)])
     place = np.concatenate([square, lower])
     item = np.concatenate([items[kind, 0], items[kind[far], 1]])
-    order = np.lexsort((item, *place.T))
-    rows = np.column_stack([place, item])[order]
-    rows = rows[np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])]
-    starts = np.flatnonzero(np.concatenate([[True], (rows[1:, :3] != rows[:-1, :3]).any(axis=1)]))
-    sizes = np.diff(np.append(starts, len(rows)))
+    low, extent = place.min(axis=0), np.ptp(place, axis=0) + 1
+    cube = (place - low) @ np.array([1, extent[0], extent[0] * extent[1]])
+    count = len(pieces.items)
+    cube, item = np.divmod(np.unique(cube * count + item), count)
+    starts = np.flatnonzero(np.diff(cube, prepend=-1))
+    sizes = np.diff(np.append(starts, len(cube)))
     piece = np.empty(len(starts), np.int64)
     alone = sizes == 1
-    held = rows[starts, 3]
-    for each in np.unique(held[alone]):
-        piece[alone & (held == each)] = pieces.piece(np.array([each]))
-    for cube in np.flatnonzero(~alone):
-        piece[cube] = pieces.piece(rows[starts[cube] : starts[cube] + sizes[cube], 3])
-    return Cubes(rows[starts, :3], piece)
+    for each in np.unique(item[starts[alone]]):
+        piece[alone & (item[starts] == each)] = pieces.piece(np.array([each]))
+    for index in np.flatnonzero(~alone):
+        piece[index] = pieces.piece(item[starts[index] : starts[index] + sizes[index]])
+    number = cube[starts]
+    place = np.column_stack(
+        [number % extent[0], number // extent[0] % extent[1], number // extent[0] // extent[1]]
+    )
+    return Cubes(low + place, piece)
 
 
 def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tuple[Floats, Ints] | None:
@@ -151,12 +157,10 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
     label, count = label_equal_rows(soup.shared)
     shared = np.empty((count, 3), np.int64)
     shared[label] = soup.shared
-    for triangles in (soup.near, soup.rim):
-        outer = triangles >= inner
-        triangles[outer] = (inner + label)[triangles[outer] - inner]
+    _renumber(soup.near, inner, label)
+    _renumber(soup.rim, inner, label)
     rim = _at_splits(soup.rim, inner + label[soup.splits - inner], inner + count)
     rim = _at_lines(rim, shared, inner)
-    rim = rim[~degenerate(rim)]
     crowded = crowded_ends(rim, inner)
     if crowded is None:
         return None
@@ -165,11 +169,16 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
     added, rim = part_at(points[: inner + count], np.concatenate([soup.near, rim]), crowded)
     used = np.zeros(inner + count + len(added), np.bool_)
     used[rim] = True
-    number = inner + np.cumsum(used[inner:]) - 1
-    outer = rim >= inner
-    rim[outer] = number[rim[outer] - inner]
+    _renumber(rim, inner, np.cumsum(used[inner:]) - 1)
     rest = np.concatenate([points[inner : inner + count], added])[used[inner:]]
     return _appended(points, inner, rest), _appended(soup.triangles, soup.closed, rim)
+
+
+def _renumber(triangles: Ints, first: int, number: Ints) -> None:
+    """Give corners from `first` on their new numbers, in place."""
+    flat = triangles.reshape(-1)
+    outer = np.flatnonzero(flat >= first)
+    flat[outer] = first + number[flat[outer] - first]
 
 
 def _appended(room: NDArray[Any], count: int, rows: NDArray[Any]) -> NDArray[Any]:
@@ -350,4 +359,5 @@ def _halved_until_none(triangles: Ints, hot: Bools, middle: Callable[[Ints, Ints
         open_ = (middles >= 0).any(axis=1)
         done.append(triangles[~open_])
         triangles = halved(triangles[open_], middles[open_])
+        triangles = triangles[~degenerate(triangles)]  # of slivers whose third corner the edge passes through
     return np.concatenate([*done, triangles])

@@ -61,6 +61,13 @@ class Pieces:
     ----------
     templates
         Closed meshes in the unit cube.
+
+    Attributes
+    ----------
+    items
+        What cells fill of single cubes, as meshes.
+    made
+        All pieces there are yet.
     """
 
     def __init__(self, templates: Sequence[Arrays]) -> None:
@@ -69,8 +76,8 @@ class Pieces:
         self._corners: dict[tuple[int, int, int], tuple[int, int, int]] = {}
         self._buckets: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
         self._items: dict[tuple[int, ...], int] = {}
-        self._meshes: list[Arrays] = []
-        self._solid = cache(lambda item: as_manifold(*self._meshes[item]))
+        self.items: list[Arrays] = []
+        self._solid = cache(lambda item: as_manifold(*self.items[item]))
         self._number: dict[bytes, int] = {}
         self._outline_number: dict[bytes, int] = {b"": 0}
         self._outlines: list[Ints] = [np.empty((0, 2, 2), np.int64)]
@@ -89,8 +96,8 @@ class Pieces:
         key = (template, *shift)
         if (*key, 0) not in self._items:
             for far, mesh in enumerate(self._halves(template, shift)):
-                self._items[(*key, far)] = len(self._meshes)
-                self._meshes.append(mesh)
+                self._items[(*key, far)] = len(self.items)
+                self.items.append(mesh)
         return self._items[(*key, 0)], self._items.get((*key, 1), -1)
 
     def _halves(self, template: int, shift: tuple[int, int]) -> list[Arrays]:
@@ -142,7 +149,7 @@ class Pieces:
         """Number the piece that is the union of ascending items."""
         key = items.tobytes()
         if key not in self._number:
-            mesh = self._meshes[items[0]]
+            mesh = self.items[items[0]]
             if len(items) > 1:
                 mesh = arrays_of(union([self._solid(item) for item in items.tolist()]))
             self._number[key] = len(self.made)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.geometry.merging import degenerate
+
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
@@ -172,7 +174,8 @@ def _triangles(points: Ints, edges: Ints) -> Ints | None:
     if not loops:
         return np.empty((0, 3), np.int64)
     found = triangulate([points[loop].astype(np.float64) for loop in loops])
-    return np.concatenate(loops)[np.asarray(found, np.int64)]
+    triangles = np.concatenate(loops)[np.asarray(found, np.int64)]
+    return np.asarray(triangles[~degenerate(triangles)])  # where a loop passes a point twice
 
 
 def _loops(points: Ints, edges: Ints) -> list[Ints] | None:
