@@ -49,6 +49,19 @@ def test_a_slit_lets_powder_out_when_it_is_wider_than_the_hole(width, count, tur
         assert pocket.volume == pytest.approx(60.0, rel=0.02)
 
 
+@pytest.mark.parametrize(("width", "count"), [(0.13, 1), (0.35, 0)])
+def test_a_slit_along_a_diagonal_closes_when_it_is_narrower_than_seven_tenths_of_the_hole(width, count):
+    slit = CASE - box((2, width, 3), (4.5, 2, 2))
+    assert len(find_pockets([arrays(slit.rotate((0, 0, 45)))], [], hole=0.2)) == count
+
+
+@pytest.mark.parametrize(("side", "count"), [(0.25, 0), (0.45, 1)])
+@pytest.mark.parametrize("turn", [0, 45])
+def test_a_place_that_hardly_has_room_for_the_ball_is_no_pocket(side, count, turn):
+    block = box((4, 4, 4), (-2, -2, 0)) - box((side, side, 1), (-side / 2, -side / 2, 1)).rotate((0, 0, turn))
+    assert len(find_pockets([arrays(block)], [], hole=0.2)) == count
+
+
 @pytest.mark.parametrize(("height", "count"), [(0.19, 1), (0.21, 0)])
 def test_a_level_slit_is_measured_without_steps(height, count):
     slit = CASE - box((2, 2, height), (4.5, 1.5, 3))

@@ -76,9 +76,10 @@ def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: floa
 
     The plate, z = 0, closes the space below; above and sideways it is open. Upright lines half of the hole
     apart are cut by the solids exactly; a ball's centre is where its own line is free as far up and down as
-    its radius, and the four lines around it beside it. Ways less than `hole` wide count as closed and ways
-    wider than `hole` and half of it as open; in between it depends on where the lines fall. What the parts
-    would lock in without supports does not count, nor does a place without room for the ball.
+    its radius, and the four lines around it beside it. Ways less than 0.7 of `hole` wide count as closed and
+    ways half as wide again as open; in between it depends on where the lines fall and how the way runs. What
+    the parts would lock in without supports does not count, nor does a pocket that is nowhere wide enough for
+    the square around the ball: 1.4 times `hole`.
 
     Parameters
     ----------
@@ -93,7 +94,7 @@ def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: floa
     lines = _lines(solids, hole)
     free = _free_runs(lines, solids)
     roomy = _roomy_runs(lines, free, hole / 2.0)
-    pocket = _pockets(lines, roomy, hole / 2.0)
+    pocket = _with_room(lines, free, roomy, _pockets(lines, roomy, hole / 2.0))
     if not pocket.any():
         return []
     found = _listed(lines, free, roomy, pocket, hole / 2.0)
@@ -151,6 +152,18 @@ def _pockets(lines: _Lines, runs: _Runs, radius: float) -> Ints:
     parent = np.empty(len(runs.low) + 1, np.int32)
     join_runs(lines.shape, *runs, _ABOVE - 2.0 * radius, parent)
     return parent[1:].astype(np.int64)
+
+
+def _with_room(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints) -> Ints:
+    """Return the pockets, but for those nowhere as wide as the square around the ball: they count as outside."""
+    from amprep.kernels.powder import find_wide
+
+    chosen = np.flatnonzero(pocket)
+    line = np.searchsorted(roomy.start, chosen, side="right") - 1
+    spare = np.empty((2, 2, 5 * int(np.diff(free.start).max())), np.float32)
+    wide = np.zeros(len(chosen), np.bool_)
+    find_wide(lines.shape, *free, line, roomy.low[chosen], roomy.high[chosen], spare, wide)
+    return np.where(np.isin(pocket, pocket[chosen[wide]]), pocket, 0)
 
 
 def _listed(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints, radius: float) -> list[Pocket]:

@@ -8,14 +8,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from amprep.kernels.crossings import ends_in_row, slopes_of
+
 Floats = NDArray[np.float64]
 Heights = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Ints = NDArray[np.int32]
 Signs = NDArray[np.int8]
+Bools = NDArray[np.bool_]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def cross_lines(
     points: Floats,
     triangles: Longs,
@@ -28,34 +31,19 @@ def cross_lines(
     """Find where the lines ``((x + 0.5) * spacing, (y + 0.5) * spacing)`` cross triangles.
 
     `place` ``(ny * nx,)`` counts the crossings of each line; with room in `heights` and `signs`, it says
-    where the next one goes. A sign of 1 enters the solid on the way up, -1 leaves it. Where a row of lines
-    crosses an edge is computed from the edge alone, lower end first, so that triangles which share the edge
-    agree to the last bit and no line slips through between them.
+    where the next one goes. A sign of 1 enters the solid on the way up, -1 leaves it.
     """
     ny, nx = shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         ax, ay, az = points[a, 0], points[a, 1], points[a, 2]
-        ux, uy, uz = points[b, 0] - ax, points[b, 1] - ay, points[b, 2] - az
-        vx, vy, vz = points[c, 0] - ax, points[c, 1] - ay, points[c, 2] - az
-        normal = ux * vy - uy * vx
-        if normal == 0.0:
-            continue
-        slope_x, slope_y = (uz * vy - uy * vz) / normal, (ux * vz - uz * vx) / normal
+        slope_x, slope_y = slopes_of(points, a, b, c)
         low, high = min(az, points[b, 2], points[c, 2]), max(az, points[b, 2], points[c, 2])
         y_low, y_high = min(ay, points[b, 1], points[c, 1]), max(ay, points[b, 1], points[c, 1])
         y_first, y_last = int(np.ceil(y_low / spacing - 0.5)), int(np.floor(y_high / spacing - 0.5))
         for iy in range(max(y_first, 0), min(y_last, ny - 1) + 1):
             y = (iy + 0.5) * spacing
-            up = down = np.inf
-            for i in range(3):
-                p, q = triangles[t, i], triangles[t, (i + 1) % 3]
-                if points[p, 1] <= y < points[q, 1]:
-                    share = (y - points[p, 1]) / (points[q, 1] - points[p, 1])
-                    up = points[p, 0] + share * (points[q, 0] - points[p, 0])
-                elif points[q, 1] <= y < points[p, 1]:
-                    share = (y - points[q, 1]) / (points[p, 1] - points[q, 1])
-                    down = points[q, 0] + share * (points[p, 0] - points[q, 0])
+            up, down = ends_in_row(points, triangles, t, y)
             if np.isinf(up) or np.isinf(down):
                 continue
             sign = 1 if up < down else -1  # clockwise seen from above: it looks down, the solid begins
@@ -70,7 +58,7 @@ def cross_lines(
                 place[line] += 1
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def free_runs(
     first: Longs, heights: Heights, signs: Signs, top: float, start: Longs, low: Heights, high: Heights
 ) -> int:
@@ -113,6 +101,52 @@ def free_runs(
 
 
 @njit(cache=True)
+def _meet(spare: Heights, now: int, held: int, low: Heights, high: Heights, begin: int, end: int) -> int:
+    """Write to ``spare[1 - now]`` what the `held` intervals of ``spare[now]`` share with runs; return how many."""
+    kept, i, j = 0, 0, begin
+    while i < held and j < end:
+        bottom, lid = max(spare[now, 0, i], low[j]), min(spare[now, 1, i], high[j])
+        if bottom < lid:
+            spare[1 - now, 0, kept], spare[1 - now, 1, kept] = bottom, lid
+            kept += 1
+        if spare[now, 1, i] < high[j]:
+            i += 1
+        else:
+            j += 1
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def find_wide(
+    shape: tuple[int, int],
+    start: Longs,
+    low: Heights,
+    high: Heights,
+    line: Longs,
+    bottom: Heights,
+    lid: Heights,
+    spare: Heights,
+    wide: Bools,
+) -> None:
+    """Tell which parts of runs, `bottom` to `lid` on a line each, have room across as well: on the diagonal lines.
+
+    `spare` is as for `roomy_runs`.
+    """
+    ny, nx = shape
+    for n in range(line.size):
+        iy, ix = line[n] // nx, line[n] % nx
+        spare[0, 0, 0], spare[0, 1, 0] = bottom[n], lid[n]
+        now, held = 0, 1
+        for side in range(4):
+            jy, jx = iy + 2 * (side // 2) - 1, ix + 2 * (side % 2) - 1
+            if 0 <= jy < ny and 0 <= jx < nx:
+                other = jy * nx + jx
+                held = _meet(spare, now, held, low, high, start[other], start[other + 1])
+                now = 1 - now
+        wide[n] = held > 0
+
+
+@njit(cache=True, nogil=True)
 def roomy_runs(
     shape: tuple[int, int],
     radius: float,
@@ -153,17 +187,8 @@ def roomy_runs(
                 other = line + nx
             if other == line:
                 continue
-            kept, i, j, end = 0, 0, start[other], start[other + 1]
-            while i < held and j < end:
-                bottom, lid = max(spare[now, 0, i], low[j]), min(spare[now, 1, i], high[j])
-                if bottom < lid:
-                    spare[1 - now, 0, kept], spare[1 - now, 1, kept] = bottom, lid
-                    kept += 1
-                if spare[now, 1, i] < high[j]:
-                    i += 1
-                else:
-                    j += 1
-            now, held = 1 - now, kept
+            held = _meet(spare, now, held, low, high, start[other], start[other + 1])
+            now = 1 - now
         for i in range(held):
             room_low[count], room_high[count] = spare[now, 0, i], spare[now, 1, i]
             count += 1
@@ -179,7 +204,7 @@ def _root(parent: Ints, node: int) -> int:
     return node
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def join_runs(
     shape: tuple[int, int], start: Longs, low: Heights, high: Heights, lid: float, parent: Ints
 ) -> None:

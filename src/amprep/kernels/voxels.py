@@ -7,6 +7,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from amprep.kernels.crossings import ends_in_row, slopes_of
+
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 Ints = NDArray[np.int32]
@@ -127,38 +129,20 @@ def mark_elements(
 def count_crossings(points: Floats, triangles: Longs, pitch: float, step: float, change: Shorts) -> None:
     """Add to `change` (int16, modified in place) how the winding number changes up each line of cube centres.
 
-    ``change[k]`` collects the crossings between centres k - 1 and k. Where a row of centres crosses an edge
-    is computed from the edge alone, lower end first, so that triangles which share the edge agree to the
-    last bit and no line slips through between them.
+    ``change[k]`` collects the crossings between centres k - 1 and k.
     """
     nz, ny, nx = change.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         ax, ay, az = points[a, 0], points[a, 1], points[a, 2]
-        ux, uy, uz = points[b, 0] - ax, points[b, 1] - ay, points[b, 2] - az
-        vx, vy, vz = points[c, 0] - ax, points[c, 1] - ay, points[c, 2] - az
-        normal = ux * vy - uy * vx
-        slope_x = slope_y = 0.0
-        if normal != 0.0:
-            slope_x = (uz * vy - uy * vz) / normal
-            slope_y = (ux * vz - uz * vx) / normal
+        slope_x, slope_y = slopes_of(points, a, b, c)
         low, high = min(az, points[b, 2], points[c, 2]), max(az, points[b, 2], points[c, 2])
         y_low, y_high = min(ay, points[b, 1], points[c, 1]), max(ay, points[b, 1], points[c, 1])
         for iy in range(
             max(int(np.ceil(y_low / pitch - 0.5)), 0), min(int(np.floor(y_high / pitch - 0.5)), ny - 1) + 1
         ):
             y = (iy + 0.5) * pitch
-            up = down = np.inf
-            for i in range(3):
-                p, q = triangles[t, i], triangles[t, (i + 1) % 3]
-                if points[p, 1] <= y < points[q, 1]:
-                    up = points[p, 0] + (y - points[p, 1]) * (points[q, 0] - points[p, 0]) / (
-                        points[q, 1] - points[p, 1]
-                    )
-                elif points[q, 1] <= y < points[p, 1]:
-                    down = points[q, 0] + (y - points[q, 1]) * (points[p, 0] - points[q, 0]) / (
-                        points[p, 1] - points[q, 1]
-                    )
+            up, down = ends_in_row(points, triangles, t, y)
             if np.isinf(up) or np.isinf(down):
                 continue
             sign = 1 if up < down else -1  # clockwise seen from above: it looks down, the solid begins
