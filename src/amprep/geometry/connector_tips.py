@@ -5,10 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from amprep.geometry.cell_edges import separate_edges
 from amprep.geometry.cell_solids import union
 from amprep.geometry.connector_sites import Sites, within
-from amprep.geometry.connectors import Patches, stand_on
 from amprep.geometry.solids import as_manifold
 
 if TYPE_CHECKING:
@@ -23,6 +21,9 @@ ROUND_SIDES = 12
 
 _APART = 2e-4
 """mm; tips of neighbouring cells keep twice that from each other."""
+
+_OVER = 5e-4
+"""mm; how far prisms reach over their cells."""
 
 _ROOT = 0.05
 """Share of a cell that stays free on each side of a tip's root."""
@@ -39,7 +40,7 @@ class Profile(NamedTuple):
     width, height
         mm.
     neck, neck_height
-        mm; a neck of 0 is none. It lies `neck_height` below the lowest spot of the contact.
+        mm; a neck of 0 is none. It lies `neck_height` below the lowest spot of the contact, in short tips half way.
     round
         Whether sections are circles, else squares; at the side of a cell they are squares.
     """
@@ -51,15 +52,15 @@ class Profile(NamedTuple):
     round: bool
 
 
-def tips(sites: Sites, profile: Profile, base: Floats, overlap: float) -> "Manifold":
+def tips(sites: Sites, profile: Profile, level: Floats, base: Floats, overlap: float) -> "Manifold":
     """Return a solid that leaves of connectors only teeth or points, on the shoulders that carry them.
 
-    Each cell is filled up to `height` below the lowest spot of its contact, level; from there on the tip stands.
+    Each cell is filled up to its level; from there on the tip stands.
 
     Parameters
     ----------
-    base
-        ``(s,)`` mm, where the connector of each site begins.
+    level, base
+        ``(s,)`` mm, where the tip of each site begins, and its connector.
     overlap
         mm that connectors reach into the part.
     """
@@ -67,41 +68,37 @@ def tips(sites: Sites, profile: Profile, base: Floats, overlap: float) -> "Manif
 
     if not len(sites.column):
         return Manifold()
-    rings = _rings(sites, profile, base, overlap)
-    return union([*_shoulders(sites, sites.lowest - profile.height, base), as_manifold(*_lofted(rings))])
+    rings = _rings(sites, profile, level, base, overlap)
+    tall = level > base
+    cells = sites.square[tall], sites.lo[tall], sites.hi[tall]
+    return union([prisms(*cells, base[tall] - _DIP, level[tall]), as_manifold(*_lofted(rings))])
 
 
-def _shoulders(sites: Sites, level: Floats, base: Floats) -> list["Manifold"]:
-    """Return the prisms of all cells up to their level; one solid for each storey of cells above one another."""
-    tall = np.flatnonzero(level > base + _DIP)
-    storey = _storeys(sites.square[tall], base[tall])
+def prisms(square: Ints, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
+    """Return the union of upright prisms over cells of a grid, which may be of several heights.
+
+    They reach a hair over their cells, because manifold3d joins and cuts solids whose walls lie in each other
+    less well; for the same reason every second cell of every second row goes into a mesh of its own.
+
+    Parameters
+    ----------
+    square
+        ``(n, 2)`` the cells' places in the grid.
+    lo, hi
+        ``(n, 2)`` mm, their corners in plan.
+    """
+    colour = square[:, 0] % 2 * 2 + square[:, 1] % 2
     solids = []
-    for each in range(int(storey.max(initial=-1)) + 1):
-        own = tall[storey == each]
-        (x0, y0), (x1, y1), z = sites.lo[own].T, sites.hi[own].T, level[own]
-        corners = np.stack([np.column_stack(corner) for corner in
-                            ((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z))], axis=1)  # fmt: skip
-        nowhere = np.zeros((len(own), 2), np.int64)
-        patches = Patches(
-            corners.reshape(-1, 3), 4 * np.arange(len(own) + 1), nowhere, np.array([0, len(own)])
-        )
-        solids.append(as_manifold(*separate_edges(*stand_on(patches, base[own] - _DIP, 0.0))))
-    return solids
+    for each in np.unique(colour):
+        own = colour == each
+        sides = [
+            _ring(z[own], (lo[own], hi[own]), np.zeros(own.sum(), np.bool_), sides=4) for z in (bottom, top)
+        ]
+        solids.append(as_manifold(*_lofted(np.stack(sides, axis=1))))
+    return union(solids)
 
 
-def _storeys(square: Ints, base: Floats) -> Ints:
-    """Number cells in the same place from below."""
-    order = np.lexsort((base, square[:, 1], square[:, 0]))
-    ordered = square[order]
-    new = np.ones(len(order), np.bool_)
-    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    here = np.arange(len(order))
-    storey = np.empty(len(order), np.int64)
-    storey[order] = here - np.maximum.accumulate(np.where(new, here, 0))
-    return storey
-
-
-def _rings(sites: Sites, profile: Profile, base: Floats, overlap: float) -> Floats:
+def _rings(sites: Sites, profile: Profile, level: Floats, base: Floats, overlap: float) -> Floats:
     """Return the corners of each tip's sections from below, ``(s, r, n, 3)`` mm."""
     lo, hi = sites.lo + _APART, sites.hi - _APART
     top = within(sites.spot, profile.width, lo, hi)
@@ -110,10 +107,11 @@ def _rings(sites: Sites, profile: Profile, base: Floats, overlap: float) -> Floa
     # a circle that was pushed into its cell may miss the spot: a square does not
     pushed = np.linalg.norm((top[0] + top[1]) / 2.0 - sites.spot, axis=1) > 0.4 * profile.width
     circle = ~pushed & profile.round
-    levels = [(sites.lowest - profile.height - _DIP, root, np.zeros_like(circle))]
+    levels = [(level - _DIP, root, np.zeros_like(circle))]
     if profile.neck:
         neck = within(sites.spot, profile.neck, *top)
-        levels.append((sites.lowest - profile.neck_height, neck, circle))
+        height = np.maximum(sites.lowest - profile.neck_height, (sites.lowest + level) / 2.0)
+        levels.append((height, neck, circle))
     levels += [(sites.lowest, top, circle), (sites.highest + overlap + _DIP, top, circle)]
     rings = np.stack([_ring(*level, sides=ROUND_SIDES if profile.round else 4) for level in levels], axis=1)
     return _shortened(rings, base - 2 * _DIP)

@@ -38,6 +38,11 @@ class Connector:
     neck_height: float = 0.3
     window: float = 0.0
 
+    @property
+    def is_shaped(self) -> bool:
+        """Whether connectors are more than whole squares, or cells, run up."""
+        return self.kind in ("teeth", "point") or (self.kind == "full" and self.neck + self.window > 0)
+
 
 @dataclass(frozen=True)
 class Base:

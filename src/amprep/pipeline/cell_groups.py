@@ -15,7 +15,7 @@ from amprep.model.endings import Connector
 from amprep.pipeline.cell_carving import Obstacles, standing_only
 from amprep.pipeline.cell_connectors import Ways
 from amprep.pipeline.cell_feet import foot_boxes, make_feet
-from amprep.pipeline.cell_patterns import shaped
+from amprep.pipeline.cell_patterns import Shaped, may_sink, shaped
 from amprep.pipeline.cell_trunks import Emitted, arrays, ends, on_red, squares, trunks
 from amprep.pipeline.support_layout import SupportLayout
 
@@ -47,18 +47,25 @@ def solid_of(
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    connectors = _connectors(red, seat, layout, ways, overlap)
+    sink = may_sink(layout, connector)
+    connectors = _connectors(red, np.maximum(seat / 2, sink), layout, ways, overlap)
     ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
     if extend:
         lids = [as_manifold(*mesh) for mesh in ends(emitted, mine & emitted.connector, seat, layout)]
         ups = [union(ups) ^ union(lids)] if ups and lids else []
+    notch = union([])
     if ups:
         up = obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
-        ups = [up if extend else _shaped(up, group, red, seat, layout, ways, obstacles, connector, overlap)]
+        contact = obstacles.contact(up, layout.group_parts[group]) if connector.is_shaped else None
+        if contact is not None:
+            up, notch = _shaped(up, contact, red, seat / 2, sink, ways, connector, overlap)
+        ups = [up]
     ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
-    solids = obstacles.trim([as_manifold(*mesh) for mesh in stems] + ups + _extras(emitted, group))
+    cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(emitted, group)]
+    cells = cells if notch.is_empty() else [union(cells) - notch]
+    solids = obstacles.trim(cells + ups)
     if on_beams:
         return Mesh(*finish(solids)) if solids else None
     boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
@@ -74,10 +81,10 @@ def _feet(layout: SupportLayout, group: int, obstacles: Obstacles, overlap: floa
     return [obstacles.carve(stood, layout.group_parts[group], overlap, down=True)]
 
 
-def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
-    """Return connectors over red squares; they begin in the middle of the seats."""
+def _connectors(red: Bools, below: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
+    """Return connectors over red squares; they begin so many mm below them."""
     held = ways.held.chosen(red[ways.held.owner[:, 0]])
-    base = ways.columns.lo[:, 2] - seat / 2
+    base = ways.columns.lo[:, 2] - below
     lid = ways.columns.hi[:, 2] + layout.frame.step
     overlap = max(overlap, CONTACT_TOLERANCE)
     return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
@@ -85,23 +92,19 @@ def _connectors(red: Bools, seat: Floats, layout: SupportLayout, ways: Ways, ove
 
 def _shaped(
     up: "Manifold",
-    group: int,
+    contact: Floats,
     red: Bools,
-    seat: Floats,
-    layout: SupportLayout,
+    below: Floats,
+    sink: Floats,
     ways: Ways,
-    obstacles: Obstacles,
     connector: Connector,
     overlap: float,
-) -> "Manifold":
+) -> Shaped:
     """Return connectors of the kind asked for, where that is another than whole squares."""
-    if connector.kind == "full" and not connector.neck and not connector.window:
-        return up
-    contact = obstacles.contact(up, layout.group_parts[group])
     columns = ways.columns
     columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
-    base = columns.lo[:, 2] - seat[red] / 2
-    return shaped(up, contact, columns, base, connector, max(overlap, CONTACT_TOLERANCE))
+    base = columns.lo[:, 2] - below[red]
+    return shaped(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
 
 
 def _extras(emitted: Emitted, group: int) -> list["Manifold"]:

@@ -1,16 +1,18 @@
 """Turns connectors that fill their whole columns into teeth or points, with necks and windows."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.errors import JobError
+from amprep.geometry.cell_solids import union
 from amprep.geometry.connector_sites import find_sites
-from amprep.geometry.connector_tips import Profile, tips
+from amprep.geometry.connector_tips import Profile, prisms, tips
 from amprep.geometry.connector_windows import windows
 from amprep.geometry.connectors import Columns
-from amprep.model.arrays import Bools, Floats
+from amprep.model.arrays import Bools, Floats, Ints
 from amprep.model.endings import Connector
+from amprep.pipeline.support_layout import SupportLayout
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -21,20 +23,70 @@ WIDEST = 0.9
 TOOTH_PITCH = 1.0
 """mm, about, between teeth where nothing else is said."""
 
+PAD = 0.2
+"""mm; thickness of what carries tips where they begin below their red square (at most half of that depth)."""
+
+SINK_UPRIGHT, SINK_SIDEWAYS = 0.75, 0.25
+"""Share of a step that connectors may begin below their red square at most."""
+
+_PAST = 0.01
+"""mm that notches reach above the red square."""
+
+NUDGE = (1.3e-4, 2.1e-4, 0.9e-4)
+"""mm; tips are moved by that, so that none of their faces lies in one of the connectors they are cut out of:
+manifold3d leaves folds there, and loses volume when it reads them again."""
+
 _WHOLE = 1.0 - 1e-6
 
 
+class Shaped(NamedTuple):
+    """Connectors of another kind, and what has to go from the cells below so that tips have room."""
+
+    connectors: "Manifold"
+    notch: "Manifold"
+
+
+def may_sink(layout: SupportLayout, wish: Connector) -> Floats:
+    """Return how far connectors may reach below each red square, ``(m,)`` mm, so that tips have their height.
+
+    As far as they ask for where all cells below are upright; a quarter of a step where one leads sideways, which
+    they still meet then. Nothing on the plate, nor where the whole square runs up.
+    """
+    frame = layout.frame
+    _, profile = _profile(wish, frame.pitch)
+    if profile is None:
+        return np.zeros(len(layout.red))
+    leaning = layout.direction != 0
+    _, ny, nx = frame.shape
+
+    def place(plane: Ints, y: Ints, x: Ints) -> Ints:
+        return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
+
+    sideways = place(layout.plane[leaning], layout.y[leaning], layout.x[leaning])
+    share = np.where(np.isin(place(*layout.red.T), sideways), SINK_SIDEWAYS, SINK_UPRIGHT)
+    return np.where(layout.red[:, 0] > 0, np.minimum(share * frame.step, profile.height + PAD), 0.0)
+
+
 def shaped(
-    connectors: "Manifold", contact: Floats, columns: Columns, base: Floats, wish: Connector, overlap: float
-) -> "Manifold":
+    connectors: "Manifold",
+    contact: Floats,
+    columns: Columns,
+    base: Floats,
+    sink: Floats,
+    wish: Connector,
+    overlap: float,
+) -> Shaped:
     """Return what is left of connectors that are to be of another kind; they still end in the true surface.
 
     Parameters
     ----------
+    connectors
+        They begin at `sink` below their squares, where that is lower than `base`.
     contact
         ``(t, 3, 3)`` mm, the parts' surface in the connectors.
-    columns, base
-        The red squares' columns, and where their connectors begin, ``(m,)`` mm.
+    columns, base, sink
+        The red squares' columns; where connectors begin that need no more room, and how far below the square
+        others may, ``(m,)`` mm.
 
     Raises
     ------
@@ -42,15 +94,25 @@ def shaped(
         When the neck is no narrower than what it is to carry.
     """
     count, profile = _profile(wish, float(columns.grid[2]))
-    depth = 0.0
+    depth, notch = 0.0, union([])
     if profile is not None:
         sites = find_sites(contact, columns, count, profile.width)
-        connectors ^= tips(sites, profile, base[sites.column], overlap)
+        own, square = sites.column, columns.lo[:, 2]
+        pad = np.minimum(PAD, sink / 2.0)
+        floor = np.where(sink > 0.0, square - sink + pad, -np.inf)
+        level = np.maximum(sites.lowest - profile.height, floor[own])
+        lowest = np.full(len(square), np.inf)
+        np.minimum.at(lowest, own, level)
+        base = np.where(sink > 0.0, np.minimum(base, lowest - pad), base)
+        connectors ^= tips(sites, profile, level, base[own], overlap).translate(NUDGE)
+        low = (lowest < square) & (sink > 0.0)
+        plan = columns.square[low], columns.lo[low, :2], columns.hi[low, :2]
+        notch = prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
         depth = profile.height
     if wish.window:
         for each in windows(columns, _room(contact, columns, depth), wish.window):
             connectors -= each
-    return connectors
+    return Shaped(connectors, notch)
 
 
 def _profile(wish: Connector, side: float) -> tuple[int, Profile | None]:
