@@ -47,7 +47,7 @@ def solid_of(
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    sink = may_sink(layout, connector)
+    sink = may_sink(layout, connector, most=SEAT if on_beams else np.inf)  # beams carry by their ends
     connectors = _connectors(red, np.maximum(seat / 2, sink), layout, ways, overlap)
     ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
     if extend:

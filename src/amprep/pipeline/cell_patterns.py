@@ -46,11 +46,11 @@ class Shaped(NamedTuple):
     notch: "Manifold"
 
 
-def may_sink(layout: SupportLayout, wish: Connector) -> Floats:
+def may_sink(layout: SupportLayout, wish: Connector, *, most: float) -> Floats:
     """Return how far connectors may reach below each red square, ``(m,)`` mm, so that tips have their height.
 
-    As far as they ask for where all cells below are upright; a quarter of a step where one leads sideways, which
-    they still meet then. Nothing on the plate, nor where the whole square runs up.
+    At most `most` mm, and as far as they ask for where all cells below are upright; a quarter of a step where one
+    leads sideways, which they still meet then. Nothing on the plate, nor where the whole square runs up.
     """
     frame = layout.frame
     _, profile = _profile(wish, frame.pitch)
@@ -64,7 +64,9 @@ def may_sink(layout: SupportLayout, wish: Connector) -> Floats:
 
     sideways = place(layout.plane[leaning], layout.y[leaning], layout.x[leaning])
     share = np.where(np.isin(place(*layout.red.T), sideways), SINK_SIDEWAYS, SINK_UPRIGHT)
-    return np.where(layout.red[:, 0] > 0, np.minimum(share * frame.step, profile.height + PAD), 0.0)
+    return np.where(
+        layout.red[:, 0] > 0, np.minimum(share * frame.step, min(profile.height + PAD, most)), 0.0
+    )
 
 
 def shaped(
