@@ -198,7 +198,7 @@ def test_seats_are_united_with_the_cells_they_lie_in():
     plates = [(square[::-1] - (0, 0, 1)) * 2.0 + (1.0, 1.0, 1.9) for square in seats]
     from manifold3d import Manifold
 
-    lids = [Manifold.cube((1.96, 1.96, 0.2), True).translate(place.tolist()) for place in plates]
+    lids = [Manifold.cube((2.0, 2.0, 0.2), True).translate(place.tolist()) for place in plates]
     expected = union([each_by_itself(found), *lids])
     assert as_manifold(*mesh).volume() == pytest.approx(expected.volume(), rel=1e-6)
 

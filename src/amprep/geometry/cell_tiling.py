@@ -14,9 +14,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Arrays = tuple[Floats, Ints]
 
-_RIM = 0.01
-"""Share of the unit cube that a plate keeps away from its sides."""
-
 _FLUSH = 1e-9
 """Share of the unit cube: a corner this close to a side lies on it."""
 
@@ -46,19 +43,14 @@ def fills_unit_cube(points: Floats) -> bool:
 
 
 def plate(thickness: float) -> Arrays:
-    """Return a plate under the top of the unit cube.
-
-    It keeps a little away from the cube's sides: plates side by side do not touch, nor do they end in the planes
-    in which other cells do.
+    """Return a plate under the top of the unit cube, as wide as the cube.
 
     Parameters
     ----------
     thickness
         Share of the cube's height.
     """
-    corners = [
-        [x, y, z] for z in (1.0 - thickness, 1.0) for y in (_RIM, 1.0 - _RIM) for x in (_RIM, 1.0 - _RIM)
-    ]
+    corners = [[x, y, z] for z in (1.0 - thickness, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
     triangles = [
         [0, 2, 3], [0, 3, 1], [4, 7, 6], [4, 5, 7], [0, 1, 5], [0, 5, 4],
         [2, 7, 3], [2, 6, 7], [0, 4, 6], [0, 6, 2], [1, 7, 5], [1, 3, 7],

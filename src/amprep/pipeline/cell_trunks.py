@@ -10,6 +10,7 @@ from amprep.geometry.cell_pieces import Pieces
 from amprep.geometry.cell_prisms import join_prisms
 from amprep.geometry.cell_solids import is_solid
 from amprep.geometry.cell_tiling import Arrays, Tiles, expand, fills_unit_cube, tile
+from amprep.geometry.welding import kept
 from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, Template
 from amprep.model.arrays import Bools, Floats, Ints
 from amprep.pipeline.support_layout import SupportLayout
@@ -95,7 +96,11 @@ def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: flo
         square, shift = np.concatenate([square, below]), np.concatenate([shift, np.zeros_like(below[:, :2])])
     if len(template):
         joined = join_cells(emitted.pieces, template, square, shift, frame.origin, size)
-        yield from [joined] if joined else _by_direction(emitted.pieces, template, square, shift, frame)
+        yield from (
+            [(kept(joined[0]), joined[1])]
+            if joined
+            else _by_direction(emitted.pieces, template, square, shift, frame)
+        )
     for index in np.flatnonzero(chosen & ~emitted.tiles):
         one = np.array([cells.template[index]]), cells.matrix[index : index + 1]
         points, triangles, _ = expand(emitted.templates, *one)
