@@ -33,11 +33,13 @@ def test_x_walls_without_gaps_lock_powder_in_and_that_is_no_fault(amprep, fixtur
     assert found["trapped_mm3"] == pytest.approx(sum(pocket["volume_mm3"] for pocket in pockets))
 
 
-@pytest.mark.parametrize(("name", "share"), [("ball", 0.03), ("two-balls", 0.2)])
-def test_gaps_leave_little_of_the_powder_that_joined_walls_lock_in(amprep, fixtures, tmp_path, name, share):
-    gap, _ = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
+@pytest.mark.parametrize("name", ["ball", "two-balls"])
+def test_x_walls_with_gaps_lock_in_no_powder_and_joined_ones_do(amprep, fixtures, tmp_path, name):
+    gap, done = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
+    assert gap["trapped_mm3"] == 0.0
+    assert done.code == 0
     joined, _ = supports(amprep, tmp_path / "joined", fixtures / f"{name}.stl", "cells.params.join_every=1")
-    assert 0.0 < gap["trapped_mm3"] < share * joined["trapped_mm3"]
+    assert joined["trapped_mm3"] > 100.0
 
 
 def test_mass_and_scanned_area_follow_from_the_volume(amprep, fixtures, tmp_path):

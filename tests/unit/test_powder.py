@@ -5,6 +5,7 @@ import pytest
 from manifold3d import Manifold
 
 from amprep.geometry.contacts import measure_contact
+from amprep.geometry.drains import find_drains
 from amprep.geometry.powder import find_pockets
 
 
@@ -80,6 +81,15 @@ def test_two_chambers_with_a_door_are_one_pocket_and_without_it_two():
     door = walls - box((1, 1, 1), (2.5, 2, 2))
     (pocket,) = find_pockets([arrays(door)], [], hole=0.2)
     assert pocket.volume == pytest.approx(60 - 0.5 * 15 + 0.5, rel=2e-2)
+
+
+def test_a_way_out_is_cut_where_it_is_shortest_and_never_through_a_part():
+    (way,) = find_drains(arrays(CASE), [], hole=0.2)
+    drained = CASE - box((way[1] - way[0]).tolist(), way[0].tolist())
+    assert find_pockets([arrays(drained)], [], hole=0.2) == []
+    assert (way[0] > (-1, -1, 0)).all()
+    shell = box((8, 7, 9), (-1, -1, -1)) - box((6, 5, 7), (0, 0, 0))
+    assert find_drains(arrays(CASE), [arrays(shell)], hole=0.2) == []
 
 
 def test_the_same_solids_give_the_same_pockets_wherever_they_stand():

@@ -43,7 +43,7 @@ class Pocket(NamedTuple):
     closed: bool
 
 
-class _Lines(NamedTuple):
+class Lines(NamedTuple):
     """Upright lines: ``(y, x)`` of `shape` stands at ``origin + (x + 0.5, y + 0.5) * spacing``."""
 
     origin: Floats
@@ -51,7 +51,7 @@ class _Lines(NamedTuple):
     shape: tuple[int, int]
 
 
-class _Runs(NamedTuple):
+class Runs(NamedTuple):
     """Free intervals of lines: those of line i are ``start[i] .. start[i + 1]``."""
 
     start: Ints
@@ -63,6 +63,23 @@ class _Runs(NamedTuple):
         begin, end = self.start[line], self.start[line + 1]
         index = int(begin + np.searchsorted(self.high[begin:end], height))
         return index if index < end and self.low[index] <= height else -1
+
+
+class Void(NamedTuple):
+    """The space that solids leave free, as a ball of some width can use it.
+
+    Attributes
+    ----------
+    free, roomy
+        Where lines are free, and where the ball's centre may be.
+    pocket
+        ``(n,)`` for each roomy run the number of its pocket, 0 for the outside.
+    """
+
+    lines: Lines
+    free: Runs
+    roomy: Runs
+    pocket: Ints
 
 
 def spacing_for(hole: float, size: Floats) -> float:
@@ -88,31 +105,37 @@ def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: floa
     hole
         mm, above 0.
     """
-    solids = [*supports, *parts]
     if not supports:
         return []
-    lines = _lines(solids, hole)
-    free = _free_runs(lines, solids)
-    roomy = _roomy_runs(lines, free, hole / 2.0)
-    pocket = _with_room(lines, free, roomy, _pockets(lines, roomy, hole / 2.0))
-    if not pocket.any():
+    void = flood([*supports, *parts], hole)
+    if not void.pocket.any():
         return []
-    found = _listed(lines, free, roomy, pocket, hole / 2.0)
+    found = _listed(*void, hole / 2.0)
     if not parts:
         return found
-    return _unless_own(found, lines, _roomy_runs(lines, _free_runs(lines, parts), hole / 2.0), hole / 2.0)
+    own = _roomy_runs(void.lines, free_runs_of(void.lines, parts), hole / 2.0)
+    return _unless_own(found, void.lines, own, hole / 2.0)
 
 
-def _lines(solids: Sequence[Arrays], hole: float) -> _Lines:
+def flood(solids: Sequence[Arrays], hole: float) -> Void:
+    """Find where a ball of diameter `hole` mm may be between solids, and from where it does not get out."""
+    lines = _lines(solids, hole)
+    free = free_runs_of(lines, solids)
+    roomy = _roomy_runs(lines, free, hole / 2.0)
+    return Void(lines, free, roomy, _with_room(lines, free, roomy, _pockets(lines, roomy, hole / 2.0)))
+
+
+def _lines(solids: Sequence[Arrays], hole: float) -> Lines:
     """Stand lines over all solids and at least two beside them on each side."""
     low = np.min([points.min(axis=0) for points, _ in solids], axis=0)
     high = np.max([points.max(axis=0) for points, _ in solids], axis=0)
     spacing = spacing_for(hole, high - low)
     nx, ny = (np.ceil((high - low)[:2] / spacing) + 5).astype(int).tolist()
-    return _Lines(low[:2] - (2.5 + _OFF) * spacing, spacing, (ny, nx))
+    return Lines(low[:2] - (2.5 + _OFF) * spacing, spacing, (ny, nx))
 
 
-def _free_runs(lines: _Lines, solids: Sequence[Arrays]) -> _Runs:
+def free_runs_of(lines: Lines, solids: Sequence[Arrays]) -> Runs:
+    """Return where lines are free of solids, above the plate."""
     from amprep.kernels.powder import cross_lines, free_runs
 
     meshes = [
@@ -131,10 +154,10 @@ def _free_runs(lines: _Lines, solids: Sequence[Arrays]) -> _Runs:
     start = np.empty(count + 1, np.int64)
     low, high = np.empty((2, first[-1] + count), np.float32)
     total = free_runs(first, heights, signs, _ABOVE, start, low, high)
-    return _Runs(start, low[:total], high[:total])
+    return Runs(start, low[:total], high[:total])
 
 
-def _roomy_runs(lines: _Lines, free: _Runs, radius: float) -> _Runs:
+def _roomy_runs(lines: Lines, free: Runs, radius: float) -> Runs:
     from amprep.kernels.powder import roomy_runs
 
     start = np.empty_like(free.start)
@@ -142,10 +165,10 @@ def _roomy_runs(lines: _Lines, free: _Runs, radius: float) -> _Runs:
     most = 5 * int(np.diff(free.start).max())
     spare = np.empty((2, 2, most), np.float32)
     total = roomy_runs(lines.shape, radius, *free, start, low, high, spare)
-    return _Runs(start, low[:total], high[:total])
+    return Runs(start, low[:total], high[:total])
 
 
-def _pockets(lines: _Lines, runs: _Runs, radius: float) -> Ints:
+def _pockets(lines: Lines, runs: Runs, radius: float) -> Ints:
     """Return the number of each run's pocket, 0 for the outside."""
     from amprep.kernels.powder import join_runs
 
@@ -154,7 +177,7 @@ def _pockets(lines: _Lines, runs: _Runs, radius: float) -> Ints:
     return parent[1:].astype(np.int64)
 
 
-def _with_room(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints) -> Ints:
+def _with_room(lines: Lines, free: Runs, roomy: Runs, pocket: Ints) -> Ints:
     """Return the pockets, but for those nowhere as wide as the square around the ball: they count as outside."""
     from amprep.kernels.powder import find_wide
 
@@ -166,7 +189,7 @@ def _with_room(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints) -> Ints:
     return np.where(np.isin(pocket, pocket[chosen[wide]]), pocket, 0)
 
 
-def _listed(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints, radius: float) -> list[Pocket]:
+def _listed(lines: Lines, free: Runs, roomy: Runs, pocket: Ints, radius: float) -> list[Pocket]:
     """Describe the pockets of roomy runs: whole cavities if they are closed, else what the ball can reach."""
     around = _pockets(lines, free, 0.0)
     chosen = np.flatnonzero(pocket)
@@ -198,7 +221,7 @@ def _listed(lines: _Lines, free: _Runs, roomy: _Runs, pocket: Ints, radius: floa
 
 
 def _swept(
-    lines: _Lines, line: Ints, low: Floats, high: Floats, label: Ints, radius: float
+    lines: Lines, line: Ints, low: Floats, high: Floats, label: Ints, radius: float
 ) -> tuple[Ints, Floats, Floats, Ints]:
     """Return the runs that balls cover whose centres are on the given ones: those and the lines beside them."""
     nx = lines.shape[1]
@@ -219,7 +242,7 @@ def _swept(
 
 
 def _pocket(
-    lines: _Lines,
+    lines: Lines,
     line: Ints,
     low: Floats,
     high: Floats,
@@ -243,7 +266,7 @@ def _pocket(
     )
 
 
-def _unless_own(found: list[Pocket], lines: _Lines, parts: _Runs, radius: float) -> list[Pocket]:
+def _unless_own(found: list[Pocket], lines: Lines, parts: Runs, radius: float) -> list[Pocket]:
     """Leave out pockets that parts lock in by themselves."""
     pocket = _pockets(lines, parts, radius)
     kept = []

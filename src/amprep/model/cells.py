@@ -122,6 +122,9 @@ class Cells:
         ``(n,)`` int32: which template; which edge of the request it replaces (gives group, role and load).
     matrix
         ``(n, 3, 4)`` float64: unit cube to build coordinates.
+    hole
+        mm; a ball that wide has to get out from between the cells: the host cuts a way where it does not. 0
+        for none.
     """
 
     templates: tuple[Template, ...]
@@ -130,6 +133,7 @@ class Cells:
     matrix: Floats
     extra: tuple[ExtraMesh, ...] = ()
     beams: Beams | None = None
+    hole: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "template", frozen(self.template, np.int32))

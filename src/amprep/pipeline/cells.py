@@ -12,6 +12,7 @@ from amprep.pipeline.cell_beams import MOST_STOOD_IN, keep_out, lattice_of, of_g
 from amprep.pipeline.cell_carving import Obstacles
 from amprep.pipeline.cell_clearance import Clearance
 from amprep.pipeline.cell_connectors import Ways, find_ways
+from amprep.pipeline.cell_draining import drained
 from amprep.pipeline.cell_feet import foot_boxes
 from amprep.pipeline.cell_groups import sheet_of, solid_of
 from amprep.pipeline.cell_requests import Emit, checked, make_request
@@ -96,7 +97,7 @@ def build_supports(
             break
         names.append(", ".join(parts[part].label for part in held))
         report(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
-        solids.append(work.solid(group, emitted))
+        solids.append(work.drained_solid(group, emitted))
     bodies: list[SupportBody] = []
     bases = make_bases(solids, parts, base, space, gap)
     for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
@@ -166,6 +167,16 @@ class _Work(NamedTuple):
             overlap=self.overlap,
             connector=self.connector,
             on_beams=on_beams,
+        )
+
+    def drained_solid(self, group: int, emitted: Emitted) -> Mesh | None:
+        """Return the solid of a group, with ways out for powder where the cell promises them."""
+        solid, hole = self.solid(group, emitted), emitted.cells.hole
+        if solid is None or hole == 0.0:
+            return solid
+        held = [self.parts[part].mesh for part in self.layout.group_parts[group]]
+        return drained(
+            solid, held, hole, foot_boxes(self.layout, group, max(self.overlap, CONTACT_TOLERANCE))
         )
 
     def lattice(

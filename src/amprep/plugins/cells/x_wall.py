@@ -19,6 +19,9 @@ leaves triangles folded onto one another.
 _USUAL = 0.3
 """mm; what a fine scan track with its neighbour is wide, and what powder still runs through."""
 
+_HOLE = 0.2
+"""mm; what powder runs through at the least."""
+
 _NEAR, _AXIS = 0.7, 0.1
 """How near to the cell's centre windows begin: in `arm`s (half of one is inside the crossing), at least a share."""
 
@@ -82,7 +85,9 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, repor
     rows = np.column_stack([rows, hair, _beside_oblique(request)])
     kinds, template = np.unique(rows, axis=0, return_inverse=True)
     templates = tuple(_template(shares, kind[:3], kind[3], bool(kind[4])) for kind in kinds.tolist())
-    return Cells(templates, template.ravel(), np.arange(len(request.plane)), request.matrices)
+    edge = np.arange(len(request.plane))
+    hole = _HOLE if params.join_every > 1 and params.wall_mm != 0.0 else 0.0
+    return Cells(templates, template.ravel(), edge, request.matrices, hole=hole)
 
 
 def _beside_oblique(request: CellRequest) -> NDArray[np.bool_]:

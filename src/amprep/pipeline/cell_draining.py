@@ -1,0 +1,42 @@
+"""Cuts ways out of finished supports where they would lock powder in, for cells that promise to let it out."""
+
+from collections.abc import Sequence
+
+from amprep.geometry.cell_solids import finish
+from amprep.geometry.drains import find_drains
+from amprep.geometry.solids import as_manifold
+from amprep.model import Mesh
+from amprep.model.arrays import Floats
+from amprep.pipeline.cell_carving import standing_only
+
+_ROUNDS = 3
+"""A way may end in another pocket's way."""
+
+_CRUMB = 1e-3
+"""mm3; more than that must not come to hang in the air because of a way out."""
+
+
+def drained(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats, Floats]) -> Mesh:
+    """Return a support with ways out for a ball of diameter `hole` mm, wherever short straight ones exist.
+
+    Parameters
+    ----------
+    parts
+        Those that the support holds.
+    boxes
+        Least and greatest corners of the boxes in which feet on parts end.
+    """
+    from manifold3d import Manifold, OpType
+
+    around = [(part.vertices, part.triangles) for part in parts]
+    for _ in range(_ROUNDS):
+        drains = find_drains((solid.vertices, solid.triangles), around, hole)
+        if not drains:
+            break
+        cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in drains]
+        whole = as_manifold(solid.vertices, solid.triangles) - Manifold.batch_boolean(cuts, OpType.Add)
+        stands = Mesh(*standing_only(*finish([whole]), boxes))
+        if stands.signed_volume < whole.volume() - _CRUMB:
+            break
+        solid = stands
+    return solid
