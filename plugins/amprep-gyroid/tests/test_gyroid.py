@@ -6,6 +6,7 @@ from amprep_gyroid import GyroidParams, declare_gyroid, gyroid
 
 from amprep.cells.emission import templates_of
 from amprep.checks.cell_ports import port_areas
+from amprep.geometry.manifolds import as_manifold
 from amprep.host import Host
 from amprep.pipeline.cell_check import check_cell
 from amprep.pipeline.trial import try_plugin
@@ -35,6 +36,14 @@ def test_a_wall_has_the_thickness_asked_for():
     # the gyroid's area in the unit cube is 3.0915 (numerically known): thin walls fill area times thickness
     walls = template(kind="wall", wall_mm=0.3, resolution=28).mesh
     assert walls.signed_volume == pytest.approx(3.0915 * 0.3 / 4.0, rel=0.05)
+
+
+def test_walls_are_cut_finely_enough_to_have_no_holes():
+    handles = {
+        as_manifold(mesh.vertices, mesh.triangles).genus()
+        for mesh in (template(kind="wall", wall_mm=wall).mesh for wall in (0.4, 0.8))
+    }
+    assert handles == {2}
 
 
 def test_opposite_sides_are_cut_into_the_same_triangles():

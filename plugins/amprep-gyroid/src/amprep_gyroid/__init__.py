@@ -17,20 +17,27 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class GyroidParams:
-    """What is filled: one side of the surface up to a density, or a wall of some thickness."""
+    """What is filled: one side of the surface up to a density, or a wall of some thickness.
+
+    Attributes
+    ----------
+    resolution
+        Steps along each side of the cell. Left out, it is 6 for a network, and for a wall so many that its
+        thickness takes more than one.
+    """
 
     kind: Literal["network", "wall"] = "network"
     density: float = 0.3
     wall_mm: float = 0.4
-    resolution: int = 8
+    resolution: int | None = None
 
     def __post_init__(self) -> None:
         if not 0.1 <= self.density <= 0.9:
             raise ValueError(f"density is between 0.1 and 0.9, got {self.density}")
         if not self.wall_mm > 0:
             raise ValueError(f"wall_mm is above 0, got {self.wall_mm}")
-        if not 8 <= self.resolution <= 60:
-            raise ValueError(f"resolution is between 8 and 60, got {self.resolution}")
+        if self.resolution is not None and not 6 <= self.resolution <= 60:
+            raise ValueError(f"resolution is between 6 and 60, got {self.resolution}")
 
 
 @hookimpl
@@ -57,7 +64,10 @@ def declare_gyroid(pitch: float, step: float, params: GyroidParams) -> ImplicitC
         steepness = np.maximum(np.linalg.norm(gradient / size, axis=1), 1e-6)
         return params.wall_mm / 2 - np.abs(value) / steepness
 
-    return ImplicitCell(network if params.kind == "network" else wall, params.resolution)
+    if params.kind == "network":
+        return ImplicitCell(network, params.resolution or 6)
+    usual = int(np.clip(np.ceil(1.5 * size.max() / params.wall_mm), 8, 60))
+    return ImplicitCell(wall, params.resolution or usual)
 
 
 def gyroid(points: Floats) -> tuple[Floats, Floats]:
