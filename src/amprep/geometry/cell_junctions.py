@@ -1,13 +1,15 @@
 """Unite cells of all directions on arrays: each pattern of cells that share a cube once, the cubes side to side."""
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from amprep.geometry.cell_edges import crowded_ends, halved, part_at
-from amprep.geometry.cell_pieces import LATTICE, SIDES, Pieces
+from amprep.geometry.cell_pieces import LATTICE, SIDES, Piece, Pieces
 from amprep.geometry.merging import degenerate
 from amprep.geometry.welding import label_equal_rows
 
@@ -55,30 +57,29 @@ class _Seams(NamedTuple):
     splits: Ints
 
 
+class _Copies(NamedTuple):
+    """Where copies of a piece go: cubes ``(n,)`` by number; where their inner points and triangles begin."""
+
+    piece: Piece
+    cube: Ints
+    point: int
+    triangle: int
+
+
 class _Soup(NamedTuple):
-    """Triangles of all cubes; corners count inner points first, then those that others may share.
+    """Triangles at the sides of cubes; corners count the inner points first, then those that others may share.
 
     Attributes
     ----------
-    points
-        ``(i + s, 3)`` mm; only the inner ones are there yet.
-    inner
-        How many these are.
     shared
         ``(s, 3)`` steps of the lattice from the grid's origin; several at each place.
-    triangles, closed
-        Those of inner points alone come first, so many; there is room for more.
     near, rim
         Triangles with one shared corner, and with more.
     splits
         ``(r, 3)`` corners: edges and what they pass through.
     """
 
-    points: Floats
-    inner: int
     shared: Ints
-    triangles: NDArray[np.int32]
-    closed: int
     near: Ints
     rim: Ints
     splits: Ints
@@ -150,28 +151,103 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
     origin, size
         ``(3,)`` mm, of the grid and of its cubes.
     """
-    soup = _expanded(pieces, cubes, _face(pieces, cubes), origin, size)
-    if soup is None:
+    facing = _face(pieces, cubes)
+    seams = _placed_seams(pieces, cubes, facing)
+    if seams is None:
         return None
-    inner = soup.inner
+    copies = _copies(pieces, cubes)
+    inner, closed = copies[-1].point, copies[-1].triangle
+    every = sum(len(each.cube) * sum(map(len, each.piece.parts)) for each in copies)
+    outer = sum(len(each.cube) * (len(each.piece.points) - each.piece.inner) for each in copies)
+    points = np.empty((inner + outer + sum(len(seam.corners) for seam in seams), 3))
+    triangles = np.empty((every + sum(len(seam.triangles) for seam in seams), 3), np.int32)
+    with ThreadPoolExecutor(1) as pool:
+        filling = pool.submit(_fill, copies, cubes.place, origin, size, points, triangles)
+        shared, near, rim = _joined(_at_sides(copies, cubes, facing, seams), inner)
+        crowded = crowded_ends(rim, inner)
+        filling.result()
+    if crowded is None:
+        return None
+    last = inner + len(shared)
+    points[inner:last] = origin + shared * (size / LATTICE)
+    added, rim = part_at(points[:last], np.concatenate([near, rim]), crowded)
+    used = np.zeros(last + len(added), np.bool_)
+    used[rim] = True
+    _renumber(rim, inner, np.cumsum(used[inner:]) - 1)
+    rest = np.concatenate([points[inner:last], added])[used[inner:]]
+    return _appended(points, inner, rest), _appended(triangles, closed, rim)
+
+
+def _copies(pieces: Pieces, cubes: Cubes) -> list[_Copies]:
+    """List which cubes hold each piece, and behind them where inner points and triangles end."""
+    used, which, count = np.unique(cubes.piece, return_inverse=True, return_counts=True)
+    order = np.split(np.argsort(which, kind="stable"), np.cumsum(count)[:-1])
+    listed: list[_Copies] = []
+    point = triangle = 0
+    for number, cube in zip(used.tolist(), order, strict=True):
+        piece = pieces.made[number]
+        listed.append(_Copies(piece, cube, point, triangle))
+        point += len(cube) * piece.inner
+        triangle += len(cube) * len(piece.parts[0])
+    return [*listed, _Copies(piece, order[0][:0], point, triangle)]
+
+
+def _fill(
+    copies: list[_Copies],
+    place: Ints,
+    origin: Floats,
+    size: Floats,
+    points: Floats,
+    triangles: NDArray[np.int32],
+) -> None:
+    """Write inner points, and triangles of these alone; the bulk of the work, and done beside the rest."""
+    for (piece, cube, point, triangle), after in pairwise(copies):
+        into = points[point : after.point].reshape(len(cube), -1, 3)
+        moved = (origin + place[cube] * size)[:, None]
+        np.add((piece.points[: piece.inner] * (size / LATTICE))[None], moved, out=into)
+        starts = (point + piece.inner * np.arange(len(cube), dtype=np.int32))[:, None, None]
+        faces = triangles[triangle : after.triangle].reshape(len(cube), -1, 3)
+        np.add(piece.parts[0][None].astype(np.int32), starts.astype(np.int32), out=faces)
+
+
+def _at_sides(copies: list[_Copies], cubes: Cubes, facing: _Facing, seams: list[_Seams]) -> _Soup:
+    """Copy what lies at the sides of cubes, and between them what differing sides come to."""
+    shared, near, rim = [], [], []
+    first = copies[-1].point
+    for piece, cube, point, _ in copies[:-1]:
+        sides = piece.points[piece.inner :]
+        shared.append((sides[None] + cubes.place[cube][:, None] * LATTICE).reshape(-1, 3))
+        number = np.arange(len(cube))
+        starts = np.column_stack([point + piece.inner * number, first - piece.inner + len(sides) * number])
+        near.append(_copied(piece.parts[1], piece.inner, starts))
+        rim.append(_copied(piece.parts[2], piece.inner, starts))
+        rim += [
+            _copied(piece.parts[3 + side], piece.inner, starts[facing.keep[cube, side]]) for side in SIDES
+        ]
+        first += len(sides) * len(cube)
+    return _Soup(
+        np.concatenate([*shared, *(seam.corners for seam in seams)]),
+        np.concatenate(near),
+        np.concatenate([*rim, *(seam.triangles + first for seam in seams)]),
+        np.concatenate([np.empty((0, 3), np.int64), *(seam.splits + first for seam in seams)]),
+    )
+
+
+def _joined(soup: _Soup, inner: int) -> tuple[Ints, Ints, Ints]:
+    """Make shared corners at the same place one, and split edges at the corners that lie on them.
+
+    Returns
+    -------
+    shared, near, rim
+        Each place once; triangles as in the soup.
+    """
     label, count = label_equal_rows(soup.shared)
     shared = np.empty((count, 3), np.int64)
     shared[label] = soup.shared
     _renumber(soup.near, inner, label)
     _renumber(soup.rim, inner, label)
     rim = _at_splits(soup.rim, inner + label[soup.splits - inner], inner + count)
-    rim = _at_lines(rim, shared, inner)
-    crowded = crowded_ends(rim, inner)
-    if crowded is None:
-        return None
-    points = soup.points
-    points[inner : inner + count] = origin + shared * (size / LATTICE)
-    added, rim = part_at(points[: inner + count], np.concatenate([soup.near, rim]), crowded)
-    used = np.zeros(inner + count + len(added), np.bool_)
-    used[rim] = True
-    _renumber(rim, inner, np.cumsum(used[inner:]) - 1)
-    rest = np.concatenate([points[inner : inner + count], added])[used[inner:]]
-    return _appended(points, inner, rest), _appended(soup.triangles, soup.closed, rim)
+    return shared, soup.near, _at_lines(rim, shared, inner)
 
 
 def _renumber(triangles: Ints, first: int, number: Ints) -> None:
@@ -209,52 +285,6 @@ def _face(pieces: Pieces, cubes: Cubes) -> _Facing:
         differ = meet & (ours != theirs)
         differing.append([cube[differ], np.full(int(differ.sum()), axis), ours[differ], theirs[differ]])
     return _Facing(keep, *(np.concatenate(column) for column in zip(*differing, strict=True)))
-
-
-def _expanded(pieces: Pieces, cubes: Cubes, facing: _Facing, origin: Floats, size: Floats) -> _Soup | None:
-    """Put copies of the pieces into the cubes, and between them what differing sides come to."""
-    seams = _placed_seams(pieces, cubes, facing)
-    if seams is None:
-        return None
-    used, which = np.unique(cubes.piece, return_inverse=True)
-    made = [pieces.made[number] for number in used]
-    copies = np.bincount(which, minlength=len(made)).tolist()
-    inner, triangles = (
-        np.concatenate([[0], np.cumsum([len(part) * n for part, n in zip(parts, copies, strict=True)])])
-        for parts in ([piece.points[: piece.inner] for piece in made], [piece.parts[0] for piece in made])
-    )
-    first = int(inner[-1])
-    room = sum((len(piece.points) - piece.inner) * n for piece, n in zip(made, copies, strict=True))
-    room += sum(len(seam.corners) for seam in seams)
-    points = np.empty((first + room, 3))
-    closed = int(triangles[-1])
-    all_ = sum(sum(map(len, piece.parts)) * n for piece, n in zip(made, copies, strict=True))
-    faces = np.empty((all_ + sum(len(seam.triangles) for seam in seams), 3), np.int32)
-    shared, near, rim = [], [], []
-    order = np.split(np.argsort(which, kind="stable"), np.cumsum(copies)[:-1])
-    for number, (piece, cube) in enumerate(zip(made, order, strict=True)):
-        place, inside, sides = cubes.place[cube], piece.points[: piece.inner], piece.points[piece.inner :]
-        into = points[inner[number] : inner[number + 1]].reshape(len(cube), -1, 3)
-        np.add((inside * (size / LATTICE))[None], (origin + place * size)[:, None], out=into)
-        starts = inner[number] + piece.inner * np.arange(len(cube))
-        into = faces[triangles[number] : triangles[number + 1]].reshape(len(cube), -1, 3)
-        np.add(piece.parts[0][None].astype(np.int32), starts[:, None, None].astype(np.int32), out=into)
-        shared.append((sides[None] + place[:, None] * LATTICE).reshape(-1, 3))
-        both = np.column_stack([starts, first - piece.inner + len(sides) * np.arange(len(cube))])
-        near.append(_copied(piece.parts[1], piece.inner, both))
-        rim.append(_copied(piece.parts[2], piece.inner, both))
-        rim += [_copied(piece.parts[3 + side], piece.inner, both[facing.keep[cube, side]]) for side in SIDES]
-        first += len(sides) * len(cube)
-    return _Soup(
-        points,
-        int(inner[-1]),
-        np.concatenate([*shared, *(seam.corners for seam in seams)]),
-        faces,
-        closed,
-        np.concatenate(near),
-        np.concatenate([*rim, *(seam.triangles + first for seam in seams)]),
-        np.concatenate([np.empty((0, 3), np.int64), *(seam.splits + first for seam in seams)]),
-    )
 
 
 def _placed_seams(pieces: Pieces, cubes: Cubes, facing: _Facing) -> list[_Seams] | None:

@@ -3,18 +3,21 @@
 from collections.abc import Sequence
 from functools import cache
 from itertools import product
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from amprep.geometry.cell_edges import crowded_ends
 from amprep.geometry.cell_sides import Seam, seam
-from amprep.geometry.cell_solids import arrays_of, union
+from amprep.geometry.cell_solids import arrays_of, evaluated
 from amprep.geometry.cell_tiling import plate
 from amprep.geometry.manifolds import as_manifold
 from amprep.geometry.merging import count_edges
 from amprep.geometry.welding import cancel_opposite, label_equal_rows
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -77,7 +80,7 @@ class Pieces:
         self._buckets: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
         self._items: dict[tuple[int, ...], int] = {}
         self.items: list[Arrays] = []
-        self._solid = cache(lambda item: as_manifold(*self.items[item]))
+        self._united = cache(self._unite)
         self._number: dict[bytes, int] = {}
         self._outline_number: dict[bytes, int] = {b"": 0}
         self._outlines: list[Ints] = [np.empty((0, 2, 2), np.int64)]
@@ -151,10 +154,16 @@ class Pieces:
         if key not in self._number:
             mesh = self.items[items[0]]
             if len(items) > 1:
-                mesh = arrays_of(union([self._solid(item) for item in items.tolist()]))
+                mesh = arrays_of(self._united(tuple(items.tolist())))
             self._number[key] = len(self.made)
             self.made.append(self._sorted_out(*mesh))
         return self._number[key]
+
+    def _unite(self, items: tuple[int, ...]) -> "Manifold":
+        """Unite items one after the other: many patterns begin with the same ones."""
+        if len(items) == 1:
+            return as_manifold(*self.items[items[0]])
+        return evaluated(self._united(items[:-1]) + self._united(items[-1:]))
 
     def _sorted_out(self, points: Floats, triangles: Ints) -> Piece:
         settled = self._settled(points).astype(np.int64)
@@ -162,7 +171,8 @@ class Pieces:
         merged = np.empty((count, 3), np.int64)
         merged[label] = settled
         triangles = label[triangles]
-        triangles = triangles[cancel_opposite(triangles)]
+        if count < len(points):
+            triangles = triangles[cancel_opposite(triangles)]
         used, where = np.unique(triangles, return_inverse=True)
         merged, triangles = merged[used], where.reshape(-1, 3)
         outer = ((merged == 0) | (merged == LATTICE)).any(axis=1)
