@@ -70,6 +70,8 @@ def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> Arr
     points, triangles = conform(
         np.array(mesh.vert_properties[:, :3], np.float64), np.array(mesh.tri_verts, np.int64)
     )
+    if not len(triangles):
+        return points, triangles
     sides = np.column_stack([points == 0.0, points == 1.0]) @ (1 << np.arange(6))
     return thin_out(points, triangles, _THINNED * step, sides)
 
