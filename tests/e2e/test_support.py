@@ -224,3 +224,45 @@ def test_a_lack_of_room_is_answered_by_the_advice_of_a_finer_grid(amprep, tmp_pa
     (region,) = outcome.json["builds"][0]["supports"]["unsupported"]
     assert region["reason"] == "no white cube below"
     assert any("--set supports.pitch_mm=1" in words for words in outcome.json["warnings"])
+
+
+def test_what_has_no_way_is_answered_by_the_advice_of_standing_on_the_part(amprep, tmp_path):
+    """A ball with a ball-shaped hole: nothing leads out of it."""
+    import trimesh
+
+    hole = trimesh.creation.icosphere(2, 6.0)
+    hole.invert()
+    trimesh.util.concatenate([trimesh.creation.icosphere(2, 9.0), hole]).export(tmp_path / "hollow.stl")
+    command = ("support", tmp_path / "hollow.stl", "--center", "--json", "--dry-run")
+    outcome = amprep(*command)
+    (advice,) = [words for words in outcome.json["warnings"] if "without a way to the plate" in words]
+    assert "1 region is" in advice
+    assert "--set supports.grounding=anywhere" in advice
+    inside = amprep(*command, "--grounding", "anywhere")
+    assert not any("without a way" in words for words in inside.json["warnings"])
+    assert "columns stand on parts" in inside.json["builds"][0]["supports"]["notes"][0]
+
+
+def test_supports_are_planned_whatever_the_job_says_and_a_limit_of_time_is_listed(amprep, tmp_path):
+    _box(tmp_path / "box.stl", (0, 0, 10), (20, 20, 5))
+    command = ("support", tmp_path / "box.stl", "--json", "--dry-run", "--set", "supports.enabled=false")
+    outcome = amprep(*command)
+    assert outcome.code == 0
+    assert outcome.json["builds"][0]["supports"]["red"] > 0
+    assert any(
+        words.startswith("supports.enabled = false holds for 'amprep run'") for words in outcome.json["notes"]
+    )
+    late = amprep(*command, "--time-limit", "0.000001")
+    assert late.code == 1
+    supports = late.json["builds"][0]["supports"]
+    assert {each["reason"] for each in supports["unconnected"]} == {"time limit"}
+    assert any("allow a longer time limit" in words for words in late.json["warnings"])
+
+
+def test_no_grid_is_so_coarse_that_anything_counts_as_held(amprep, tmp_path):
+    _box(tmp_path / "box.stl", (0, 0, 30), (60, 60, 5))
+    outcome = amprep(
+        "support", tmp_path / "box.stl", "--json", "--set", "supports.pitch_mm=20", "-o", tmp_path
+    )
+    assert outcome.code == 0
+    assert amprep("verify", tmp_path / "box.supported.3mf").code == 0

@@ -6,7 +6,15 @@ import pytest
 
 from amprep.errors import JobError, PluginError
 from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
-from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, Cube
+from amprep.model.supports import (
+    CAPACITY,
+    CONNECTOR_BLOCKED,
+    DIRECTIONS,
+    ENCLOSED,
+    NO_WHITE_BELOW,
+    OUT_OF_TIME,
+    Cube,
+)
 from amprep.pipeline.supports import Wishes, choose_pitch, plan_supports
 from amprep.plugins.supports.auto import route_auto
 from amprep.plugins.supports.params import ShortestPathsParams
@@ -347,3 +355,36 @@ def test_the_automatic_pitch_keeps_to_the_memory_allowed_and_a_given_one_is_refu
         layout(part, space=space, pitch=0.5, memory_mb=60)
     advised = float(str(refused.value).partition("pitch_mm=")[2].split(")")[0])
     layout(part, space=space, pitch=advised, memory_mb=60)
+
+
+def test_each_part_gets_its_share_of_the_time_and_what_is_not_routed_is_listed():
+    given = []
+
+    def remember(problem, stop, report):
+        given.append(stop.remaining())
+        return route(problem, stop, report)
+
+    pair = placed(box((9, 9, 2), (5, 5, 12)), box((9, 9, 2), (30, 30, 20)))
+    assert layout(pair, route=remember, stop=Stop.after(100.0)).connected.all()
+    assert given[0] <= 50.0 < given[1]
+    late = layout(pair, route=remember, stop=Stop.after(-1.0))
+    assert len(given) == 2
+    assert set(late.reasons) == {OUT_OF_TIME}
+
+
+def test_what_is_left_over_is_connected_beside_the_flow_of_other_parts():
+    """Of two slabs above one shaft the upper one is left over, until capacities grow around both flows."""
+    plan = layout(shaft(2), node_capacity=3, escalation="cut", least_area=0.0)
+    assert plan.connected.all()
+    squares, number = np.unique(np.column_stack([plan.plane, plan.y, plan.x]), axis=0, return_inverse=True)
+    through = np.bincount(number.reshape(-1), weights=plan.flow)
+    assert through.max() == 8  # 32 paths over the four squares of the shaft
+    lower = np.column_stack([plan.plane - 1, plan.y, plan.x]) + np.insert(
+        np.array(DIRECTIONS)[plan.direction], 0, 0, axis=1
+    )
+    arriving = {tuple(square): 0 for square in squares.tolist()}
+    for square, flow in zip(lower.tolist(), plan.flow.tolist(), strict=True):
+        arriving[tuple(square)] = arriving.get(tuple(square), 0) + flow
+    red = {tuple(square) for square in plan.red.tolist()}
+    for square, flow in zip(squares.tolist(), through.tolist(), strict=True):
+        assert flow == arriving[tuple(square)] + (tuple(square) in red)

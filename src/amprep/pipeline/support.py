@@ -20,14 +20,16 @@ from amprep.pipeline.supported import support_build
 from amprep.pipeline.writing import finish_build
 from amprep.report.record import RunRecord
 
+_DESPITE = "supports.enabled = false holds for 'amprep run'; 'amprep support' plans supports all the same"
+
 
 def support(
     job: Job, host: Host, options: RunOptions, *, center: bool = False, watcher: Watcher, stop: Stop
 ) -> RunRecord:
     """Support the parts of `job` where their files put them, as one build, and return what was done.
 
-    Clearance and lift are not judged: how the parts lie is the user's choice. Like `amprep.pipeline.run.run`,
-    an interrupted run leaves no file.
+    It plans supports even if the job has none for `amprep.pipeline.run.run`; then a note says so. Clearance and
+    lift are not judged: how the parts lie is the user's choice. An interrupted run leaves no file.
 
     Parameters
     ----------
@@ -39,6 +41,7 @@ def support(
     AmprepError
         For wrong input, an unknown or failing plugin, or parts that reach out of the build volume.
     """
+    notes = () if job.supports.enabled else (_DESPITE,)
     job = replace(
         job,
         packing=replace(job.packing, clearance_mm=0.0, lift_mm=0.0),
@@ -55,6 +58,7 @@ def support(
         build = finish_build(supported, 1, outputs, options.dry_run, options.stl, clock, stop)
         as_it_lies = Packing((), stop_reason="as it lies")
         record = run_record(job, host, parts, [build], outputs, as_it_lies)
+        record = replace(record, notes=(*record.notes, *notes))
         return published(record, outputs, options, clock)
 
 

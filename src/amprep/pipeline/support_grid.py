@@ -44,12 +44,19 @@ def choose_pitch(
 
     The grid is taken to be as high as the parts.
     """
-    bounds = [placed.mesh.bounds for placed in parts]
-    pitch, slope = usual_pitch(parts), float(np.tan(np.radians(strut_angle_deg)))
-    height = float(_common_bounds(bounds)[1][2])
-    while _megabytes(_extent(bounds, height, space, pitch, pitch * slope)[1]) > memory_mb:
+    pitch = usual_pitch(parts)
+    while estimated_megabytes(parts, space, pitch, strut_angle_deg) > memory_mb:
         pitch = round(pitch * 1.05 + 0.05, 1)
     return pitch
+
+
+def estimated_megabytes(
+    parts: Sequence[PlacedPart], space: BuildVolume, pitch: float, strut_angle_deg: float
+) -> float:
+    """Return about what a grid as high as the parts takes."""
+    bounds = [placed.mesh.bounds for placed in parts]
+    step = pitch * float(np.tan(np.radians(strut_angle_deg)))
+    return _megabytes(_extent(bounds, float(_common_bounds(bounds)[1][2]), space, pitch, step)[1])
 
 
 def _megabytes(count: Sequence[int]) -> float:

@@ -1,6 +1,5 @@
 """Supports one build: overhangs and grid, routing, cells, and what stays unsupported."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,14 +16,16 @@ from amprep.model import (
     SupportPlan,
     SupportProblem,
 )
-from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW
 from amprep.pipeline.cell_file import choose_cell
 from amprep.pipeline.cells import build_supports
 from amprep.pipeline.removability import removal_of
 from amprep.pipeline.stages import Clock
-from amprep.pipeline.support_grid import usual_pitch
+from amprep.pipeline.support_advice import advice_for
 from amprep.pipeline.supports import SupportLayout, Wishes, choose_pitch, plan_supports
 from amprep.report.removability import Removal
+
+LARGEST_REACH = 5.0
+"""mm; however coarse the grid, no face that is farther from a contact counts as held, unless the job says so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,28 +81,7 @@ def support_build(
     build = Build(settings, parts, bodies, unsupported)
     with clock.stage("judge"):
         removal = removal_of(job, build)
-    return SupportedBuild(build, layout, tuple(_advice(job, build, pitch)), removal)
-
-
-def _advice(job: Job, build: Build, pitch: float) -> Iterator[str]:
-    """Say where another grid would serve the build better."""
-    usual = usual_pitch(build.parts)
-    if job.supports.pitch_mm is None and pitch > usual:
-        yield (
-            f"the support grid was coarsened from {usual:g} to {pitch:g} mm to keep to supports.memory_mb = "
-            f"{job.supports.memory_mb}"
-        )
-    narrow = [each for each in build.unsupported if each.reason in (NO_WHITE_BELOW, CONNECTOR_BLOCKED)]
-    count = sum(not each.minor for each in narrow)
-    if count:
-        yield (
-            f"{count} regions are unsupported for want of room below them in a grid of {pitch:g} mm; a finer one may "
-            f"reach them: --set supports.pitch_mm={_finer(pitch):g}"
-        )
-
-
-def _finer(pitch: float) -> float:
-    return round(pitch / 2, 1) if pitch >= 0.4 else pitch / 2
+    return SupportedBuild(build, layout, tuple(advice_for(job, build, pitch)), removal)
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -115,7 +95,7 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         lift=job.packing.lift_mm,
         gap=job.supports.gap_mm,
         overlap=job.cells.overlap_mm,
-        reach=job.supports.reach_mm or 1.5 * pitch,
+        reach=job.supports.reach_mm or min(1.5 * pitch, LARGEST_REACH),
         overhang_angle_deg=job.supports.overhang_angle_deg,
         strut_angle_deg=job.supports.strut_angle_deg,
         least_area=job.supports.least_area_mm2,
