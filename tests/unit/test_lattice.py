@@ -22,7 +22,9 @@ from amprep.pipeline.lattice import fill_region
 from amprep.pipeline.lattice_measure import pockets_of
 from amprep.threemf import read_parts, write_parts
 from amprep.threemf.reading_loose import cura_role, with_loose
+from amprep.threemf.writing import write_document
 from amprep.threemf.writing_components import CURA_NAMESPACE
+from amprep.threemf.writing_document import Body, Document, Instance, Item
 
 from .conftest import box_mesh
 
@@ -247,3 +249,19 @@ def test_modifiers_of_cura_mark_the_parts_that_they_lie_in():
     a, b = with_loose(parts, [(Region("lattice", "core", mesh=CORE), np.array([[50.0, 1.0, 0.0]]))])
     assert b.regions == ()
     assert a.regions[0].mesh.bounds[0] == pytest.approx([2, 3, 2])
+
+
+def test_a_plate_of_cura_is_read_with_its_modifier_as_a_region_not_as_a_part(tmp_path):
+    bodies = (
+        Body("block", BLOCK),
+        Body("core", CORE, metadata=((CURA_NAMESPACE, "infill_mesh", "True"),)),
+    )
+    place = np.eye(4)
+    place[:3, 3] = (30, 40, 0)
+    items = tuple(Item((Instance(number, place),), ()) for number in (1, 0))
+    write_document(Document("plate", (), bodies, items), tmp_path / "plate.3mf", slicer=False)
+    (part,) = read_parts(tmp_path / "plate.3mf")
+    (region,) = part.regions
+    assert (part.name, region.kind, region.name) == ("block", "lattice", "core")
+    assert region.mesh.bounds[0] == pytest.approx([2, 2, 2])
+    assert any("'amprep lattice' fills it" in note for note in part.notes)
