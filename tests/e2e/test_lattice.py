@@ -17,7 +17,7 @@ def read(path):
 
 def test_the_web_of_a_wheel_becomes_cells_in_a_file_that_run_packs(amprep, fixtures, tmp_path):
     done = amprep(
-        "lattice", fixtures / "wheel.3mf", "--cell", "strut", "--size", 9, "-o", tmp_path, "--stl",
+        "lattice", fixtures / "wheel.3mf", "--cell", "strut", "--size", 4.5, "-o", tmp_path, "--stl",
         "--set", "cells.density_g_cm3=4.4",
     )  # fmt: skip
     assert done.code == 0
