@@ -23,7 +23,7 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
     """Return the columns above connected red squares in which no support enters the part.
 
     Supports enter what they hold by the overlap, so volumes tell, by manifold3d. What is listed as unsupported
-    in a column excuses it. Walls without thickness have no volume and are not judged.
+    in a column excuses it. Walls without thickness have no volume: parts that they hold are not judged.
 
     Parameters
     ----------
@@ -34,7 +34,8 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
     """
     found = []
     for index, placed in enumerate(build.parts):
-        own = np.flatnonzero(part == index)
+        walls = any(body.surface and index in body.parts for body in build.supports)
+        own = np.flatnonzero((part == index) & (not walls))
         common = _common(build.supports, placed.mesh, index) if len(own) else []
         listed = [each.points for each in build.unsupported if each.part == index]
         for number in own.tolist():
@@ -49,7 +50,7 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
 def _common(bodies: Sequence[SupportBody], mesh: Mesh, part: int) -> list["Manifold"]:
     """Return what supports and the part they hold have in common."""
     solid = as_manifold(mesh.vertices, mesh.triangles)
-    held = [body.mesh for body in bodies if part in body.parts and not body.surface]
+    held = [body.mesh for body in bodies if part in body.parts]
     return [as_manifold(each.vertices, each.triangles) ^ solid for each in held]
 
 
