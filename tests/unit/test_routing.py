@@ -11,26 +11,11 @@ from hypothesis import strategies as st
 from amprep.checks.supports import check_plan, has_way
 from amprep.model.control import Stop, silent
 from amprep.model.support_graph import to_networkx
-from amprep.model.supports import CAPACITY, ENCLOSED, Cube, GridFrame, SupportProblem
+from amprep.model.supports import CAPACITY, ENCLOSED, Cube
 from amprep.plugins.supports.params import ShortestPathsParams
 from amprep.plugins.supports.shortest_paths import route_shortest_paths
 
-
-def problem(cubes, red, **rules):
-    cubes = np.asarray(cubes, np.uint8)
-    red = np.array(red, np.int32).reshape(-1, 3)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
-    nothing = np.zeros(len(red), np.int32)
-    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE, **rules)
-
-
-def hanging(shape, squares, **rules):
-    """An empty grid of `shape` cubes whose top layer is black over the given ``(y, x)`` squares."""
-    cubes = np.zeros(shape, np.uint8)
-    top = shape[0] - 1
-    for y, x in squares:
-        cubes[top, y, x] = Cube.BLACK
-    return problem(cubes, [(top, y, x) for y, x in squares], **rules)
+from .grids import hanging, problem
 
 
 def route(task, seed=1, **params):

@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from amprep.kernels.box_places import helper
 from amprep.kernels.flow_network import Carried, Room, shift
 from amprep.kernels.routing import Bytes, Ints, Longs, Network
 
@@ -189,6 +190,19 @@ def _take_back_to(network: Network, carried: Carried, state: int, arc: int) -> i
     return origin
 
 
+@helper
+def _raise_potentials(potential: Potentials, seen: Potentials, states: Ints, to: int, highest: int) -> bool:
+    """Raise the potential of each state by what it was seen before `to`; return False if one came too high."""
+    for s in states:
+        if potential[s] + to - seen[s] > highest:
+            return False
+    for s in states:
+        if seen[s] < to:
+            potential[s] += to - seen[s]
+            seen[s] = 0
+    return True
+
+
 @njit(cache=True)
 def search(
     network: Network,
@@ -294,14 +308,8 @@ def search(
                 entry[count], below[count], heads[reach] = t, heads[reach], count
                 count += 1
     raised = best if best < _UNKNOWN else highest + lift
-    for i in range(settled):
-        if potential[done[i]] + raised - (seen[done[i]] - base) > highest_potential:
-            return TOO_HIGH, -1
-    for i in range(settled):
-        s = done[i]
-        if seen[s] - base < raised:
-            potential[s] += raised - (seen[s] - base)
-            seen[s] = 0
+    if not _raise_potentials(potential, seen, done[:settled], base + raised, highest_potential):
+        return TOO_HIGH, -1
     if best == _UNKNOWN:
         return NO_EXIT, -1
     ending[end >> 1] = ending[end >> 1] and not once
