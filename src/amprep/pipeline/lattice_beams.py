@@ -6,6 +6,7 @@ from amprep.errors import JobError
 from amprep.geometry.beams import near_surface, sample
 from amprep.geometry.inside import inside
 from amprep.model import Beams, CellRequest, Lattice, Mesh
+from amprep.pipeline.cell_beams import MOST_STOOD_IN
 from amprep.pipeline.cell_requests import Emit, checked
 from amprep.pipeline.cell_trunks import arrays
 
@@ -38,7 +39,8 @@ def lattice_of(beams: Beams, part: Mesh, islands: Mesh, *, shell: Mesh, whole: M
     islands
         Pieces that were dropped.
     shell, whole
-        The part without the region; with all cells as solids.
+        The part without the region; with all cells as solids, which stands in for the beams in readers that know
+        none, or else, where that has very many triangles, the part as it was.
     """
     places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii)
     vertices, triangles = arrays(part)
@@ -50,4 +52,5 @@ def lattice_of(beams: Beams, part: Mesh, islands: Mesh, *, shell: Mesh, whole: M
     used, local = np.unique(beams.struts[kept], return_inverse=True)
     struts = local.reshape(-1, 2).astype(np.int32)
     nodes, radii = np.round(beams.nodes[used], 6), np.round(beams.radii[kept], 6)
-    return Lattice(nodes, struts, radii, shell, whole, None)
+    stand_in = whole if len(whole.triangles) <= MOST_STOOD_IN else part
+    return Lattice(nodes, struts, radii, shell, stand_in, None)
