@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from amprep.model import Cube, GridFrame, Mesh, SupportBody
-from amprep.pipeline.support_joining import join_columns
 from amprep.pipeline.support_edges import components, cube_users
+from amprep.pipeline.support_joining import join_columns
 from amprep.report.columns import measure_columns
 
 from .conftest import box_mesh
