@@ -1,12 +1,13 @@
 """Ways out for powder that supports lock in: the shortest straight ones from each pocket to the outside."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from amprep.geometry.powder import Arrays, Floats, Ints, Runs, Void, flood, free_runs_of
 
-MOST_DRAINS = 200
+MOST_DRAINS = 2000
 """Ways that are sought in one support at most, for the largest pockets."""
 
 _RUNS = 8
@@ -15,65 +16,83 @@ _RUNS = 8
 _FARTHEST = 3.0
 """mm sideways."""
 
+_WIDE = 1.05
+"""Half the width of a way, as a share of the hole: its sides lie between the lines of the flood, not in them."""
+
+
+class _Ways(NamedTuple):
+    """Of which pocket each way is ``(n,)``, and its two ends ``(n, 3)`` mm."""
+
+    pocket: Ints
+    start: Floats
+    end: Floats
+
 
 def find_drains(support: Arrays, parts: Sequence[Arrays], hole: float) -> list[tuple[Floats, Floats]]:
     """Return boxes (least and greatest corner, mm) which, cut out of a support, let powder out.
 
     Each leads from a pocket straight down, or straight aside along an axis, to where a ball of diameter `hole`
-    gets out; through supports alone, not through parts. It is twice as wide as the hole. Pockets without such
+    gets out; through supports alone, not through parts. It is a little more than twice as wide as the hole. Pockets without such
     a way are left.
     """
     void = flood([support, *parts], hole)
     if not void.pocket.any():
         return []
     around = free_runs_of(void.lines, parts) if parts else None
-    found = []
-    for runs in _by_pocket(void):
-        ways = [way for run in runs for way in _ways(void, around, run)]
-        if ways:
-            start, end = min(ways, key=lambda way: float(np.abs(way[1] - way[0]).sum()))
-            beyond = np.where(np.abs(end - start) < 1e-9, hole, hole / 2.0)
-            found.append((np.minimum(start, end) - beyond, np.maximum(start, end) + beyond))
-    return found
+    ways = _ways(void, around, _longest(void))
+    length = np.abs(ways.end - ways.start).sum(axis=1)
+    order = np.lexsort([np.arange(len(length)), np.round(length, 6), ways.pocket])
+    _, first = np.unique(ways.pocket[order], return_index=True)
+    start, end = ways.start[order[first]], ways.end[order[first]]
+    beyond = np.where(np.abs(end - start) < 1e-9, _WIDE, _WIDE / 2.0) * hole
+    return list(zip(np.minimum(start, end) - beyond, np.maximum(start, end) + beyond, strict=True))
 
 
-def _by_pocket(void: Void) -> Iterator[Ints]:
-    """Yield the longest runs of each pocket, the pockets with the longest ones first."""
+def _longest(void: Void) -> Ints:
+    """Return the longest runs of each pocket, of those pockets that have the longest."""
     length = void.roomy.high - void.roomy.low
     chosen = np.flatnonzero(void.pocket)
     chosen = chosen[np.argsort(-length[chosen], kind="stable")]
-    number, first = np.unique(void.pocket[chosen], return_index=True)
-    for each in number[np.argsort(first)][:MOST_DRAINS]:
-        yield chosen[void.pocket[chosen] == each][:_RUNS]
+    number, first, owner = np.unique(void.pocket[chosen], return_index=True, return_inverse=True)
+    within = np.empty(len(chosen), np.int64)  # rank in its own pocket
+    order = np.argsort(owner, kind="stable")
+    sizes = np.bincount(owner, minlength=len(number))
+    within[order] = np.arange(len(chosen)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    kept = np.isin(owner, np.argsort(first)[:MOST_DRAINS]) & (within < _RUNS)
+    return np.asarray(chosen[kept])
 
 
-def _ways(void: Void, around: Runs | None, run: int) -> Iterator[tuple[Floats, Floats]]:
-    """Yield straight ways from a run of a pocket to the outside, as their two ends."""
-    lines, roomy = void.lines, void.roomy
+def _ways(void: Void, around: Runs | None, run: Ints) -> _Ways:
+    """Return straight ways from runs of pockets to the outside: downwards, or aside at half their height."""
+    lines, roomy, outside = void.lines, void.roomy, void.pocket == 0
     ny, nx = lines.shape
-    line = int(np.searchsorted(roomy.start, run, side="right")) - 1
-    low = float(roomy.low[run])
-    middle = (low + float(roomy.high[run])) / 2.0
+    line = np.searchsorted(roomy.start, run, side="right") - 1
+    low = roomy.low[run].astype(np.float64)
+    middle = (low + roomy.high[run]) / 2.0
 
-    def place(at: int, z: float) -> Floats:
-        plan = lines.origin + (np.array([at % nx, at // nx]) + 0.5) * lines.spacing
-        return np.array([*plan, z])
+    def place(at: Ints, z: Floats) -> Floats:
+        plan = lines.origin + (np.column_stack([at % nx, at // nx]) + 0.5) * lines.spacing
+        return np.column_stack([plan, z])
 
-    def in_part(at: int, z: float) -> bool:
-        return around is not None and around.at(at, z) < 0
-
-    below = run - 1
-    if below >= roomy.start[line] and void.pocket[below] == 0:
-        end = float(roomy.high[below])
-        if around is None or around.at(line, low) == around.at(line, end):
-            yield place(line, low), place(line, end)
+    below = np.maximum(run - 1, 0)
+    end = roomy.high[below].astype(np.float64)
+    down = (run > roomy.start[line]) & outside[below]
+    if around is not None:
+        down &= around.at(line, low) == around.at(line, end)
+    found = [_Ways(void.pocket[run[down]], place(line[down], low[down]), place(line[down], end[down]))]
     for step_y, step_x in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        y, x = divmod(line, nx)
-        for _ in range(int(_FARTHEST / lines.spacing)):
-            y, x = y + step_y, x + step_x
-            if not (0 <= y < ny and 0 <= x < nx) or in_part(y * nx + x, middle):
-                break
-            other = roomy.at(y * nx + x, middle)
-            if other >= 0 and void.pocket[other] == 0:
-                yield place(line, middle), place(y * nx + x, middle)
-                break
+        going = np.arange(len(run))
+        for step in range(1, int(_FARTHEST / lines.spacing) + 1):
+            y, x = line[going] // nx + step * step_y, line[going] % nx + step * step_x
+            inside = (y >= 0) & (y < ny) & (x >= 0) & (x < nx)
+            going, at = going[inside], (y * nx + x)[inside]
+            if around is not None:
+                open_ = around.at(at, middle[going]) >= 0
+                going, at = going[open_], at[open_]
+            other = roomy.at(at, middle[going])
+            out = (other >= 0) & outside[other]
+            start, there = going[out], at[out]
+            ends = place(line[start], middle[start]), place(there, middle[start])
+            found.append(_Ways(void.pocket[run[start]], *ends))
+            going = going[~out]
+    return _Ways(*(np.concatenate(column) for column in zip(*found, strict=True)))

@@ -58,11 +58,16 @@ class Runs(NamedTuple):
     low: Heights
     high: Heights
 
-    def at(self, line: int, height: float) -> int:
-        """Return the run at a height of a line, or -1."""
-        begin, end = self.start[line], self.start[line + 1]
-        index = int(begin + np.searchsorted(self.high[begin:end], height))
-        return index if index < end and self.low[index] <= height else -1
+    def at(self, line: Ints, height: Floats) -> Ints:
+        """Return the run at each height ``(k,)`` of a line ``(k,)``, or -1."""
+        index, end = self.start[line], self.start[line + 1]
+        last = end.copy()
+        while (index < last).any():  # halving, on every line at once
+            middle = (index + last) // 2
+            above = self.high[np.minimum(middle, len(self.high) - 1)] < height
+            index, last = np.where(above & (index < last), middle + 1, index), np.where(above, last, middle)
+        at = np.minimum(index, len(self.low) - 1)
+        return np.where((index < end) & (self.low[at] <= height), index, -1)
 
 
 class Void(NamedTuple):
@@ -198,7 +203,7 @@ def _listed(lines: Lines, free: Runs, roomy: Runs, pocket: Ints, radius: float) 
     order = np.lexsort([low - high, pocket[chosen]])  # the longest run of each pocket first
     longest = order[np.unique(pocket[chosen][order], return_index=True)[1]]
     middle = (low[longest] + high[longest]) / 2.0
-    cavity = np.array([around[free.at(at, z)] for at, z in zip(line[longest], middle, strict=True)])
+    cavity = around[free.at(line[longest], middle)]
     swept = _swept(lines, line, low, high, np.unique(pocket[chosen], return_inverse=True)[1], radius)
     open_ = [
         _pocket(lines, *swept, int(n), line[longest[n]], middle[n], False)
@@ -269,10 +274,8 @@ def _pocket(
 def _unless_own(found: list[Pocket], lines: Lines, parts: Runs, radius: float) -> list[Pocket]:
     """Leave out pockets that parts lock in by themselves."""
     pocket = _pockets(lines, parts, radius)
-    kept = []
-    for each in found:
-        x, y = np.floor((np.array(each.point[:2]) - lines.origin) / lines.spacing).astype(int).tolist()
-        run = parts.at(y * lines.shape[1] + x, each.point[2])
-        if run < 0 or pocket[run] == 0:
-            kept.append(each)
-    return kept
+    place = np.array([each.point for each in found]).reshape(-1, 3)
+    x, y = np.floor((place[:, :2] - lines.origin) / lines.spacing).astype(np.int64).T
+    run = parts.at(y * lines.shape[1] + x, place[:, 2])
+    locked = (run >= 0) & (pocket[run] != 0)
+    return [each for each, own in zip(found, locked.tolist(), strict=True) if not own]

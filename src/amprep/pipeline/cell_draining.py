@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from amprep.geometry.cell_solids import finish
+from amprep.geometry.cell_solids import arrays_of, evaluated, finish
 from amprep.geometry.drains import find_drains
 from amprep.geometry.solids import as_manifold
 from amprep.model import Mesh
 from amprep.model.arrays import Floats
 from amprep.pipeline.cell_carving import standing_only
 
-_ROUNDS = 3
+_ROUNDS = 4
 """A way may end in another pocket's way."""
 
 _CRUMB = 1e-3
@@ -29,14 +29,16 @@ def drained(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats
     from manifold3d import Manifold, OpType
 
     around = [(part.vertices, part.triangles) for part in parts]
+    whole = as_manifold(solid.vertices, solid.triangles)
+    arrays, found = (solid.vertices, solid.triangles), False
     for _ in range(_ROUNDS):
-        drains = find_drains((solid.vertices, solid.triangles), around, hole)
+        drains = find_drains(arrays, around, hole)
         if not drains:
             break
         cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in drains]
-        whole = as_manifold(solid.vertices, solid.triangles) - Manifold.batch_boolean(cuts, OpType.Add)
-        stands = Mesh(*standing_only(*finish([whole]), boxes))
-        if stands.signed_volume < whole.volume() - _CRUMB:
+        opened = evaluated(whole - Manifold.batch_boolean(cuts, OpType.Add))
+        stands = Mesh(*standing_only(*arrays_of(opened), boxes))
+        if stands.signed_volume < opened.volume() - _CRUMB:
             break
-        solid = stands
-    return solid
+        whole, arrays, found = opened, (stands.vertices, stands.triangles), True
+    return Mesh(*finish([as_manifold(*arrays)])) if found else solid
