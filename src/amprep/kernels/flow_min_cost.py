@@ -32,6 +32,9 @@ NO_ARC = 9
 TOO_HIGH = -3
 """Answer of `search` when potentials would no longer fit their type; nothing but labels has been changed."""
 
+TAKEN = 2
+"""Of an exit: units come into it, although perhaps none goes through its square."""
+
 _UNKNOWN = 1 << 40
 
 
@@ -48,11 +51,11 @@ class Exits(NamedTuple):
     Attributes
     ----------
     open
-        ``(squares,)`` uint8, 1 where a path may end once it has come in.
+        ``(squares,)`` uint8, 1 where a path may end once it has come in, `TAKEN` where one has.
     level
         Least potential an exit has to be at for ending there to be free; below, the difference is its cost.
     once
-        Whether only one path may end at each; then units may have come into an exit that has none going through.
+        Whether only one path may end at each.
     """
 
     open: Bytes
@@ -116,7 +119,7 @@ def augment(
         network.via.size,
         exits.open,
     )
-    straight, oblique, each, once = prices.straight, prices.oblique, room.each, exits.once
+    straight, oblique, each = prices.straight, prices.oblique, room.each
     found = 0
     for i in range(starts.size):
         ends[i] = -1
@@ -141,14 +144,14 @@ def augment(
                 if k == 5 and potential[s - 1] == level and seen[s - 1] != number and through[u] > 0:
                     to = s - 1
             else:
-                if level == exits.level and ending[u]:
+                if level == exits.level and ending[u] == 1:
                     break
                 if k == 0:
                     tight = u >= stride and potential[s + 1] == level and seen[s + 1] != number
                     if tight and through[u] < square_room[u * each]:
                         to = s + 1
                     k += to < 0
-                if k > 0 and (once or through[u] > 0):
+                if k > 0 and (through[u] > 0 or ending[u] == TAKEN):
                     while k < 6 and to < 0:
                         direction = k if k < 5 else 0
                         w = u + stride - offset[direction]
@@ -168,8 +171,8 @@ def augment(
             continue
         found += 1
         ends[i] = stack[length] >> 1
-        if once:
-            exits.open[ends[i]] = 0
+        if exits.once:
+            exits.open[ends[i]] = TAKEN
         for j in range(length):
             shift(network, carried, stack[j], arcs[j], 1)
         for j in range(length + 1):
@@ -239,7 +242,7 @@ def search(
     via, offset, stride, top, each = network.via, network.offset, network.stride, network.via.size, room.each
     heads[:] = -1
     highest, settled, bucket, length, count, end = 0, 0, 0, 0, 0, 0
-    best, straight, oblique, once = _UNKNOWN, prices.straight, prices.oblique, exits.once
+    best, straight, oblique = _UNKNOWN, prices.straight, prices.oblique
     for u in starts:
         seen[2 * u], came[2 * u] = base, NO_ARC
         stack[length] = 2 * u
@@ -263,12 +266,12 @@ def search(
             return TOO_FAR, -1
         u, near = s >> 1, bucket - potential[s]
         inward = not s & 1
-        if inward and ending[u]:
+        if inward and ending[u] == 1:
             if near + exits.level < best:
                 best, end = near + exits.level, s
             if bucket >= best:
                 break
-        first = 1 if inward and through[u] == 0 and not once else 6
+        first = 1 if inward and through[u] == 0 and ending[u] != TAKEN else 6
         for k in range(first - 1, -1, -1):
             if inward and k == 0:
                 if u < stride or through[u] >= square_room[u * each]:
@@ -312,7 +315,8 @@ def search(
         return TOO_HIGH, -1
     if best == _UNKNOWN:
         return NO_EXIT, -1
-    ending[end >> 1] = ending[end >> 1] and not once
+    if exits.once:
+        ending[end >> 1] = TAKEN
     while came[end] < NO_ARC:
         end = _take_back_to(network, carried, end, came[end])
     return best, end >> 1
