@@ -32,8 +32,8 @@ def find_drains(support: Arrays, parts: Sequence[Arrays], hole: float) -> list[t
     """Return boxes (least and greatest corner, mm) which, cut out of a support, let powder out.
 
     Each leads from a pocket straight down, or straight aside along an axis, to where a ball of diameter `hole`
-    gets out; through supports alone, not through parts. It is a little more than twice as wide as the hole. Pockets without such
-    a way are left.
+    gets out; through supports alone, not through parts. It is a little more than twice as wide as the hole.
+    Pockets without such a way are left.
     """
     void = flood([support, *parts], hole)
     if not void.pocket.any():
