@@ -53,8 +53,8 @@ def plate_body(low: Floats, high: Floats) -> Body:
 
 
 def unsupported_marks(build: Build, least_radius: float) -> Body | None:
-    """Return small balls over every point listed as unsupported, or None when there is none."""
-    regions = [region for region in build.unsupported if len(region.points)]
+    """Return small balls over every point that is unsupported, specks below the least size left out; None for none."""
+    regions = [region for region in build.unsupported if len(region.points) and not region.minor]
     if not regions:
         return None
     points = [thinned(region.points) for region in regions]
