@@ -1,6 +1,5 @@
 """How far bodies are apart and how deep they meet: boxes, solids, bare triangles."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -90,9 +89,3 @@ def triangle_gap(corners: Array, other: Array, limit: float) -> float:
     widest = float((other_hi[chosen, 0] - other_lo[chosen, 0]).max())
     one, two = np.ascontiguousarray(corners[near]), np.ascontiguousarray(other[chosen])
     return float(least_gap(one, two, widest, max(limit, 0.0)))
-
-
-def bounds_of(solids: Sequence["Manifold"]) -> tuple[Array, Array]:
-    """Return the corners ``(n, 3)`` of the solids' enclosing boxes."""
-    boxes = np.array([solid.bounding_box() for solid in solids]).reshape(-1, 6)
-    return boxes[:, :3], boxes[:, 3:]

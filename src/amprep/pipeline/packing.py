@@ -20,8 +20,6 @@ from amprep.model import (
 )
 from amprep.model.arrays import Floats
 
-TOO_LARGE = "too large"
-
 
 def packing_problem(
     parts: Sequence[Part],
