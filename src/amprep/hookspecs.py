@@ -21,13 +21,13 @@ from typing import Any, Protocol
 import numpy as np
 import pluggy
 
+from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import CellRequest, Cells
 from amprep.model.control import Report, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan, SupportProblem
-from amprep.model.volume import BoundingVolume
 
 API_VERSION = 1
 """Version of the hooks and offer records; a plugin states the one it was written for as ``amprep_api``."""

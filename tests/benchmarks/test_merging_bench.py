@@ -2,7 +2,7 @@
 
 import pytest
 
-from amprep.pipeline.bench_merging import run_merging
+from amprep.bench.merging import run_merging
 
 
 @pytest.mark.parametrize("cells", [4_096, 100_000])

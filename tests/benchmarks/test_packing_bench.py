@@ -8,10 +8,10 @@ import importlib
 import numpy as np
 import pytest
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
-from amprep.plugins.packing.extreme_points import pack_extreme_points
-from amprep.plugins.packing.params import ExtremePointsParams
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.params import ExtremePointsParams
 
 SIDE = {1: 100, 4: 100, 5: 100, 6: 10, 7: 40, 8: 100}
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import trimesh
 
-from amprep.geometry.voxels import Grid, met_cubes
+from amprep.geometry.voxels.voxelise import Grid, met_cubes
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
 from amprep.model import Stop

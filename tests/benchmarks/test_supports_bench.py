@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from amprep.checks.supports import check_plan
-from amprep.geometry.overhangs import find_overhangs
-from amprep.geometry.voxels import Grid, holding_cubes, met_cubes
+from amprep.bench.routing.run import run_scene
+from amprep.bench.routing.scenes import SIDES, scene
+from amprep.checks.supports.plan import check_plan
+from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.voxels.voxelise import Grid, holding_cubes, met_cubes
 from amprep.host import Host
 from amprep.model.control import Stop, silent
-from amprep.pipeline.bench_supports import run_scene
-from amprep.pipeline.bench_supports_scenes import SIDES, scene
 
 ROUTERS = ["push-relabel", "min-cost-flow", "shortest-paths"]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from amprep.checks.supports import check_plan
+from amprep.checks.supports.plan import check_plan
 from amprep.host import Host
 from amprep.model.control import Stop, silent
 from amprep.model.supports import Cube, GridFrame, SupportProblem

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
 
-from amprep.checks.cells import check_bodies
+from amprep.checks.supports.bodies import check_bodies
 from amprep.errors import JobError
-from amprep.geometry import bases
-from amprep.geometry.manifolds import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.supports import footprints as bases
 from amprep.host import Host
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
-from amprep.model.endings import Base, Connector
-from amprep.pipeline.cell_bases import LEAST_GAP, make_bases
-from amprep.pipeline.cells import build_supports
-from amprep.pipeline.supports import Wishes, plan_supports
+from amprep.model.contacts import Base, Connector
+from amprep.supports.plan import Wishes, plan_supports
+from amprep.supports.solids.bases import LEAST_GAP, make_bases
+from amprep.supports.solids.build import build_supports
 
 SIZE = np.array([60.0, 60.0, 40.0])
 PLAIN = BuildVolume(SIZE)

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from amprep.checks.cells import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
+from amprep.checks.supports.bodies import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
 from amprep.errors import AmprepError
-from amprep.geometry.beams import near_surface, sample
+from amprep.geometry.supports.beams import near_surface, sample
 from amprep.model import Beams, Build, BuildSettings, BuildVolume, Lattice, Mesh, Part, PlacedPart, Stop
 from amprep.model import SupportBody as Body
-from amprep.pipeline.cell_beams import keep_out
-from amprep.pipeline.trial_problems import box_mesh
+from amprep.supports.solids.beams import keep_out
+from amprep.testing.problems import box_mesh
 from amprep.threemf import read_build, write_build
 
 SPACE = BuildVolume((50.0, 50.0, 50.0))

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from amprep.bench.packing.container_loading import read_loading
+from amprep.bench.packing.instances import MPV_SIDE, mpv_instance
 from amprep.cli.app import app
 from amprep.errors import InputError
-from amprep.pipeline.bench_instances import MPV_SIDE, mpv_instance
-from amprep.pipeline.bench_loading import read_loading
 
 PUBLISHED = "0e6d9f5cd1e8d8f5b0897c27c654c1f3d976713423f5c756511f64ec22eb9419"
 

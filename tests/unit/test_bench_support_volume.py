@@ -5,12 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from amprep.checks.supports import check_plan
+from amprep.bench.support_volume import compare, free_below, generated_parts, straight_columns, support_in
+from amprep.checks.supports.plan import check_plan
 from amprep.host import Host
 from amprep.model import Cube, GridFrame, Stop, SupportProblem, silent
-from amprep.pipeline.bench_slicer import support_in
-from amprep.pipeline.bench_support_volume import compare, free_below, generated_parts, straight_columns
-from amprep.pipeline.support_red import RedSquares
+from amprep.supports.grid.red_squares import RedSquares
 
 
 def test_only_support_counts_in_g_code():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from amprep.bench.routing.run import THESIS_SECONDS, run_scene
+from amprep.bench.routing.scenes import SCENES, SIDES, count_graph, scene
 from amprep.cli.app import app
 from amprep.errors import InputError
 from amprep.model.supports import Cube
-from amprep.pipeline.bench_supports import THESIS_SECONDS, run_scene
-from amprep.pipeline.bench_supports_scenes import SCENES, SIDES, count_graph, scene
 
 THESIS_NODES = {"A": 8_196, "B": 27_670, "C": 62_708, "D": 1_110_380, "E": 6_424_582}
 

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
-from amprep.plugins.packing.block_building import fill_by_blocks, pack_block_building
-from amprep.plugins.packing.block_building_blocks import build_blocks
-from amprep.plugins.packing.block_building_scene import whole_scene
-from amprep.plugins.packing.params import BlockBuildingParams
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.block_building import fill_by_blocks, pack_block_building
+from amprep.plugins.packers.block_building.blocks import build_blocks
+from amprep.plugins.packers.block_building.integer_instance import whole_scene
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.params import BlockBuildingParams
 
 from .boxes import boxes_problem, cut
 

@@ -26,8 +26,10 @@ from amprep.model import (
     SupportBody,
     Unsupported,
 )
-from amprep.threemf import read_build, record, write_build, writing
-from amprep.threemf.record_values import from_json, to_json
+from amprep.threemf import read_build, write_build
+from amprep.threemf import write as writing
+from amprep.threemf.build import record
+from amprep.threemf.build.values import from_json, to_json
 
 MODEL = "3D/3dmodel.model"
 

@@ -7,14 +7,14 @@ import pytest
 from typer.testing import CliRunner
 
 from amprep.cells import cell_offer
-from amprep.checks.cell_ports import PORTS
-from amprep.checks.cell_print import FEATURE, HOLE, POCKET, STEEP, Limits
+from amprep.checks.cells.ports import PORTS
+from amprep.checks.cells.printability import FEATURE, HOLE, POCKET, STEEP, Limits
 from amprep.cli.cells import app
-from amprep.geometry.cell_voxels import feature, way_out
+from amprep.geometry.cells.metrology import feature, way_out
 from amprep.host import Host, Listed
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
-from amprep.pipeline.cell_check import check_cell
-from amprep.pipeline.trial_problems import box_mesh
+from amprep.pipeline.check_cell import check_cell
+from amprep.testing.problems import box_mesh
 
 HOST = Host.load(plugins_enabled=False)
 PIN = GraphCell([[0.5, 0.5, 0], [0.5, 0.5, 1]], [[0, 1]], 0.4)

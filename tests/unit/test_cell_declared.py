@@ -8,8 +8,8 @@ import pytest
 from amprep.cells import cell_offer
 from amprep.cells.emission import edges_for, emit_declared, sides_taken
 from amprep.cells.samples import block, single_column
-from amprep.checks.cell_ports import check_ports
-from amprep.checks.templates import check_cells
+from amprep.checks.cells.ports import check_ports
+from amprep.checks.cells.templates import check_cells
 from amprep.errors import JobError, PluginError
 from amprep.host import Host, Listed
 from amprep.model import (
@@ -25,8 +25,8 @@ from amprep.model import (
     When,
     silent,
 )
-from amprep.pipeline.cell_requests import checked
-from amprep.pipeline.trial_problems import box_mesh
+from amprep.supports.solids.request import checked
+from amprep.testing.problems import box_mesh
 
 PIN = GraphCell([[0.5, 0.5, 0], [0.5, 0.5, 1]], [[0, 1]], 0.4)
 POST = MeshCell(box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0])))

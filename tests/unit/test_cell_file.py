@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from amprep.checks.templates import check_cells, check_template
+from amprep.checks.cells.templates import check_cells, check_template
 from amprep.errors import JobError, MeshError
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
 from amprep.model import CellRequest, Cells, GridFrame, Mesh, Stop, Template, silent
-from amprep.pipeline.cell_file import choose_cell
-from amprep.pipeline.trial_problems import box_mesh
+from amprep.pipeline.choose_cell import choose_cell
+from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))
 FRAME = GridFrame(np.zeros(3), pitch=2.0, step=4.0, shape=(3, 3, 3))
@@ -238,8 +238,8 @@ def hexagon_column():
 
 def test_a_cell_drawn_in_openscad_passes_its_check(tmp_path):
     from amprep.cells.emission import emit_declared
-    from amprep.pipeline.cell_check import check_cell
-    from amprep.pipeline.cell_file import cell_named
+    from amprep.pipeline.check_cell import check_cell
+    from amprep.pipeline.choose_cell import cell_named
 
     path = tmp_path / "hexagon.stl"
     path.write_text(openscad_stl(hexagon_column()))

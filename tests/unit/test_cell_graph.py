@@ -5,11 +5,11 @@ from itertools import product
 import numpy as np
 import pytest
 
-from amprep.geometry.cell_graph import Graph, angles_deg, graph_solid
-from amprep.geometry.cell_implicit import implicit_solid
-from amprep.geometry.cell_ports import conform, flush_sides
-from amprep.geometry.cell_tiling import Tiles, tile
-from amprep.geometry.manifolds import as_manifold
+from amprep.geometry.cells.implicit import implicit_solid
+from amprep.geometry.cells.ports import conform, flush_sides
+from amprep.geometry.cells.struts import Graph, angles_deg, graph_solid
+from amprep.geometry.cells.tiling import Tiles, tile
+from amprep.geometry.meshes.manifold import as_manifold
 
 PITCH = 2.0
 NO_WALLS = np.empty((0, 3), np.int64)
@@ -108,7 +108,7 @@ def test_a_function_that_gives_no_numbers_is_refused(wrong):
 
 
 def box(lo, hi):
-    from amprep.pipeline.trial_problems import box_mesh
+    from amprep.testing.problems import box_mesh
 
     mesh = box_mesh(np.array(lo, np.float64), np.array(hi, np.float64))
     return mesh.vertices, mesh.triangles.astype(np.int64)

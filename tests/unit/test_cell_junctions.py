@@ -5,17 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.geometry.cell_junctions import join_cells
-from amprep.geometry.cell_pieces import LATTICE, Pieces
-from amprep.geometry.cell_sides import seam
-from amprep.geometry.cell_solids import arrays_of, union
-from amprep.geometry.manifolds import as_manifold
-from amprep.geometry.merging import degenerate, edges_match
+from amprep.bench.merging import barrel, random_layout, run_merging
+from amprep.cells import instances as cell_trunks
+from amprep.cells.instances import sort_out, trunks
+from amprep.geometry.merging.interfaces import seam
+from amprep.geometry.merging.merge_cells import join_cells
+from amprep.geometry.merging.union import arrays_of, union
+from amprep.geometry.merging.voxel_contents import LATTICE, Pieces
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.topology import degenerate, edges_match
 from amprep.host import Host
 from amprep.model import DIRECTIONS, CellRequest, GridFrame, Stop, silent
-from amprep.pipeline import cell_trunks
-from amprep.pipeline.bench_merging import barrel, random_layout, run_merging
-from amprep.pipeline.cell_trunks import sort_out, trunks
 
 ORIGIN, SIZE = np.array([3.0, 5.0, 0.0]), np.array([2.0, 2.0, 1.5])
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from amprep.checks.cells import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
-from amprep.geometry.manifolds import as_manifold
+from amprep.cells.instances import sort_out, trunks
+from amprep.checks.supports.bodies import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.model import (
     Build,
@@ -21,8 +22,7 @@ from amprep.model import (
     SupportBody,
     silent,
 )
-from amprep.pipeline.cell_carving import Obstacles, standing_only
-from amprep.pipeline.cell_trunks import sort_out, trunks
+from amprep.supports.solids.keep_out import Obstacles, standing_only
 
 
 def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> CellRequest:

@@ -5,19 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
-from amprep.plugins.packing.column_generation import pack_column_generation, price_builds, useful
-from amprep.plugins.packing.column_generation_columns import (
+from amprep.plugins.packers.column_generation import pack_column_generation, price_builds, useful
+from amprep.plugins.packers.column_generation.columns import (
     Column,
     arrangement_from,
     demand_of,
     single_columns,
 )
-from amprep.plugins.packing.column_generation_cover import fractional_cover, whole_cover
-from amprep.plugins.packing.ip import pack_ip
-from amprep.plugins.packing.ip_params import ColumnGenerationParams, IpParams
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.column_generation.master import fractional_cover, whole_cover
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.integer_program import pack_ip
+from amprep.plugins.packers.integer_program.params import ColumnGenerationParams, IpParams
 
 from .boxes import boxes_problem
 

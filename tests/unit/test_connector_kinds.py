@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
 
-from amprep.checks.cells import check_bodies
-from amprep.checks.contacts import check_contacts
-from amprep.checks.coverage import check_coverage, find_unsupported
+from amprep.checks.supports.bodies import check_bodies
+from amprep.checks.supports.contacts import check_contacts
+from amprep.checks.supports.coverage import check_coverage, find_unsupported
 from amprep.errors import JobError
-from amprep.geometry.contacts import contact_corners, measure_contact
-from amprep.geometry.manifolds import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.supports.contact_area import contact_corners, measure_contact
 from amprep.host import Host
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
-from amprep.model.endings import Connector
-from amprep.pipeline.cells import build_supports
-from amprep.pipeline.supports import Wishes, plan_supports
+from amprep.model.contacts import Connector
+from amprep.supports.plan import Wishes, plan_supports
+from amprep.supports.solids.build import build_supports
 
 SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
 PITCH, OVERLAP = 2.0, 0.1

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from amprep.geometry import connectors
-from amprep.geometry.cell_solids import union
-from amprep.geometry.connectors import Columns, Patches, clip_into, connect, find_below
-from amprep.geometry.solids import as_manifold
+from amprep.geometry.connectors import columns as connectors
+from amprep.geometry.connectors.columns import Columns, Patches, clip_into, connect, find_below
+from amprep.geometry.merging.union import union
+from amprep.geometry.meshes.repair import as_manifold
 
 Floats = NDArray[np.float64]
 

@@ -7,17 +7,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.kernels.box_relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_together, relation_scratch
+from amprep.bench.packing.instances import mpv_instance
+from amprep.kernels.boxes.relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_together, relation_scratch
 from amprep.model import Stop, silent
-from amprep.pipeline.bench_instances import mpv_instance
-from amprep.plugins.packing.auto import pack_auto
-from amprep.plugins.packing.bounds import builds_bound
-from amprep.plugins.packing.cover_bound import CoverBound
-from amprep.plugins.packing.params import AutoParams
-from amprep.plugins.packing.partition import Pool, choose_builds
-from amprep.plugins.packing.relaxed_boxes import relaxed_boxes
-from amprep.plugins.packing.scales import heaviest_scale, heavy_scales, measures
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.auto import pack_auto
+from amprep.plugins.packers.auto.set_covering import Pool, choose_builds
+from amprep.plugins.packers.bounds.dual_feasible import heaviest_scale, heavy_scales, measures
+from amprep.plugins.packers.bounds.fractional_cover import CoverBound
+from amprep.plugins.packers.bounds.relaxation import relaxed_boxes
+from amprep.plugins.packers.bounds.volume import builds_bound
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.params import AutoParams
 
 from .boxes import boxes_problem as problem
 

@@ -6,9 +6,9 @@ import manifold3d
 import numpy as np
 import pytest
 
-from amprep.checks.coverage import check_coverage, find_unsupported
-from amprep.geometry.overhangs import find_overhangs
-from amprep.geometry.sampling import sample_overhangs, sample_segments
+from amprep.checks.supports.coverage import check_coverage, find_unsupported
+from amprep.geometry.meshes.sampling import sample_overhangs, sample_segments
+from amprep.geometry.overhangs.find import find_overhangs
 from amprep.model import (
     Build,
     BuildSettings,

@@ -8,8 +8,14 @@ import pytest
 
 from amprep.host import KINDS
 from amprep.job.loading import KEYS
-from amprep.job.printers import Profile
-from amprep.job.settings import CellSettings, PackingSettings, PartSettings, ReadingSettings, SupportSettings
+from amprep.job.settings.job import (
+    CellSettings,
+    PackingSettings,
+    PartSettings,
+    ReadingSettings,
+    SupportSettings,
+)
+from amprep.printers.catalogue import Profile
 
 ROOT = Path(__file__).parents[2]
 SECTIONS = {
@@ -79,7 +85,7 @@ def test_the_job_file_in_the_page_is_a_job_file(tmp_path):
 
 @pytest.mark.parametrize("kind", ["packer", "cell"])
 def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
-    from amprep.pipeline.trial import try_plugin
+    from amprep.testing.conformance import try_plugin
 
     blocks = re.findall(
         r"```python\n(.*?)```", (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8"), re.DOTALL
@@ -94,7 +100,7 @@ def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
 
 def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
     from amprep.host import Host
-    from amprep.pipeline.cell_check import check_cell
+    from amprep.pipeline.check_cell import check_cell
 
     text = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
     (source,) = [
@@ -109,8 +115,8 @@ def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
 
 def test_the_cell_in_the_page_about_cells_passes_its_check(tmp_path):
     from amprep.host import Host
-    from amprep.pipeline.cell_check import check_cell
-    from amprep.pipeline.cell_file import cell_named
+    from amprep.pipeline.check_cell import check_cell
+    from amprep.pipeline.choose_cell import cell_named
 
     text = (ROOT / "docs" / "cells.md").read_text(encoding="utf-8")
     (source,) = [

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.supports import check_plan, check_raises
+from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.model.control import Stop, silent
 from amprep.model.supports import CAPACITY
-from amprep.plugins.supports.min_cost_flow import solve_min_cost_flow
-from amprep.plugins.supports.min_cost_flow_proof import find_gaps
+from amprep.plugins.routers.min_cost_certificate import find_gaps
+from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 
 from .grids import Late, floor_with_holes, random_problem, route
 

@@ -8,15 +8,15 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.supports import check_plan
+from amprep.bench.routing.rivals import RIVALS
+from amprep.checks.supports.plan import check_plan
 from amprep.errors import JobError
+from amprep.flows import maximum_flow as pushing
 from amprep.model.control import Stop, silent
 from amprep.model.support_graph import to_networkx
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, Cube
-from amprep.pipeline.bench_supports_rivals import RIVALS
-from amprep.plugins.supports import pushing
-from amprep.plugins.supports.min_cost_flow import solve_min_cost_flow
-from amprep.plugins.supports.min_cost_flow_proof import find_gaps
+from amprep.plugins.routers.min_cost_certificate import find_gaps
+from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 
 from . import grids
 from .grids import Late, hanging, random_problem

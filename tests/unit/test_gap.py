@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.checks.gap import check_gap
-from amprep.geometry.overhangs import find_overhangs
-from amprep.geometry.sampling import sample_triangles
-from amprep.geometry.walls import Walls, beside, occupied, wall_distance, walls_of
+from amprep.checks.supports.gap import check_gap
+from amprep.geometry.meshes.sampling import sample_triangles
+from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.supports.walls import Walls, beside, occupied, wall_distance, walls_of
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, SupportBody
 
 GAP = 0.5

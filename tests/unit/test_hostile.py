@@ -10,9 +10,9 @@ import pytest
 
 from amprep.errors import InputError
 from amprep.pipeline.reading import settle_part
-from amprep.threemf import package as package_module
 from amprep.threemf import read_parts
-from amprep.threemf import reading_xml as xml_module
+from amprep.threemf.package import open as package_module
+from amprep.threemf.package import scan as xml_module
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 TYPES = (

@@ -8,18 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
-from amprep.plugins.packing.extreme_points import pack_extreme_points
-from amprep.plugins.packing.ip import gap_of, pack_ip
-from amprep.plugins.packing.ip_arrangement import arrangement_of
-from amprep.plugins.packing.ip_bodies import count_directions, prepare_ground
-from amprep.plugins.packing.ip_model import make_program
-from amprep.plugins.packing.ip_params import IpParams
-from amprep.plugins.packing.ip_reading import start_values
-from amprep.plugins.packing.params import ExtremePointsParams
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.instance.arrangement import arrangement_of
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.integer_program import gap_of, pack_ip
+from amprep.plugins.packers.integer_program.data import count_directions, prepare_ground
+from amprep.plugins.packers.integer_program.decode import start_values
+from amprep.plugins.packers.integer_program.model import make_program
+from amprep.plugins.packers.integer_program.params import IpParams
+from amprep.plugins.packers.params import ExtremePointsParams
 
 ROOM = 4
 TURN_Z = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])

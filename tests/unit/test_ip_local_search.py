@@ -5,19 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Stop, silent
-from amprep.plugins.packing.extreme_points import pack_extreme_points
-from amprep.plugins.packing.ip import pack_ip
-from amprep.plugins.packing.ip_arrangement import arrangement_of
-from amprep.plugins.packing.ip_bodies import prepare_ground
-from amprep.plugins.packing.ip_local_search import neighbourhood, pack_ip_local_search
-from amprep.plugins.packing.ip_model import make_program
-from amprep.plugins.packing.ip_params import IpLocalSearchParams, IpParams
-from amprep.plugins.packing.ip_reading import start_values
-from amprep.plugins.packing.ip_solver import solve
-from amprep.plugins.packing.params import ExtremePointsParams
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.instance.arrangement import arrangement_of
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.integer_program import pack_ip
+from amprep.plugins.packers.integer_program.data import prepare_ground
+from amprep.plugins.packers.integer_program.decode import start_values
+from amprep.plugins.packers.integer_program.local_search import neighbourhood, pack_ip_local_search
+from amprep.plugins.packers.integer_program.model import make_program
+from amprep.plugins.packers.integer_program.params import IpLocalSearchParams, IpParams
+from amprep.plugins.packers.integer_program.solver import solve
+from amprep.plugins.packers.params import ExtremePointsParams
 
 from .boxes import boxes_problem
 

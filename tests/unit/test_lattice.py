@@ -9,22 +9,22 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 
 from amprep.cells import cell_offer
-from amprep.checks.lattice import CELLS, CLOSED, OUTSIDE, WHOLE, check_filled
+from amprep.checks.infill import CELLS, CLOSED, OUTSIDE, WHOLE, check_filled
 from amprep.errors import JobError, MeshError
-from amprep.geometry.cell_solids import arrays_of
-from amprep.geometry.inset import inset
-from amprep.geometry.manifolds import as_manifold
+from amprep.geometry.merging.union import arrays_of
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.offset import inset
 from amprep.host import Host
+from amprep.infill.fill_region import fill_region
+from amprep.measures.filled_part import pockets_of
 from amprep.model import Mesh, MeshCell, Part, Region, Stop, silent
 from amprep.model.rotations import parse_rotations
-from amprep.pipeline.cell_file import cell_named
-from amprep.pipeline.lattice import fill_region
-from amprep.pipeline.lattice_measure import pockets_of
+from amprep.pipeline.choose_cell import cell_named
 from amprep.threemf import read_parts, write_parts
-from amprep.threemf.reading_loose import cura_role, with_loose
-from amprep.threemf.writing import write_document
-from amprep.threemf.writing_components import CURA_NAMESPACE
-from amprep.threemf.writing_document import Body, Document, Instance, Item
+from amprep.threemf.read.slicer_config import cura_role, with_loose
+from amprep.threemf.write import write_document
+from amprep.threemf.write.document import Body, Document, Instance, Item
+from amprep.threemf.write.generic_and_cura import CURA_NAMESPACE
 
 from .conftest import box_mesh
 

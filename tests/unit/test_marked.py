@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.marked import FINEST, mark
-from amprep.checks.needs import needs_of
-from amprep.geometry.refining import refine
+from amprep.geometry.meshes.subdivision import refine
 from amprep.model import Mesh, Part, PlacedPart, Region
-from amprep.threemf.reading_paint import Painted, decode, find_paint, painted_regions
+from amprep.overhangs.blockers import FINEST, mark
+from amprep.overhangs.of_part import needs_of
+from amprep.threemf.read.painted_supports import Painted, decode, find_paint, painted_regions
 
 from .conftest import box_mesh
 

@@ -11,8 +11,8 @@ from manifold3d import Manifold
 from amprep.checks.meshes import check_part
 from amprep.errors import InputError
 from amprep.pipeline.reading import settle_part
-from amprep.plugins.meshes import amprep_mesh_readers
-from amprep.plugins.meshes.files import read_mesh_file
+from amprep.plugins.readers import amprep_mesh_readers
+from amprep.plugins.readers.files import read_mesh_file
 
 
 def ball(radius=10.0):

@@ -6,7 +6,7 @@ import trimesh
 from amprep.errors import InputError
 from amprep.model import Mesh, Part
 from amprep.pipeline.reading import expand_inputs, read_all, with_unique_names
-from amprep.plugins.meshes.files import read_mesh_file
+from amprep.plugins.readers.files import read_mesh_file
 
 SUFFIXES = {".stl", ".3mf"}
 

@@ -6,8 +6,7 @@ import pytest
 
 from amprep.errors import InputError, JobError
 from amprep.pipeline.reading import settle_part
-from amprep.plugins.meshes.params import StepParams
-from amprep.plugins.meshes.step import read_step_file
+from amprep.plugins.readers.step import StepParams, read_step_file
 
 HEAD = """ISO-10303-21;
 HEADER;

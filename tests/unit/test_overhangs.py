@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.geometry.overhangs import Marks, find_overhangs
+from amprep.geometry.overhangs.find import Marks, find_overhangs
 
 Solid = manifold3d.Manifold
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem
-from amprep.plugins.packing.bounds import builds_bound, fill_bound
-from amprep.plugins.packing.l2 import l2_bound
-from amprep.plugins.packing.scene import prepare
+from amprep.plugins.packers.bounds.l2 import l2_bound
+from amprep.plugins.packers.bounds.volume import builds_bound, fill_bound
+from amprep.plugins.packers.instance.prepare import prepare
 
 # mean L2 of ten instances each, n = 50, 100, 150, 200 (Martello, Pisinger, Vigo; see docs/algorithms.md)
 PUBLISHED = {
@@ -153,10 +153,10 @@ def test_boxes_cut_from_whole_rooms_never_have_a_bound_above_the_number_of_rooms
 @pytest.mark.parametrize("objective", ["builds", "fill"])
 @pytest.mark.parametrize("places", [((0, 0, 0), (0, 0, 0)), ((0, 0, 0), (-5, 0, 8))])
 def test_fixed_items_that_stand_within_one_another_or_outside_prove_nothing(objective, places):
-    from amprep.checks.packing import check_packing
+    from amprep.checks.packing.volumes_placed import check_packing
     from amprep.model import Placement, Stop, silent
-    from amprep.plugins.packing.auto import pack_auto
-    from amprep.plugins.packing.params import AutoParams
+    from amprep.plugins.packers.auto import pack_auto
+    from amprep.plugins.packers.params import AutoParams
 
     fixed = tuple(Placement(i, np.eye(3), np.array(at, float)) for i, at in enumerate(places))
     sizes = [(10, 10, 8), (10, 10, 8), (10, 10, 6)]

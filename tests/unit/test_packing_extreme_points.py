@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
 from amprep.model import (
     Boxes,
@@ -21,8 +21,8 @@ from amprep.model import (
     Stop,
     silent,
 )
-from amprep.plugins.packing.extreme_points import pack_extreme_points
-from amprep.plugins.packing.params import ExtremePointsParams
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.params import ExtremePointsParams
 
 from .boxes import boxes_problem
 
@@ -316,9 +316,9 @@ def test_the_fill_bound_is_no_less_than_the_brute_force_optimum(sizes, data):
 
 
 def test_with_many_boxes_the_slow_passes_come_last():
-    from amprep.kernels.box_places import TOUCHING
-    from amprep.plugins.packing.scene import prepare
-    from amprep.plugins.packing.sortings import passes
+    from amprep.kernels.boxes.places import TOUCHING
+    from amprep.plugins.packers.instance.orders import passes
+    from amprep.plugins.packers.instance.prepare import prepare
 
     sizes = np.random.default_rng(0).integers(1, 9, (600, 3)).tolist()
     slow = [plan.style[0] == TOUCHING for plan in passes(prepare(boxes_problem(sizes, (100, 100, 100))))]

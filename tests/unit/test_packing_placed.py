@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.checks.placed import check_placed
+from amprep.checks.packing.parts_placed import check_placed
 from amprep.model import BuildSettings, BuildVolume, Mesh, Orientations, Overrides, Part, PlacedPart, Stop
 
 ROOM = BuildVolume(np.array([100.0, 100.0, 50.0]))

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
-from amprep.geometry.separation import (
+from amprep.geometry.meshes.distance import (
     box_gap,
     box_solids,
     near_pairs,

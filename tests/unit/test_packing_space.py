@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.geometry.packing_space import Space, find_home, rotated_boxes, union_volume
+from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes, union_volume
 
 
 def space(size=(20.0, 20.0, 10.0), *, radius=0.0, zones=(), flat=False):

@@ -8,10 +8,10 @@ from PIL import Image
 
 from amprep.kernels.raster import draw
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody, Unsupported
-from amprep.report.camera import box_corners, fitted, view_axes
-from amprep.report.colours import PALETTE, part_colours
-from amprep.report.marks import balls
 from amprep.report.picture import build_picture, draw_mesh, write_picture
+from amprep.report.picture.camera import box_corners, fitted, view_axes
+from amprep.report.picture.colours import PALETTE, part_colours
+from amprep.report.picture.marks import balls
 
 SIZE = (320, 240)
 

@@ -11,7 +11,7 @@ from amprep.cli.plugins import app
 from amprep.errors import PluginError
 from amprep.host import KINDS, Host
 from amprep.host.scaffold import make_plugin
-from amprep.pipeline.trial import try_offer, try_plugin
+from amprep.testing.conformance import try_offer, try_plugin
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))

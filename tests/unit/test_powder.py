@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.geometry.contacts import measure_contact
-from amprep.geometry.drains import find_drains
-from amprep.geometry.powder import find_pockets
+from amprep.geometry.powder.drain_holes import find_drains
+from amprep.geometry.powder.pockets import find_pockets
+from amprep.geometry.supports.contact_area import measure_contact
 
 
 def box(size, corner):

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from amprep.cli.printers import app
 from amprep.errors import JobError
 from amprep.job import find_printer, list_printers
-from amprep.job.printers import DEFAULT_PRINTER, user_folder
+from amprep.printers.catalogue import DEFAULT_PRINTER, user_folder
 
 PROFILE = 'name = "My Printer"\nsize_mm = [10, 20, 30]\n'
 

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh
-from amprep.report.geometry import GeometryPack
-from amprep.report.html import html_text, write_html
+from amprep.report.page.geometry import GeometryPack
+from amprep.report.page.html import html_text, write_html
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedRecord, UnplacedRecord
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&<!--"

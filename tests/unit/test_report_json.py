@@ -9,12 +9,12 @@ import pytest
 from rich.console import Console
 
 from amprep.checks.violation import Violation
+from amprep.measures.density import build_density, build_height, support_volume
 from amprep.model import Build, BuildSettings, BuildVolume
 from amprep.report.json_report import json_text, to_json, write_json
-from amprep.report.measures import build_density, build_height, support_volume
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedRecord, UnplacedRecord
-from amprep.report.table import LISTED, summary
-from amprep.threemf.writing_files import replacing
+from amprep.report.terminal import LISTED, summary
+from amprep.threemf.package.write import replacing
 
 
 @pytest.fixture

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.supports import check_plan, has_way
+from amprep.checks.supports.plan import check_plan, has_way
 from amprep.model.control import Stop, silent
 from amprep.model.support_graph import to_networkx
 from amprep.model.supports import CAPACITY, ENCLOSED, Cube
-from amprep.plugins.supports.params import ShortestPathsParams
-from amprep.plugins.supports.shortest_paths import route_shortest_paths
+from amprep.plugins.routers.params import ShortestPathsParams
+from amprep.plugins.routers.shortest_paths import route_shortest_paths
 
 from .grids import hanging, problem
 

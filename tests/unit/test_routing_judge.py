@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from amprep.checks.supports import check_plan
+from amprep.checks.supports.plan import check_plan
 from amprep.model.supports import CAPACITY, ENCLOSED, GridFrame, SupportPlan, SupportProblem, Unconnected
 
 

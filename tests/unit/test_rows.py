@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
-from amprep.plugins.packing.auto import pack_auto
-from amprep.plugins.packing.extreme_points import pack_extreme_points
-from amprep.plugins.packing.params import AutoParams, ExtremePointsParams, TabuParams
-from amprep.plugins.packing.tabu import pack_tabu
+from amprep.plugins.packers.auto import pack_auto
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, TabuParams
+from amprep.plugins.packers.tabu import pack_tabu
 
 PACKERS = {
     "extreme-points": (pack_extreme_points, ExtremePointsParams()),

@@ -8,9 +8,9 @@ from manifold3d import Manifold, Mesh64
 
 from amprep.checks.meshes import check_part
 from amprep.errors import MeshError
-from amprep.geometry import shells as shells_module
-from amprep.geometry import solids as solids_module
-from amprep.geometry.solids import settle
+from amprep.geometry.meshes import repair as solids_module
+from amprep.geometry.meshes import shells as shells_module
+from amprep.geometry.meshes.repair import settle
 from amprep.model import Appearance, Mesh, Part, Region
 from amprep.pipeline.reading import settle_part
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from amprep.model.supports import GridFrame
-from amprep.pipeline.support_network import Rules
+from amprep.supports.routes.network import Rules
 
 FRAME = GridFrame(np.zeros(3), pitch=2.0, step=2.0, shape=(100, 10, 10))
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from amprep.measures.slenderness import measure_columns
 from amprep.model import Cube, GridFrame, Mesh, SupportBody
-from amprep.pipeline.support_edges import components, cube_users
-from amprep.pipeline.support_joining import join_columns
-from amprep.report.columns import measure_columns
+from amprep.supports.routes.bracing import join_columns
+from amprep.supports.routes.edges import components, cube_users
 
 from .conftest import box_mesh
 

@@ -15,10 +15,10 @@ from amprep.model.supports import (
     OUT_OF_TIME,
     Cube,
 )
-from amprep.pipeline.supports import Wishes, choose_pitch, plan_supports
-from amprep.plugins.supports.auto import route_auto
-from amprep.plugins.supports.params import ShortestPathsParams
-from amprep.plugins.supports.shortest_paths import route_shortest_paths
+from amprep.plugins.routers.auto import route_auto
+from amprep.plugins.routers.params import ShortestPathsParams
+from amprep.plugins.routers.shortest_paths import route_shortest_paths
+from amprep.supports.plan import Wishes, choose_pitch, plan_supports
 
 Solid = manifold3d.Manifold
 SPACE = BuildVolume([60, 60, 60])

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Orientations, Stop, silent
 from amprep.model.rotations import axis_rotations
-from amprep.plugins.packing.params import SweepParams
-from amprep.plugins.packing.sweep import pack_sweep
+from amprep.plugins.packers.params import SweepParams
+from amprep.plugins.packers.sweep import pack_sweep
 
 from .boxes import boxes_problem as problem
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from amprep.checks.packing import check_packing
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import PluginError
 from amprep.host import Host
 from amprep.model import BuildVolume, PackingProblem, Stop, silent
-from amprep.plugins.packing.params import TabuParams
-from amprep.plugins.packing.scene import prepare
-from amprep.plugins.packing.tabu import TabuSearch, pack_tabu
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.params import TabuParams
+from amprep.plugins.packers.tabu import TabuSearch, pack_tabu
 
 from .boxes import boxes_problem as problem
 

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
-from amprep.checks.cell_ports import port_areas
-from amprep.geometry.cell_implicit import implicit_solid
-from amprep.geometry.cell_solids import arrays_of
-from amprep.geometry.manifolds import as_manifold
-from amprep.geometry.thinning import thin_out
+from amprep.checks.cells.ports import port_areas
+from amprep.geometry.cells.implicit import implicit_solid
+from amprep.geometry.merging.union import arrays_of
+from amprep.geometry.meshes.decimation import thin_out
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh, Template
 
 FREE = np.zeros(100_000, np.int64)

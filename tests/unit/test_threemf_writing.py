@@ -10,7 +10,10 @@ import trimesh
 
 from amprep.errors import AmprepError
 from amprep.model import TARGETS, Mesh, SupportBody
-from amprep.threemf import write_build, writing, writing_files, writing_pieces
+from amprep.threemf import write as writing
+from amprep.threemf import write_build
+from amprep.threemf.package import write as writing_files
+from amprep.threemf.write import metadata as writing_pieces
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 

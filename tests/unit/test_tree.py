@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.checks.supports import check_plan, check_raises
+from amprep.bench.routing.scenes import scene
+from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.host import Host
 from amprep.model.control import Stop, silent
 from amprep.model.supports import Cube, GridFrame, SupportProblem
-from amprep.pipeline.bench_supports_scenes import scene
-from amprep.plugins.supports import auto
-from amprep.plugins.supports.params import TreeParams
+from amprep.plugins.routers import auto
+from amprep.plugins.routers.params import TreeParams
 
 HOST = Host.load()
 

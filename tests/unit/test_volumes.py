@@ -7,7 +7,7 @@ from manifold3d import Manifold
 from amprep.checks.volumes import check_volume
 from amprep.errors import JobError
 from amprep.model import Boxes, ConvexPieces, Mesh, Part, Solid
-from amprep.plugins.volumes.boxes import enclosing_box, given_boxes
+from amprep.plugins.volumes.given_boxes import enclosing_box, given_boxes
 
 
 def mesh_of(solid):

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from amprep.geometry.inside import inside
-from amprep.geometry.overhangs import find_overhangs
-from amprep.geometry.voxels import UNMARKED, Grid, holding_cubes, met_cubes, near_cubes
+from amprep.geometry.meshes.containment import inside
+from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.voxels.voxelise import UNMARKED, Grid, holding_cubes, met_cubes, near_cubes
 
 Solid = manifold3d.Manifold
 TOLERANCE = 1e-3

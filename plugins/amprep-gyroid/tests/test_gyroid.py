@@ -5,11 +5,11 @@ import pytest
 from amprep_gyroid import GyroidParams, declare_gyroid, gyroid
 
 from amprep.cells.emission import templates_of
-from amprep.checks.cell_ports import port_areas
-from amprep.geometry.manifolds import as_manifold
+from amprep.checks.cells.ports import port_areas
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
-from amprep.pipeline.cell_check import check_cell
-from amprep.pipeline.trial import try_plugin
+from amprep.pipeline.check_cell import check_cell
+from amprep.testing.conformance import try_plugin
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,9 @@ from amprep.cells import read_cell
 from amprep.cells.emission import emit_declared
 from amprep.host import Host
 from amprep.model import CellRequest, GridFrame
-from amprep.pipeline.cell_check import check_cell
-from amprep.pipeline.cell_file import cell_named
-from amprep.pipeline.trial import try_offer
+from amprep.pipeline.check_cell import check_cell
+from amprep.pipeline.choose_cell import cell_named
+from amprep.testing.conformance import try_offer
 
 FOLDER = Path(amprep_honeycomb.__file__).parent
 NAMES = ["honeycomb", "honeycomb-frame"]

@@ -6,7 +6,7 @@ import pytest
 from amprep.errors import JobError
 from amprep.host import Host
 from amprep.model import CellRequest, GridFrame, Stop, silent
-from amprep.pipeline.trial import try_plugin
+from amprep.testing.conformance import try_plugin
 
 FRAME = GridFrame(np.array([10.0, 20, 0]), pitch=2.0, step=3.0, shape=(4, 4, 4))
 

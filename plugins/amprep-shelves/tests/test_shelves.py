@@ -5,7 +5,7 @@ import pytest
 
 from amprep.host import Host
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
-from amprep.pipeline.trial import try_plugin
+from amprep.testing.conformance import try_plugin
 
 HUNDRED = BuildVolume(np.full(3, 100.0))
 

@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Bools, Floats, Ints
 from amprep.errors import JobError
-from amprep.geometry.cell_graph import Graph, graph_solid
-from amprep.geometry.cell_implicit import implicit_solid
-from amprep.geometry.cell_ports import conform
+from amprep.geometry.cells.implicit import implicit_solid
+from amprep.geometry.cells.ports import conform
+from amprep.geometry.cells.struts import Graph, graph_solid
 from amprep.model import (
     Beams,
     CellRequest,
@@ -23,7 +24,6 @@ from amprep.model import (
     Template,
     When,
 )
-from amprep.model.arrays import Bools, Floats, Ints
 
 LOAD_STEPS = 8
 """Radii grow with the load in that many steps, so that few templates are made."""

@@ -10,9 +10,9 @@ import numpy as np
 
 from amprep.cells.offers import cell_offer
 from amprep.cells.tables import graph_of, number, read_cell_table, text, variants_of, when_of
-from amprep.checks.templates import check_template
+from amprep.checks.cells.templates import check_template
 from amprep.errors import InputError, MeshError
-from amprep.geometry.cell_ports import snapped
+from amprep.geometry.cells.ports import snapped
 from amprep.hookspecs import CellEmitter
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Shape, Template, Variant
 
@@ -170,7 +170,7 @@ def _plain_mesh(path: Path) -> Mesh:
     """Read a mesh file of an installed package."""
     import trimesh
 
-    from amprep.geometry.merging import merge_equal
+    from amprep.geometry.meshes.topology import merge_equal
 
     loaded = trimesh.load_mesh(path, process=False)
     points, triangles = merge_equal(

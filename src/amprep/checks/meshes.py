@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.checks.violation import Violation
-from amprep.geometry.solids import find_defect, settle
+from amprep.geometry.meshes.repair import find_defect, settle
 from amprep.model.part import Part
 
 

@@ -4,12 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.violation import Violation
-from amprep.geometry.separation import box_solids, convex_solid, thickness
-from amprep.geometry.solids import as_manifold
-from amprep.model.arrays import CONTACT_TOLERANCE, Floats
+from amprep.geometry.meshes.distance import box_solids, convex_solid, thickness
+from amprep.geometry.meshes.repair import as_manifold
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
 from amprep.model.part import Part
-from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces
 
 if TYPE_CHECKING:
     from manifold3d import Manifold

@@ -5,7 +5,8 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, cells, lattice, plugins, printers, run, support, verify
+from amprep.cli import bench, cells, plugins, printers, run, support, verify
+from amprep.cli import infill as lattice
 
 app = typer.Typer(
     name="amprep",

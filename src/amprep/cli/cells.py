@@ -12,7 +12,7 @@ from amprep import cli
 if TYPE_CHECKING:
     from amprep.hookspecs import CellEmitter
     from amprep.host import Host, Listed
-    from amprep.pipeline.cell_check import CellReport
+    from amprep.pipeline.check_cell import CellReport
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Modules = Annotated[
@@ -68,8 +68,8 @@ def check(
     holds; 1: some do not; 2: there is no such cell, or it cannot be made in this grid.
     """
     from amprep.host import Host
-    from amprep.pipeline.cell_check import check_cell, limits_of
-    from amprep.pipeline.cell_file import cell_named
+    from amprep.pipeline.check_cell import check_cell, limits_of
+    from amprep.pipeline.choose_cell import cell_named
 
     host = Host.load(modules=modules or [])
     listed, table = cell_named(host, cell, sets or [])
@@ -85,7 +85,7 @@ def check(
     )
     report = check_cell(host, listed, table, pitch=pitch, strut_angle_deg=strut_angle, limits=limits)
     if picture is not None:
-        from amprep.pipeline.cell_picture import draw_cell
+        from amprep.report.cell_picture import draw_cell
 
         draw_cell(host, listed, table, picture, pitch=pitch, strut_angle_deg=strut_angle)
     if as_json:
@@ -98,7 +98,7 @@ def check(
 def _offered(host: "Host", listed: "Listed[CellEmitter]") -> dict[str, Any]:
     from dataclasses import fields
 
-    from amprep.pipeline.cell_check import declared_cell
+    from amprep.pipeline.check_cell import declared_cell
 
     declared = declared_cell(host, listed)
     defaults = listed.offer.params()

@@ -12,7 +12,7 @@ from amprep import cli
 if TYPE_CHECKING:
     from amprep.hookspecs import Offer
     from amprep.host import Host, Listed
-    from amprep.pipeline.trial import Trial
+    from amprep.testing.conformance import Trial
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Modules = Annotated[
@@ -56,7 +56,7 @@ def check(
 
     Exit code 0: every promise holds; 1: some do not; 2: the plugin cannot be loaded.
     """
-    from amprep.pipeline.trial import try_plugin
+    from amprep.testing.conformance import try_plugin
 
     trials = try_plugin(package, samples=sample or [])
     if as_json:

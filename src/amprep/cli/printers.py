@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from amprep.job.printers import Printer
+    from amprep.printers.catalogue import Printer
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
@@ -23,7 +23,7 @@ def _main(context: typer.Context) -> None:
 @app.command("list")
 def list_all(as_json: AsJson = False) -> None:
     """List all printers with their build volumes and the source of their sizes."""
-    from amprep.job.printers import list_printers
+    from amprep.printers.catalogue import list_printers
 
     printers, warnings = list_printers()
     for warning in warnings:
@@ -40,7 +40,7 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Show one printer; its lines are a profile that can be saved and changed."""
-    from amprep.job.printers import find_printer
+    from amprep.printers.catalogue import find_printer
 
     printer = find_printer(name)
     if as_json:
@@ -71,7 +71,7 @@ def _print_table(printers: "list[Printer]") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from amprep.job.printers import DEFAULT_PRINTER, plain
+    from amprep.printers.catalogue import DEFAULT_PRINTER, plain
 
     table = Table("name", "build volume (mm)", "technology", "source", box=None)
     for printer in printers:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep.cli import running
+from amprep.cli import options as running
 
 if TYPE_CHECKING:
     from amprep.host import Host

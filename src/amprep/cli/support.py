@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep.cli import running
+from amprep.cli import options as running
 
 if TYPE_CHECKING:
     from amprep.host import Host
@@ -64,7 +64,7 @@ def support(
     def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":
         from amprep.model import Stop
         from amprep.pipeline.run import RunOptions
-        from amprep.pipeline.support import support as support_job
+        from amprep.pipeline.support_plate import support as support_job
 
         options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
         return support_job(job, host, options, center=center, watcher=watcher, stop=Stop())

@@ -6,18 +6,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, overload
 
+from amprep import typed
 from amprep.errors import AmprepError, InputError, PluginError, nearest_hint
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
-from amprep.host import typed
 from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
+from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import Cells
 from amprep.model.packing import Packing, PackingProblem
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan
-from amprep.model.volume import BoundingVolume
 
 
 class Host:

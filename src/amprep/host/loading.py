@@ -18,10 +18,10 @@ from amprep.hookspecs import API_VERSION, ENTRY_POINT_GROUP, Offer
 from amprep.host.offers import KINDS, Kind, faults_of
 
 BUILT_IN = (
-    "amprep.plugins.meshes",
+    "amprep.plugins.readers",
     "amprep.plugins.volumes",
-    "amprep.plugins.packing",
-    "amprep.plugins.supports",
+    "amprep.plugins.packers",
+    "amprep.plugins.routers",
     "amprep.plugins.cells",
 )
 CHOSEN_BY_ENVIRONMENT = "AMPREP_LOAD_PLUGINS"

@@ -3,9 +3,9 @@
 import numpy as np
 
 from amprep.hookspecs import PackerAccepts
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
 from amprep.model.packing import PackingProblem
 from amprep.model.part import Orientations
-from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces
 
 
 def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:

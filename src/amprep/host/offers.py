@@ -6,11 +6,11 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from typing import Any, Final, Generic, Literal, TypeVar
 
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
-from amprep.host.typed import field_types
+from amprep.model.bounding_volume import Boxes, ConvexPieces, Solid
 from amprep.model.cells import Cells
 from amprep.model.packing import Packing
 from amprep.model.supports import SupportPlan
-from amprep.model.volume import Boxes, ConvexPieces, Solid
+from amprep.typed import field_types
 
 Kind = Literal["reader", "volume", "packer", "router", "cell"]
 OfferT_co = TypeVar("OfferT_co", bound=Offer, covariant=True)

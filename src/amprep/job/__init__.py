@@ -3,8 +3,7 @@
 from amprep.job.loading import job_from_inputs, load_job, make_job
 from amprep.job.overrides import apply_sets, override
 from amprep.job.parts import apply_part_settings, names_part
-from amprep.job.printers import Printer, find_printer, list_printers
-from amprep.job.settings import (
+from amprep.job.settings.job import (
     CellSettings,
     InputSpec,
     Job,
@@ -13,6 +12,7 @@ from amprep.job.settings import (
     ReadingSettings,
     SupportSettings,
 )
+from amprep.printers.catalogue import Printer, find_printer, list_printers
 
 __all__ = [
     "CellSettings",

@@ -6,9 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from amprep.errors import JobError, nearest_hint
-from amprep.host.typed import convert, make
-from amprep.job.printers import DEFAULT_PRINTER, Printer, find_printer, printer_from_table
-from amprep.job.settings import (
+from amprep.job.settings.job import (
     CellSettings,
     InputSpec,
     Job,
@@ -17,8 +15,10 @@ from amprep.job.settings import (
     ReadingSettings,
     SupportSettings,
 )
-from amprep.job.tables import read_table
 from amprep.model.build import Target
+from amprep.printers.catalogue import DEFAULT_PRINTER, Printer, find_printer, printer_from_table
+from amprep.typed import convert, make
+from amprep.validation import read_table
 
 T = TypeVar("T")
 KEYS = ("printer", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")

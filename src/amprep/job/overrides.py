@@ -8,7 +8,7 @@ from typing import Any
 
 from amprep.errors import JobError
 from amprep.job.loading import make_job
-from amprep.job.settings import Job
+from amprep.job.settings.job import Job
 
 _BARE_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
 _STRATEGIES = {"packer": "packing", "router": "supports", "cell": "cells"}

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from amprep.arrays import Floats, frozen
 from amprep.errors import JobError, nearest_hint
-from amprep.job.settings import Job, PartSettings
-from amprep.model.arrays import Floats, frozen
+from amprep.job.settings.job import Job, PartSettings
 from amprep.model.part import Part
 
 

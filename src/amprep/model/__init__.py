@@ -1,6 +1,7 @@
 """Frozen records that flow between the stages. Millimetres and radians; arrays are read-only."""
 
-from amprep.model.arrays import CONTACT_TOLERANCE
+from amprep.arrays import CONTACT_TOLERANCE
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.build import (
     TARGETS,
     Build,
@@ -11,15 +12,14 @@ from amprep.model.build import (
     Target,
     Unsupported,
 )
+from amprep.model.build_volume import BuildVolume
 from amprep.model.cell_shapes import DeclaredCell, GraphCell, ImplicitCell, MeshCell, Shape, Variant, When
 from amprep.model.cells import Beams, CellRequest, Cells, ExtraMesh, Role, Template
 from amprep.model.control import Report, Stop, silent
 from amprep.model.mesh import Mesh
 from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
-from amprep.model.space import BuildVolume
 from amprep.model.supports import DIRECTIONS, Cube, GridFrame, SupportPlan, SupportProblem, Unconnected
-from amprep.model.volume import BoundingVolume, Boxes, ConvexPieces, Solid
 
 __all__ = [
     "CONTACT_TOLERANCE",

@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.model.arrays import Floats, Ints, frozen
+from amprep.arrays import Floats, Ints, frozen
+from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
-from amprep.model.space import BuildVolume
 
 Grounding = Literal["plate", "anywhere"]
 Target = Literal["generic", "prusaslicer", "cura"]

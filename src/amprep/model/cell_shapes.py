@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.model.arrays import Floats, Ints, frozen
+from amprep.arrays import Floats, Ints, frozen
 from amprep.model.mesh import Mesh
 
 RoleWord = Literal["trunk", "surface", "foot", "connector"]

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from amprep.model.arrays import Bytes, Floats, Ints, frozen
+from amprep.arrays import Bytes, Floats, Ints, frozen
 from amprep.model.mesh import Mesh
 from amprep.model.supports import DIRECTIONS, GridFrame
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from amprep.model.arrays import Floats, Ints, frozen
+from amprep.arrays import Floats, Ints, frozen
 
 
 @dataclass(frozen=True, eq=False)

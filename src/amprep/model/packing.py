@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.model.arrays import Floats, frozen
+from amprep.arrays import Floats, frozen
+from amprep.model.bounding_volume import BoundingVolume
+from amprep.model.build_volume import BuildVolume
 from amprep.model.part import Orientations
-from amprep.model.space import BuildVolume
-from amprep.model.volume import BoundingVolume
 
 Objective = Literal["fill", "builds", "height"]
 Status = Literal["optimal", "feasible", "infeasible"]

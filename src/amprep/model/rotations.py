@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.errors import JobError, nearest_hint
-from amprep.model.arrays import Floats
 from amprep.model.part import Orientations
 
 ROTATION_WORDS = ("none", "z90", "axis", "about-z", "free")

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.model.arrays import Ints
+from amprep.arrays import Ints
 from amprep.model.supports import DIRECTIONS, Cube, SupportProblem
 
 if TYPE_CHECKING:

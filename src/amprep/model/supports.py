@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from amprep.arrays import Bools, Bytes, Floats, Ints, frozen
 from amprep.errors import JobError
-from amprep.model.arrays import Bools, Bytes, Floats, Ints, frozen
 
 Status = Literal["optimal", "feasible", "infeasible"]
 

@@ -5,6 +5,7 @@ from itertools import count
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.errors import AmprepError
 from amprep.model import (
     BoundingVolume,
@@ -18,7 +19,6 @@ from amprep.model import (
     Placement,
     Report,
 )
-from amprep.model.arrays import Floats
 
 
 def packing_problem(

@@ -6,17 +6,17 @@ from dataclasses import asdict
 import numpy as np
 
 from amprep import __version__
-from amprep.checks.bare import region_name
-from amprep.geometry.overhangs import OverhangRegion
+from amprep.geometry.overhangs.find import OverhangRegion
 from amprep.host import Host
 from amprep.job import Job
+from amprep.measures.density import build_density, build_height, support_volume
+from amprep.measures.slenderness import measure_columns
 from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
+from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
-from amprep.pipeline.supported import SupportedBuild
-from amprep.pipeline.supports import SupportLayout
-from amprep.report.columns import measure_columns
-from amprep.report.measures import build_density, build_height, support_volume
+from amprep.pipeline.supporting import SupportedBuild
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord, UnplacedRecord
+from amprep.supports.plan import SupportLayout
 
 
 def build_record(supported: SupportedBuild) -> BuildRecord:

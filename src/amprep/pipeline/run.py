@@ -9,14 +9,13 @@ from amprep.hookspecs import Packer
 from amprep.host import Host, Listed
 from amprep.job import Job, apply_part_settings
 from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, Stop
-from amprep.pipeline.cell_file import choose_cell
+from amprep.pipeline.choose_cell import choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
-from amprep.pipeline.part_regions import with_region_files
-from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.pipeline.reading import expand_inputs, read_all, with_region_files
 from amprep.pipeline.record import run_record, unplaced_records
 from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supported import support_build
+from amprep.pipeline.supporting import support_build
 from amprep.pipeline.writing import finish_build, write_reports
 from amprep.report.record import RunRecord
 

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from amprep.checks import cells, coverage, gap
-from amprep.checks.cells import check_bodies
-from amprep.checks.coverage import check_coverage
-from amprep.checks.gap import check_gap
-from amprep.checks.placed import check_placed
+from amprep.checks.packing.parts_placed import check_placed
+from amprep.checks.supports import bodies as cells
+from amprep.checks.supports import coverage, gap
+from amprep.checks.supports.bodies import check_bodies
+from amprep.checks.supports.coverage import check_coverage
+from amprep.checks.supports.gap import check_gap
 from amprep.checks.violation import Violation
 from amprep.model import Build, Report, Stop, silent
 

@@ -6,7 +6,7 @@ from amprep.model import Build, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.record import build_record
 from amprep.pipeline.stages import Clock
-from amprep.pipeline.supported import SupportedBuild
+from amprep.pipeline.supporting import SupportedBuild
 from amprep.pipeline.verify import verify_build
 from amprep.report.record import BuildRecord, RunRecord
 
@@ -33,8 +33,8 @@ def finish_build(
 
 def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:
     """Write pictures and the HTML and JSON reports; return the record with its times and file names."""
-    from amprep.report.html import write_html
     from amprep.report.json_report import write_json
+    from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture
 
     with clock.stage("report") as report:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from amprep.checks.violation import Violation
+from amprep.measures.removability import Removal
+from amprep.measures.slenderness import Columns
 from amprep.model import Build, Unsupported
-from amprep.report.columns import Columns
-from amprep.report.removability import Removal
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class BuildRecord:
     file, picture, stl_files
         Names of the files written for it, relative to the report; empty when not written.
     density, height_mm, support_volume_mm3
-        As `amprep.report.measures` defines them.
+        As `amprep.measures.density` defines them.
     support_material
         What the supports are made of in words: cell, wall, and the like; shown as it is.
     red

@@ -3,36 +3,36 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from amprep.model.arrays import Floats, Ints
+from amprep.arrays import Floats, Ints
 from amprep.model.build import Build, Lattice, Target
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 
 
 def read_parts(path: Path) -> list[Part]:
-    """Read the parts of a 3MF job; see `amprep.threemf.reading.read_parts`."""
-    from amprep.threemf.reading import read_parts as run
+    """Read the parts of a 3MF job; see `amprep.threemf.read.read_parts`."""
+    from amprep.threemf.read import read_parts as run
 
     return run(path)
 
 
 def read_beams(path: Path) -> tuple[Floats, Ints, Floats] | None:
-    """Read the beam lattice of a 3MF file; see `amprep.threemf.reading_beams.read_beams`."""
-    from amprep.threemf.reading_beams import read_beams as run
+    """Read the beam lattice of a 3MF file; see `amprep.threemf.read.beams.read_beams`."""
+    from amprep.threemf.read.beams import read_beams as run
 
     return run(path)
 
 
 def modifier_note(name: str) -> str:
-    """Return what reading says of a modifier; see `amprep.threemf.reading_objects.modifier_note`."""
-    from amprep.threemf.reading_objects import modifier_note as run
+    """Return what reading says of a modifier; see `amprep.threemf.read.objects.modifier_note`."""
+    from amprep.threemf.read.objects import modifier_note as run
 
     return run(name)
 
 
 def write_build(build: Build, path: Path) -> None:
-    """Write a build job; see `amprep.threemf.writing.write_build`."""
-    from amprep.threemf.writing import write_build as run
+    """Write a build job; see `amprep.threemf.write.write_build`."""
+    from amprep.threemf.write import write_build as run
 
     run(build, path)
 
@@ -45,22 +45,22 @@ def write_parts(
     target: Target = "generic",
     lattices: Mapping[int, tuple[Lattice, Mesh]] | None = None,
 ) -> None:
-    """Write parts as a job; see `amprep.threemf.writing_parts.write_parts`."""
-    from amprep.threemf.writing_parts import write_parts as run
+    """Write parts as a job; see `amprep.threemf.write.parts.write_parts`."""
+    from amprep.threemf.write.parts import write_parts as run
 
     run(parts, path, title=title, target=target, lattices=lattices)
 
 
 def read_build(path: Path) -> Build:
-    """Read a build job back from its file alone; see `amprep.threemf.build_reading.read_build`."""
-    from amprep.threemf.build_reading import read_build as run
+    """Read a build job back from its file alone; see `amprep.threemf.build.read.read_build`."""
+    from amprep.threemf.build.read import read_build as run
 
     return run(path)
 
 
 def write_stl(mesh: Mesh, path: Path) -> None:
-    """Write a mesh as binary STL; see `amprep.threemf.stl.write_stl`."""
-    from amprep.threemf.stl import write_stl as run
+    """Write a mesh as binary STL; see `amprep.stl.write_stl`."""
+    from amprep.stl import write_stl as run
 
     run(mesh, path)
 

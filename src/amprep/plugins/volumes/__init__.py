@@ -6,21 +6,21 @@ from typing import Any
 import numpy as np
 
 from amprep.hookspecs import VolumeMaker, hookimpl
+from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
-from amprep.model.volume import Boxes
 
 amprep_api = 1
 
 
 def _box(part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> Boxes:  # noqa: ARG001
-    from amprep.plugins.volumes.boxes import enclosing_box
+    from amprep.plugins.volumes.given_boxes import enclosing_box
 
     return enclosing_box(part)
 
 
 def _boxes(part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> Boxes:  # noqa: ARG001
-    from amprep.plugins.volumes.boxes import given_boxes
+    from amprep.plugins.volumes.given_boxes import given_boxes
 
     return given_boxes(part)
 

@@ -1,0 +1,1 @@
+"""Benchmarks on named instances, with rivals in the same run."""

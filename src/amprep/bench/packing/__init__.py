@@ -1,0 +1,1 @@
+"""Packing benchmarks: published instances and the thesis's tables."""

@@ -1,0 +1,1 @@
+"""Support routing benchmarks: generated scenes and rival flow solvers."""

@@ -1,0 +1,161 @@
+"""The promise that a cell can be printed and emptied: steep enough, thick enough, open enough."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats
+from amprep.checks.violation import Violation
+from amprep.geometry.cells.metrology import feature, way_out
+from amprep.geometry.cells.ports import flush_sides, snapped
+from amprep.geometry.cells.struts import angles_deg
+from amprep.model.cell_shapes import GraphCell
+from amprep.model.cells import CellRequest, Cells, Template
+
+STEEP, FEATURE, HOLE, POCKET = "steep enough", "smallest feature", "hole for powder", "no trapped powder"
+
+BRIDGE = 0.6
+"""mm; what looks down flatter is held by what is beside it, when it is no wider."""
+
+
+FINER = 2
+"""How much finer the voxels are on which the smallest feature is measured, on a part of the block."""
+
+
+class Limits(NamedTuple):
+    """What a machine can do: least steepness in degrees, thinnest feature and narrowest hole, mm."""
+
+    angle_deg: float = 30.0
+    feature: float = 0.15
+    hole: float = 0.2
+
+
+class Measures(NamedTuple):
+    """What was measured on a block of the cell's upright edges.
+
+    Attributes
+    ----------
+    density
+        Share of the block's volume.
+    feature
+        mm; what is thinner makes up at most a hundredth of the cell. None without solids.
+    hole
+        mm; the largest ball that gets out sideways from wherever powder lies. None when there is no powder.
+    pocket
+        Share of the block's volume from which nothing gets out at all.
+    """
+
+    density: float
+    feature: float | None
+    hole: float | None
+    pocket: float
+
+
+def check_struts(graph: GraphCell, linear: Floats, limits: Limits, where: str) -> list[Violation]:
+    """Judge the steepness of each strut and wall of a graph under a map's linear part ``(3, 3)``."""
+    found = []
+    for number, angle in enumerate(angles_deg(graph.points, graph.struts, linear).tolist()):
+        if angle < limits.angle_deg - 1e-6 and not _is_short(graph.points[graph.struts[number]], linear):
+            ends = graph.struts[number].tolist()
+            message = (
+                f"strut {number}, from point {ends[0]} to {ends[1]}, is at {angle:.1f} degrees on {where}"
+            )
+            found.append(Violation(STEEP, where, f"expected at least {limits.angle_deg:g}; {message}"))
+    for number, face in enumerate(graph.faces):
+        corners = graph.points[face] @ linear.T
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        angle = float(np.degrees(np.arccos(abs(normal[2]) / np.linalg.norm(normal))))
+        if angle < limits.angle_deg - 1e-6:
+            message = f"wall {number} is at {angle:.1f} degrees on {where}"
+            found.append(Violation(STEEP, where, f"expected at least {limits.angle_deg:g}; {message}"))
+    return found
+
+
+def check_overhangs(template: Template, linear: Floats, limits: Limits, where: str) -> list[Violation]:
+    """Judge what looks down flatter than the limit, wider than a bridge, and does not stand on the cell below."""
+    points = snapped(template.mesh.vertices)
+    triangles = template.mesh.triangles.astype(np.int64)
+    corners = (points @ linear.T)[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(normal, axis=1)
+    down = -normal[:, 2] / np.maximum(size, 1e-300)
+    angle = np.degrees(np.arccos(np.clip(np.abs(down), 0.0, 1.0)))
+    looking = (down > 0.0) if not template.surface else np.ones(len(triangles), np.bool_)
+    flat = looking & (angle < limits.angle_deg - 1e-6) & (flush_sides(points, triangles) != 4) & (size > 1e-9)
+    width = _width(corners, triangles, flat)
+    if width <= BRIDGE:
+        return []
+    message = (
+        f"{template.name} has faces {width:.2g} mm wide that look down at {angle[flat].min():.1f} degrees"
+    )
+    return [Violation(STEEP, where, f"expected at least {limits.angle_deg:g}; {message} on {where}")]
+
+
+def measure(request: CellRequest, cells: Cells, steps: int) -> Measures:
+    """Measure a block of upright edges, made of cubes with `steps` voxels along each side; features finer."""
+    frame = request.frame
+    size = np.array([frame.pitch, frame.pitch, frame.step])
+    solids = [not template.surface for template in cells.templates]
+    volume = np.array(
+        [
+            template.mesh.signed_volume if solid else 0.0
+            for template, solid in zip(cells.templates, solids, strict=True)
+        ]
+    )
+    density = float(volume[cells.template].sum()) / len(request.plane)
+    if not any(solids):
+        return Measures(0.0, None, None, 0.0)
+    place = np.column_stack([request.x, request.y, request.plane])[cells.edge]
+    place = (place - place.min(axis=0)).astype(np.int64)
+    meshes = [
+        (template.mesh.vertices, template.mesh.triangles.astype(np.int64)) for template in cells.templates
+    ]
+    chosen = np.array(solids)[cells.template]
+    template = cells.template.astype(np.int64)
+    hole, pocket = way_out(meshes, template[chosen], place[chosen], size, steps)
+    few = chosen & (place < (2, 2, 3)).all(axis=1)
+    thinnest = feature(meshes, template[few], place[few], size, FINER * steps)
+    # what no voxel's middle lies in is thinner than a voxel
+    return Measures(density, thinnest or 0.0, hole, pocket)
+
+
+def check_measures(measures: Measures, limits: Limits, accuracy: float) -> list[Violation]:
+    """Judge what was measured to within `accuracy` mm; features more accurately than holes."""
+    found = []
+    if measures.feature is not None and measures.feature + accuracy / FINER < limits.feature:
+        message = f"expected at least {limits.feature:g} mm, measured {measures.feature:.2g} mm"
+        found.append(Violation(FEATURE, "block", message))
+    if measures.pocket > 0.0:
+        message = f"{measures.pocket:.2%} of the block is closed in on all sides: powder stays there"
+        found.append(Violation(POCKET, "block", message))
+    if measures.hole is not None and measures.hole + accuracy < limits.hole:
+        message = (
+            f"expected ways out sideways of at least {limits.hole:g} mm, measured {measures.hole:.2g} mm"
+        )
+        found.append(Violation(HOLE, "block", message))
+    return found
+
+
+def _is_short(ends: Floats, linear: Floats) -> bool:
+    along = linear @ (ends[1] - ends[0])
+    return bool(np.hypot(along[0], along[1]) <= BRIDGE)
+
+
+def _width(corners: Floats, triangles: np.ndarray, chosen: Bools) -> float:
+    """Return the width of the widest connected patch of the chosen triangles: area in plan over half of its outline."""
+    from amprep.geometry.meshes.shells import label_shells
+
+    if not chosen.any():
+        return 0.0
+    used, local = np.unique(triangles[chosen], return_inverse=True)
+    count, label = label_shells(local.reshape(-1, 3), len(used))
+    plan = corners[chosen][:, :, :2]
+    one, other = plan[:, 1] - plan[:, 0], plan[:, 2] - plan[:, 0]
+    area = np.bincount(label, np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]) / 2.0, count)
+    least = np.full((count, 2), np.inf)
+    most = np.full((count, 2), -np.inf)
+    for corner in range(3):
+        np.minimum.at(least, label, plan[:, corner])
+        np.maximum.at(most, label, plan[:, corner])
+    longest = np.hypot(*(most - least).T)
+    return float((area / np.maximum(longest, 1e-9)).max())

@@ -1,0 +1,54 @@
+"""The promise of a filled region: closed, the part as it was outside, just the cells inside, and nothing loose."""
+
+from collections.abc import Sequence
+
+from amprep.checks.supports.bodies import NEGLIGIBLE_VOLUME
+from amprep.checks.violation import Violation
+from amprep.geometry.merging.union import FILE_STEP, arrays_of, evaluated, union
+from amprep.geometry.meshes.islands import pieces_of
+from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.model import Mesh
+
+CLOSED = "filled part is closed"
+OUTSIDE = "unchanged outside the region"
+CELLS = "cells in the region"
+WHOLE = "in one piece"
+PROMISES = (CLOSED, OUTSIDE, CELLS, WHOLE)
+
+
+def check_filled(
+    name: str, before: Mesh, regions: Sequence[Mesh], cells: Mesh, after: Mesh, *, dropped: float = 0.0
+) -> list[Violation]:
+    """Judge a part whose regions were filled with cells; everything is measured by manifold3d, exactly.
+
+    What is allowed for is rounding to what a file keeps: `FILE_STEP` times the area of the surface.
+
+    Parameters
+    ----------
+    before, after
+        The part as it was and as it is.
+    cells
+        One closed mesh, not trimmed.
+    dropped
+        mm3 of cells that were dropped because nothing held them.
+    """
+    was, now, grid = (as_manifold(each.vertices, each.triangles) for each in (before, after, cells))
+    if not accepted(now) or now.volume() <= 0.0:
+        return [Violation(CLOSED, name, f"expected a solid, manifold3d says {now.status().name}")]
+    hole = union([as_manifold(each.vertices, each.triangles) for each in regions])
+    around, region = evaluated(was - hole), evaluated(was ^ hole)
+    allowed = FILE_STEP * (was.surface_area() + now.surface_area()) + NEGLIGIBLE_VOLUME
+    found = []
+    lost, gained = (around - now).volume(), (now - was).volume()
+    if max(lost, gained) > allowed:
+        message = f"lost {lost:.4g} mm3 outside the region and gained {gained:.4g} mm3 where the part was not"
+        found.append(Violation(OUTSIDE, name, message))
+    expected = around.volume() + (region ^ grid).volume() - dropped
+    if abs(now.volume() - expected) > allowed:
+        message = f"expected {expected:.6g} mm3 of part and cells, found {now.volume():.6g} mm3"
+        found.append(Violation(CELLS, name, message))
+    pieces, most = pieces_of(*arrays_of(now)), max(pieces_of(*arrays_of(was)), 1)
+    if pieces > most:
+        message = f"expected {most}, found {pieces}: the cells do not hold the part together"
+        found.append(Violation(WHOLE, name, message))
+    return found

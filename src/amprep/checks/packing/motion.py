@@ -1,0 +1,28 @@
+"""Whether a motion is rigid and allowed."""
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.model.part import Orientations
+
+ROTATION_TOLERANCE = 5e-6
+"""Of a matrix entry: files keep six digits."""
+
+
+def motion_fault(rotation: Floats, orientations: Orientations) -> str:
+    """Return why a rotation ``(3, 3)`` is not one of `orientations`; empty when it is."""
+    if (
+        not np.isfinite(rotation).all()
+        or np.abs(rotation @ rotation.T - np.eye(3)).max() > 4.0 * ROTATION_TOLERANCE
+    ):
+        return "changes lengths or angles"
+    if np.linalg.det(rotation) < 0.0:
+        return "mirrors"
+    if orientations.freedom == "free":
+        return ""
+    if orientations.freedom == "about-z":
+        return "" if abs(rotation[2, 2] - 1.0) <= ROTATION_TOLERANCE else "turns about more than the vertical"
+    nearest = np.abs(orientations.matrices - rotation).max(axis=(1, 2)).min(initial=np.inf)
+    if nearest <= ROTATION_TOLERANCE:
+        return ""
+    return f"is none of the {len(orientations.matrices)} allowed orientations"

@@ -1,0 +1,292 @@
+"""The packer's promise, judged on the bounding volumes."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import CONTACT_TOLERANCE, Floats
+from amprep.checks.packing.motion import motion_fault
+from amprep.checks.violation import Violation
+from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes
+from amprep.geometry.meshes.distance import box_gap, box_solids, convex_solid, near_pairs, solid_gap
+from amprep.geometry.meshes.repair import as_manifold
+from amprep.model.bounding_volume import Boxes, ConvexPieces
+from amprep.model.packing import Packing, PackingProblem, Placement
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+TOLERANCE = CONTACT_TOLERANCE * (1.0 + 1e-5)
+
+_CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedVolume:
+    """An item's bounding volume where it stands."""
+
+    problem: PackingProblem
+    placement: Placement
+    fixed: bool
+
+    @property
+    def label(self) -> str:
+        """How messages name it."""
+        item = self.problem.items[self.placement.item]
+        return f"item {self.placement.item} (part {item.part}, copy {item.copy})"
+
+    @cached_property
+    def boxes(self) -> tuple[Floats, Floats] | None:
+        """Corners ``(k, 3)`` of its boxes, or None when they are not parallel to the axes, or not boxes."""
+        volume, turned = self.problem.items[self.placement.item].volume, np.abs(self.placement.rotation)
+        if not isinstance(volume, Boxes) or (np.minimum(turned, np.abs(1.0 - turned)) > 1e-9).any():
+            return None
+        lo, hi = rotated_boxes(volume.lo, volume.hi, self.placement.rotation)
+        return lo + self.placement.translation, hi + self.placement.translation
+
+    @cached_property
+    def hulls(self) -> list[Floats]:
+        """Points ``(n, 3)`` of each piece; the piece is their convex hull, save for a `Solid`."""
+        volume = self.problem.items[self.placement.item].volume
+        if isinstance(volume, Boxes):
+            pieces = [np.where(_CUBE, hi, lo) for lo, hi in zip(volume.lo, volume.hi, strict=True)]
+        elif isinstance(volume, ConvexPieces):
+            pieces = [piece.vertices for piece in volume.pieces]
+        else:
+            pieces = [volume.mesh.vertices]
+        return [piece @ self.placement.rotation.T + self.placement.translation for piece in pieces]
+
+    @cached_property
+    def points(self) -> Floats:
+        """All points of the pieces, ``(n, 3)``."""
+        return np.concatenate(self.hulls)
+
+    @cached_property
+    def solid(self) -> "Manifold":
+        """The volume as a solid."""
+        from manifold3d import Manifold, OpType
+
+        volume = self.problem.items[self.placement.item].volume
+        if isinstance(volume, Boxes | ConvexPieces):
+            return Manifold.batch_boolean([convex_solid(hull) for hull in self.hulls], OpType.Add)
+        return as_manifold(self.points, volume.mesh.triangles)
+
+    def gap(self, other: "PlacedVolume", limit: float) -> float:
+        """Return the distance to another volume, at most about `limit`; negative when they overlap."""
+        if self.boxes is not None and other.boxes is not None:
+            return box_gap(*self.boxes, *other.boxes)
+        return solid_gap(self.solid, other.solid, limit)
+
+
+def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
+    """Return how a packing breaks the packer's promise.
+
+    Clearance is the true distance of the volumes, contact up to `CONTACT_TOLERANCE`. Fixed placements must be
+    kept and are not judged otherwise. Items of boxes said to be too large must not fit an empty build.
+    """
+    faults = _each_item_once(problem, packing)
+    if any(v.promise == "known item" for v in faults):
+        return faults
+    faults += [*_fixed_kept(problem, packing), *_reasons(problem, packing), *_claims(problem, packing)]
+    for number, build in enumerate(packing.builds):
+        fixed = {p.item for p in problem.fixed} if number == 0 else set()
+        placed = [PlacedVolume(problem, placement, placement.item in fixed) for placement in build]
+        faults += _build_faults(problem, placed)
+    return faults
+
+
+def _each_item_once(problem: PackingProblem, packing: Packing) -> list[Violation]:
+    """Return the items that are nowhere, in two places, or unknown, and builds that hold nothing."""
+    placed = [placement.item for build in packing.builds for placement in build]
+    count = Counter([*placed, *(unplaced.item for unplaced in packing.unplaced)])
+    n = len(problem.items)
+    faults = [
+        Violation("known item", f"item {i}", f"items are 0 to {n - 1}")
+        for i in sorted(count)
+        if not 0 <= i < n
+    ]
+    faults += [
+        Violation("every item once", f"item {i}", f"is in builds or unplaced {count[i]} times, not once")
+        for i in range(n)
+        if count[i] != 1
+    ]
+    for number, build in enumerate(packing.builds, start=1):
+        if not build:
+            faults.append(Violation("no empty build", f"build {number}", "holds no item"))
+    if problem.objective != "builds" and len(packing.builds) > 1:
+        faults.append(
+            Violation("one build", "packing", f"has {len(packing.builds)} builds, the problem has one")
+        )
+    return faults
+
+
+def _fixed_kept(problem: PackingProblem, packing: Packing) -> list[Violation]:
+    """Return the fixed placements that are not in the first build as given."""
+    first = {placement.item: placement for placement in (packing.builds[0] if packing.builds else ())}
+    return [
+        Violation("fixed placement kept", f"item {fixed.item}", "is not in the first build where it is fixed")
+        for fixed in problem.fixed
+        if fixed.item not in first or np.abs(first[fixed.item].matrix - fixed.matrix).max() > 1e-9
+    ]
+
+
+def _build_faults(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Violation]:
+    """Return the faults within one build."""
+    faults: list[Violation] = []
+    for volume in placed:
+        orientations = problem.items[volume.placement.item].orientations
+        fault = motion_fault(volume.placement.rotation, orientations)
+        if not np.isfinite(volume.placement.translation).all():
+            fault = "is not finite"
+        if fault and not volume.fixed:
+            faults.append(Violation("allowed motion", volume.label, f"its placement {fault}"))
+    if faults:
+        return faults
+    for volume in placed:
+        if not volume.fixed:
+            faults += [*_inside(problem, volume), *_standing(problem, volume), *_zones(problem, volume)]
+    return [*faults, *_apart(problem, placed)]
+
+
+def _inside(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
+    """Return how far a volume comes nearer than the clearance to the walls or the lid."""
+    size, points = problem.space.size, volume.points
+    if problem.space.shape == "cylinder":
+        away = points[:, :2] - size[:2] / 2.0
+        walls = float(size[0]) / 2.0 - float(np.hypot(away[:, 0], away[:, 1]).max())
+    else:
+        walls = float(min(points[:, :2].min(), (size[:2] - points[:, :2]).min()))
+    return [
+        Violation(
+            "inside build volume",
+            volume.label,
+            f"it is {distance:.6g} mm from the {name}, needs {problem.clearance:g}",
+        )
+        for name, distance in (("walls", walls), ("lid", float(size[2] - points[:, 2].max())))
+        if distance < problem.clearance - TOLERANCE
+    ]
+
+
+def _standing(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
+    """Return whether a volume's lowest point is below `lift`, or above it without stacking."""
+    lowest = float(volume.points[:, 2].min())
+    if lowest < problem.lift - TOLERANCE:
+        return [
+            Violation("lift", volume.label, f"its lowest point is at {lowest:.6g} mm, needs {problem.lift:g}")
+        ]
+    if not problem.stacking and lowest > problem.lift + TOLERANCE:
+        message = f"its lowest point is at {lowest:.6g} mm; without stacking all stand at {problem.lift:g}"
+        return [Violation("stacking", volume.label, message)]
+    return []
+
+
+def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
+    """Return the zones that a volume reaches into."""
+    faults = []
+    least, most = volume.points.min(axis=0), volume.points.max(axis=0)
+    for number, (lo, hi) in enumerate(
+        zip(problem.space.zone_lo, problem.space.zone_hi, strict=True), start=1
+    ):
+        if (least >= hi - TOLERANCE).any() or (most <= lo + TOLERANCE).any():
+            continue
+        if volume.boxes is not None:
+            gap = box_gap(*volume.boxes, lo[None], hi[None])
+        else:
+            gap = solid_gap(volume.solid, box_solids(lo[None], hi[None]), 0.0)
+        if gap < -TOLERANCE:
+            faults.append(
+                Violation(
+                    "outside forbidden zones", volume.label, f"it is {-gap:.6g} mm inside zone {number}"
+                )
+            )
+    return faults
+
+
+def _apart(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Violation]:
+    """Return the pairs that are nearer than the clearance."""
+    if not placed:
+        return []
+    lo = np.array([volume.points.min(axis=0) for volume in placed])
+    hi = np.array([volume.points.max(axis=0) for volume in placed])
+    faults = []
+    for i, j in near_pairs(lo, hi, problem.clearance - TOLERANCE):
+        one, other = placed[i], placed[j]
+        if one.fixed and other.fixed:
+            continue
+        gap = one.gap(other, problem.clearance)
+        if gap < problem.clearance - TOLERANCE:
+            promise = "clearance" if gap >= 0.0 else "no overlap"
+            message = f"it is {gap:.6g} mm from {other.label}, needs {problem.clearance:g}"
+            faults.append(Violation(promise, one.label, message))
+    return faults
+
+
+def _reasons(problem: PackingProblem, packing: Packing) -> list[Violation]:
+    """Return the unplaced items without a reason, or with one that is not true."""
+    faults = []
+    for unplaced in packing.unplaced:
+        if not unplaced.reason:
+            faults.append(Violation("reason given", f"item {unplaced.item}", "is unplaced without a reason"))
+        if (
+            unplaced.reason == "too large"
+            and 0 <= unplaced.item < len(problem.items)
+            and _fits(problem, unplaced.item)
+        ):
+            faults.append(
+                Violation(
+                    "reason true", f"item {unplaced.item}", "is called too large but fits an empty build"
+                )
+            )
+    return faults
+
+
+def _fits(problem: PackingProblem, index: int) -> bool:
+    """Return whether an item of boxes fits an empty build in one of its listed orientations."""
+    item, size, gap = problem.items[index], problem.space.size, problem.clearance
+    if not isinstance(item.volume, Boxes) or item.orientations.freedom != "list":
+        return False
+    radius = float(size[0]) / 2.0 - gap if problem.space.shape == "cylinder" else 0.0
+    if problem.space.shape == "cylinder" and radius <= 0.0:
+        return False
+    zones = problem.space.zone_lo, problem.space.zone_hi
+    lo = np.array([gap, gap, problem.lift])
+    space = Space(lo, size - gap, size[:2] / 2.0, radius, *zones, not problem.stacking, 0.0)
+    turned = (
+        rotated_boxes(item.volume.lo, item.volume.hi, rotation) for rotation in item.orientations.matrices
+    )
+    return any(find_home(lo, hi, space) is not None for lo, hi in turned)
+
+
+def _claims(problem: PackingProblem, packing: Packing) -> list[Violation]:
+    """Return whether status and bound contradict the packing or each other."""
+    reached, sign = _reached(problem, packing), -1.0 if problem.objective == "fill" else 1.0
+    slack = 1e-9 * max(1.0, abs(reached))
+    left_out = problem.objective != "fill" and bool(packing.unplaced)
+    faults = []
+    if packing.bound is not None and not left_out and sign * (packing.bound - reached) > slack:
+        faults.append(
+            Violation("bound", "packing", f"reaches {reached:g}, beyond its own bound {packing.bound:g}")
+        )
+    if packing.status == "optimal":
+        proved = packing.bound is not None and sign * (reached - packing.bound) <= slack
+        if left_out or not proved:
+            left = len(packing.unplaced)
+            message = f"is called optimal but reaches {reached:g}, bound {packing.bound}, {left} unplaced"
+            faults.append(Violation("status", "packing", message))
+    if packing.status == "infeasible" and not packing.unplaced:
+        faults.append(Violation("status", "packing", "is called infeasible but places every item"))
+    return faults
+
+
+def _reached(problem: PackingProblem, packing: Packing) -> float:
+    """Return what the objective measures."""
+    if problem.objective == "builds":
+        return float(len(packing.builds))
+    placed = [placement for build in packing.builds for placement in build]
+    if problem.objective == "fill":
+        return float(sum(problem.items[placement.item].value for placement in placed))
+    return max((float(PlacedVolume(problem, p, fixed=False).points[:, 2].max()) for p in placed), default=0.0)

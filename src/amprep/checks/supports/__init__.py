@@ -1,0 +1,1 @@
+"""Judges of support plans and support bodies."""

@@ -1,0 +1,85 @@
+"""The promise of beams: sound, inside, in no part deeper than allowed, standing together with what they carry."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.geometry.supports.beams import balls_too_deep, carried, sample, sphere
+from amprep.model.build import Lattice
+from amprep.model.build_volume import BuildVolume
+from amprep.model.mesh import Mesh
+
+_STEP = 0.4
+"""Radii between two balls that are judged; other places than those at which beams were planned."""
+
+
+_DIRECTIONS = sphere(42)
+
+
+def fault_of(lattice: Lattice) -> str:
+    """Say what keeps the arrays from being beams at all, or ""."""
+    nodes, struts, radii = lattice.nodes, lattice.struts, lattice.radii
+    if not len(struts) or len(radii) != len(struts):
+        return f"expected beams with two radii each, found {len(struts)} with {len(radii)}"
+    if struts.min() < 0 or struts.max() >= len(nodes) or (struts[:, 0] == struts[:, 1]).any():
+        return "a beam does not run between two of the nodes"
+    if not np.isfinite(nodes).all():
+        return "a node has NaN or infinite coordinates"
+    if not (np.isfinite(radii) & (radii > 0.0)).all():
+        return "a beam has a radius that is not above 0"
+    return ""
+
+
+def excess_of(lattice: Lattice, space: BuildVolume) -> float:
+    """Return how far beams, as far as they are not cut off, stick out of the build volume, mm."""
+    centres, radii = lattice.nodes[lattice.struts].reshape(-1, 3), lattice.radii.reshape(-1, 1)
+    low, high = centres - radii, centres + radii
+    if lattice.room is not None:
+        low, high = np.maximum(low, lattice.room[0]), np.minimum(high, lattice.room[1])
+    out = [float(-low[:, 2].min()), float((high - space.size)[:, 2].max())]
+    if space.shape == "cylinder":
+        middle = space.size[0] / 2
+        out.append(float((np.hypot(*(centres[:, :2] - middle).T) + radii[:, 0] - middle).max()))
+    else:
+        out += [float(-low[:, :2].min()), float((high - space.size)[:, :2].max())]
+    return max(out)
+
+
+def enters_box(lattice: Lattice, lo: Floats, hi: Floats) -> bool:
+    """Tell whether a beam reaches into a box."""
+    places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
+    away = np.maximum(np.maximum(lo - places.centres, places.centres - hi), 0.0)
+    return bool((np.linalg.norm(away, axis=1) < places.radii - CONTACT_TOLERANCE).any())
+
+
+def deepest_place(lattice: Lattice, mesh: Mesh, depth: float) -> Floats | None:
+    """Return the middle ``(3,)`` of a ball of a beam that lies more than `depth` mm deep in a solid, or None.
+
+    Depth is measured upwards; on balls a little smaller than the beam, so that contact is none.
+    """
+    places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
+    reach = np.maximum(places.radii - 2.0 * CONTACT_TOLERANCE, 0.0)
+    triangles = mesh.triangles.astype(np.int64)
+    deep = balls_too_deep(places.centres, reach, mesh.vertices, triangles, depth, _DIRECTIONS)
+    return np.asarray(places.centres[deep][0]) if deep.any() else None
+
+
+def hanging_pieces(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
+    """Return how many pieces, of beams and solids that touch one another, stand on nothing.
+
+    Parameters
+    ----------
+    rests
+        Tells which vertices of the solids rest on something.
+    """
+    solids = lattice.solids
+    stands = carried(
+        lattice.nodes,
+        lattice.struts.astype(np.int64),
+        lattice.radii,
+        solids.vertices,
+        solids.triangles.astype(np.int64),
+        rests,
+    )
+    return stands.hanging

@@ -1,0 +1,248 @@
+"""The promise of finished supports: closed, inside, on the plate, in no part deeper than allowed."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats
+from amprep.checks.packing.parts_placed import TOLERANCE
+from amprep.checks.supports import beams
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.containment import inside
+from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.shells import label_shells
+from amprep.geometry.meshes.topology import merge_equal
+from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
+from amprep.model.build_volume import BuildVolume
+from amprep.model.control import Stop
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+CLOSED = "support is closed"
+INSIDE = "support inside build volume"
+STANDING = "support stands on the plate"
+PENETRATION = "support in a part"
+
+NEGLIGIBLE_VOLUME = 1e-4
+"""mm3; booleans on coordinates of 1e-5 mm leave slivers up to about 10 mm2 times that."""
+
+
+class Body:
+    """A support body, its solid made when it is first needed."""
+
+    def __init__(self, support: SupportBody) -> None:
+        self.support = support
+        self.name = support.name
+
+    @cached_property
+    def solid(self) -> "Manifold":
+        """The body as a solid."""
+        return as_manifold(self.support.mesh.vertices, self.support.mesh.triangles)
+
+
+def check_bodies(build: Build, stop: Stop) -> list[Violation]:
+    """Return how the supports of a build break their promise.
+
+    Solids are judged by manifold3d, exactly; of walls without thickness the corners and the middles of
+    triangles and edges are judged, of beams points on balls along them.
+    """
+    found: list[Violation] = []
+    for support in build.supports:
+        solids = None if support.lattice is None else support.lattice.solids
+        body = Body(support if solids is None else replace(support, mesh=solids))
+        faults = _unsound(support) if support.lattice else _closed(body)
+        found += faults
+        if faults:
+            continue
+        found += [*_inside(body, build.settings.space), *_standing(body, build)]
+        for index, placed in enumerate(build.parts):
+            if stop.cancelled.is_set():
+                return found
+            found += _penetration(body, placed, build.settings, holds=index in body.support.parts)
+    return found
+
+
+def _closed(body: Body) -> list[Violation]:
+    """Judge a solid by manifold3d; a surface has only to be finite."""
+    mesh = body.support.mesh
+    if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
+        return [Violation(CLOSED, body.name, "expected a finite mesh with triangles, found none")]
+    if body.support.surface:
+        return []
+    status, volume = body.solid.status().name, body.solid.volume()
+    if status == "NoError" and volume > 0:
+        return []
+    return [Violation(CLOSED, body.name, f"expected a solid, manifold3d says {status} and {volume:.3g} mm3")]
+
+
+def _unsound(support: SupportBody) -> list[Violation]:
+    """Judge beams as arrays, the solids beside them, and the solid that readers show who know no beams."""
+    if support.lattice is None:
+        return []
+    fault = beams.fault_of(support.lattice)
+    found = [Violation(CLOSED, support.name, fault)] if fault else []
+    for mesh in (support.lattice.solids, support.lattice.stand_in):
+        if len(mesh.triangles):
+            found += _closed(Body(replace(support, mesh=mesh, lattice=None)))
+    return found
+
+
+def _inside(body: Body, space: BuildVolume) -> list[Violation]:
+    lattice = body.support.lattice
+    excess = -np.inf if lattice is None else beams.excess_of(lattice, space)
+    if len(body.support.mesh.vertices):
+        excess = max(excess, _excess(body.support.mesh.vertices, space))
+    found = []
+    if excess > TOLERANCE:
+        found.append(Violation(INSIDE, body.name, f"sticks out of the build volume by {excess:.4f} mm"))
+    return [*found, *_zones(body, space)]
+
+
+def _excess(points: Floats, space: BuildVolume) -> float:
+    """Return how far points lie outside the build volume, mm."""
+    below, above = -points.min(axis=0), points.max(axis=0) - space.size
+    if space.shape == "cylinder":
+        radius = space.size[0] / 2
+        above[:2] = below[:2] = np.hypot(*(points[:, :2] - radius).T).max() - radius
+    return float(max(below.max(), above.max()))
+
+
+def _zones(body: Body, space: BuildVolume) -> list[Violation]:
+    found = []
+    for lo, hi in zip(space.zone_lo + TOLERANCE, space.zone_hi - TOLERANCE, strict=True):
+        lattice = body.support.lattice
+        if _volume_in_box(body, lo, hi) or (lattice is not None and beams.enters_box(lattice, lo, hi)):
+            found.append(Violation(INSIDE, body.name, f"reaches into the forbidden zone at {lo.tolist()} mm"))
+    return found
+
+
+def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
+    from manifold3d import Manifold
+
+    corners = body.support.mesh.vertices[body.support.mesh.triangles]
+    near = ((corners.max(axis=1) > lo) & (corners.min(axis=1) < hi)).all(axis=1)
+    if body.support.surface or not near.any():
+        return bool(near.any())
+    common = body.solid ^ Manifold.cube((hi - lo).tolist()).translate(lo.tolist())
+    return bool(common.volume() > NEGLIGIBLE_VOLUME)
+
+
+def _standing(body: Body, build: Build) -> list[Violation]:
+    """Judge that every connected piece reaches the plate; pieces that meet in a point are connected.
+
+    A shell of negative volume bounds a void inside a piece and is none itself. Where the build allows it, a
+    piece may stand on a part that the body holds instead.
+    """
+    if body.support.lattice is not None:
+        return _standing_beams(body, body.support.lattice, build)
+    points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
+    count, shell = label_shells(triangles, len(points))
+    lowest = np.full(count, np.inf)
+    np.minimum.at(lowest, shell, points[triangles, 2].min(axis=1))
+    if not body.support.surface:
+        a, b, c = (points[triangles[:, i]] - points[triangles[:, 0]].mean(axis=0) for i in range(3))
+        volume = np.bincount(shell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0, count)
+        lowest[volume <= NEGLIGIBLE_VOLUME] = 0.0
+    if build.settings.grounding == "anywhere" and (lowest > TOLERANCE).any():
+        held = [build.parts[index] for index in body.support.parts]
+        on_part = _rest_on(points, held, build.settings.overlap)
+        lowest[shell[on_part[triangles].any(axis=1)]] = 0.0
+    floating = int((lowest > TOLERANCE).sum())
+    if not floating:
+        return []
+    first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
+    place = np.round(first, 2).tolist()
+    message = f"{floating} of {count} pieces do not reach the plate, one of them at {place} mm"
+    return [Violation(STANDING, body.name, message)]
+
+
+def _standing_beams(body: Body, lattice: Lattice, build: Build) -> list[Violation]:
+    """Judge that beams, and the solids that touch them, reach the plate together."""
+
+    def rests(points: Floats) -> Bools:
+        on_plate = points[:, 2] <= TOLERANCE
+        if build.settings.grounding == "anywhere":
+            held = [build.parts[index] for index in body.support.parts]
+            on_plate |= _rest_on(points, held, build.settings.overlap)
+        return np.asarray(on_plate)
+
+    hanging = beams.hanging_pieces(lattice, rests)
+    message = f"{hanging} pieces of beams and what they carry do not reach the plate"
+    return [Violation(STANDING, body.name, message)] if hanging else []
+
+
+def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Bools:
+    """Tell which points are at or just below an upper surface of a part: in it, and out of it a little higher."""
+    found = np.zeros(len(points), np.bool_)
+    for placed in parts:
+        mesh = placed.mesh
+        below = inside(points - (0.0, 0.0, TOLERANCE), mesh.vertices, mesh.triangles)
+        above = inside(points + (0.0, 0.0, overlap + 2 * TOLERANCE), mesh.vertices, mesh.triangles)
+        found |= below & ~above
+    return found
+
+
+def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, holds: bool) -> list[Violation]:
+    """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all.
+
+    Where supports may stand on parts, those that the body holds may be entered downwards as well.
+    """
+    feet = holds and settings.grounding == "anywhere"
+    depth = (settings.overlap if holds else 0.0) + TOLERANCE
+    if not placed.part.is_solid:
+        return []
+    lattice = body.support.lattice
+    place = None if lattice is None else beams.deepest_place(lattice, placed.mesh, depth)
+    if place is not None:
+        message = f"enters {placed.label}: a beam at {np.round(place, 2).tolist()} mm is more than {depth:.4g} mm deep"
+        return [Violation(PENETRATION, body.name, message)]
+    if not len(body.support.mesh.triangles):
+        return []
+    (lo, hi), (part_lo, part_hi) = body.support.mesh.bounds, placed.mesh.bounds
+    if ((lo > part_hi) | (hi < part_lo)).any():
+        return []
+    if body.support.surface:
+        deep = _sheet_enters(body, placed, depth)
+        found = f"a wall runs more than {depth:.4g} mm into it" if deep else ""
+    else:
+        volume = _volume_deeper(body, placed, depth, feet=feet)
+        found = f"{volume:.3g} mm3 lie more than {depth:.4g} mm deep" if volume > NEGLIGIBLE_VOLUME else ""
+    return [Violation(PENETRATION, body.name, f"enters {placed.label}: {found}")] if found else []
+
+
+def _volume_deeper(body: Body, placed: PlacedPart, depth: float, *, feet: bool) -> float:
+    """Return the volume of the body's points in the part with the point `depth` below them in the part too.
+
+    With `feet`, only of those with the point `depth` above them in the part as well.
+    """
+    part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
+    below = body.solid ^ part.translate((0.0, 0.0, depth))
+    if below.is_empty() or below.volume() <= NEGLIGIBLE_VOLUME:
+        return 0.0
+    if feet:
+        below ^= part.translate((0.0, 0.0, -depth))
+    return float(sum(piece.volume() for piece in (below ^ part).decompose() if _thickness(piece) > TOLERANCE))
+
+
+def _thickness(solid: "Manifold") -> float:
+    """Return the mean thickness of a flat piece, mm: along a steep wall contact is thin, though it runs deep."""
+    return float(2.0 * solid.volume() / max(solid.surface_area(), NEGLIGIBLE_VOLUME))
+
+
+def _sheet_enters(body: Body, placed: PlacedPart, depth: float) -> bool:
+    """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too.
+
+    Sideways it has to lie deeper than contact.
+    """
+    corners = body.support.mesh.vertices[body.support.mesh.triangles]
+    middles = (corners + np.roll(corners, 1, axis=1)) / 2
+    points = np.concatenate([corners.reshape(-1, 3), middles.reshape(-1, 3), corners.mean(axis=1)])
+    mesh, side = placed.mesh, 2 * TOLERANCE
+    for dx, dy in ((0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)):
+        for dz in (0.0, -depth):
+            points = points[inside(points + (dx, dy, dz), mesh.vertices, mesh.triangles)]
+    return len(points) > 0

@@ -1,0 +1,65 @@
+"""The promise of connectors: over every connected red square something touches the part it holds."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Ints
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.model.build import Build, SupportBody
+from amprep.model.mesh import Mesh
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+PROMISE = "connector touches its part"
+
+_BESIDE = 1e-6
+
+
+def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Violation]:
+    """Return the columns above connected red squares in which no support enters the part.
+
+    Supports enter what they hold by the overlap, so volumes tell, by manifold3d. What is listed as unsupported
+    in a column excuses it. Walls without thickness have no volume: parts that they hold are not judged.
+
+    Parameters
+    ----------
+    lo, hi
+        ``(m, 3)`` mm, from each square up to the top of what its connector may reach.
+    part
+        ``(m,)`` the placed part that each square holds.
+    """
+    found = []
+    for index, placed in enumerate(build.parts):
+        walls = any(body.surface and index in body.parts for body in build.supports)
+        own = np.flatnonzero((part == index) & (not walls))
+        common = _common(build.supports, placed.mesh, index) if len(own) else []
+        listed = [each.points for each in build.unsupported if each.part == index]
+        for number in own.tolist():
+            box = lo[number], hi[number] + (0.0, 0.0, build.settings.overlap)
+            if _volume(common, *box) <= 0.0 and not any(_within(points, *box).any() for points in listed):
+                where = np.round(lo[number], 3).tolist()
+                message = f"nothing touches the part above the red square at {where} mm"
+                found.append(Violation(PROMISE, placed.label, message))
+    return found
+
+
+def _common(bodies: Sequence[SupportBody], mesh: Mesh, part: int) -> list["Manifold"]:
+    """Return what supports and the part they hold have in common."""
+    solid = as_manifold(mesh.vertices, mesh.triangles)
+    held = [body.mesh for body in bodies if part in body.parts]
+    return [as_manifold(each.vertices, each.triangles) ^ solid for each in held]
+
+
+def _volume(solids: Sequence["Manifold"], lo: Floats, hi: Floats) -> float:
+    from manifold3d import Manifold
+
+    box = Manifold.cube((hi - lo).tolist()).translate(lo.tolist())
+    return float(sum((solid ^ box).volume() for solid in solids))
+
+
+def _within(points: Floats, lo: Floats, hi: Floats) -> Bools:
+    return np.asarray(((points >= lo - _BESIDE) & (points <= hi + _BESIDE)).all(axis=1))

@@ -1,0 +1,1 @@
+"""Maximum flow, minimum cuts and capacity escalation on the support graph."""

@@ -1,0 +1,1 @@
+"""Geometry of boxes in a build volume."""

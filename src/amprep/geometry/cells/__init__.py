@@ -1,0 +1,1 @@
+"""Geometry of lattice cells: struts, functions, ports, tiling."""

@@ -1,0 +1,138 @@
+"""Make closed meshes of many cells: cells of one direction tile, so those that conform weld on arrays."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.merging.nonmanifold_edges import separate_edges
+from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Arrays = tuple[Floats, Ints]
+
+_FLUSH = 1e-9
+"""Share of the unit cube: a corner this close to a side lies on it."""
+
+
+class Tiles(NamedTuple):
+    """Cells of one direction: copies of templates, each in its own tile of a lattice.
+
+    Attributes
+    ----------
+    template
+        ``(n,)`` which template.
+    place
+        ``(n, 3)`` int64, the tile, in the order of the unit cube's axes: cells with a common side differ
+        by 1 in the one coordinate across it.
+    matrix
+        ``(n, 3, 4)`` unit cube to build coordinates.
+    """
+
+    template: Ints
+    place: Ints
+    matrix: Floats
+
+
+def fills_unit_cube(points: Floats) -> bool:
+    """Whether all points lie in the unit cube."""
+    return bool((points > -_FLUSH).all() and (points < 1.0 + _FLUSH).all())
+
+
+def plate(thickness: float) -> Arrays:
+    """Return a plate under the top of the unit cube, as wide as the cube.
+
+    Parameters
+    ----------
+    thickness
+        Share of the cube's height.
+    """
+    corners = [[x, y, z] for z in (1.0 - thickness, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
+    triangles = [
+        [0, 2, 3], [0, 3, 1], [4, 7, 6], [4, 5, 7], [0, 1, 5], [0, 5, 4],
+        [2, 7, 3], [2, 6, 7], [0, 4, 6], [0, 6, 2], [1, 7, 5], [1, 3, 7],
+    ]  # fmt: skip
+    return np.array(corners), np.array(triangles, np.int64)
+
+
+def expand(templates: Sequence[Arrays], template: Ints, matrix: Floats) -> tuple[Floats, Ints, Ints]:
+    """Copy templates under their maps.
+
+    Returns
+    -------
+    points, triangles
+        ``(n, 3)`` mm, nothing merged yet, and ``(m, 3)``.
+    source
+        ``(m,)`` which copy each triangle belongs to.
+    """
+    points, triangles, source = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
+    first = 0
+    for index, (corners, faces) in enumerate(templates):
+        copies = np.flatnonzero(template == index)
+        moved = np.einsum("nij,vj->nvi", matrix[copies, :, :3], corners) + matrix[copies, None, :, 3]
+        offsets = first + len(corners) * np.arange(len(copies))
+        points.append(moved.reshape(-1, 3))
+        triangles.append((faces[None] + offsets[:, None, None]).reshape(-1, 3))
+        source.append(np.repeat(copies, len(faces)))
+        first += len(copies) * len(corners)
+    return np.vstack(points), np.vstack(triangles), np.concatenate(source)
+
+
+def tile(templates: Sequence[Arrays], tiles: Tiles) -> Iterator[Arrays]:
+    """Yield closed meshes whose union is the cells: one when they conform, else two.
+
+    Where neighbours do not share the triangles of a common side, every other cell goes into the second
+    mesh, like the colours of a chessboard, so that within a mesh no two cells have a side in common.
+
+    Parameters
+    ----------
+    templates
+        Closed meshes in the unit cube.
+    """
+    welded, conform = _weld(templates, tiles)
+    if conform:
+        yield welded
+        return
+    colour = tiles.place.sum(axis=1) % 2
+    for chosen in (colour == 0, colour == 1):
+        if chosen.any():
+            yield _weld(templates, Tiles(*(column[chosen] for column in tiles)))[0]
+
+
+def _weld(templates: Sequence[Arrays], tiles: Tiles) -> tuple[Arrays, bool]:
+    """Weld all cells; tell whether neighbours left no triangles against one another."""
+    points, triangles, source = expand(templates, tiles.template, tiles.matrix)
+    merged, corners = merge_vertices(points, triangles)
+    stays = cancel_opposite(corners)
+    side = _sides(templates, tiles.template)[stays]
+    conform = not _facing(tiles.place[source[stays]], side)
+    return separate_edges(*compact(merged, corners[stays])), conform
+
+
+def _sides(templates: Sequence[Arrays], template: Ints) -> Ints:
+    """Which side of its cube each expanded triangle lies on: 2 axis + (0 or 1), or -1."""
+    sides = [np.empty(0, np.int64)]
+    for index, (corners, faces) in enumerate(templates):
+        low = (np.abs(corners[faces]) < _FLUSH).all(axis=1)
+        high = (np.abs(corners[faces] - 1.0) < _FLUSH).all(axis=1)
+        flush = np.stack([low, high], axis=2).reshape(len(faces), 6)
+        side = np.where(flush.any(axis=1), flush.argmax(axis=1), -1)
+        sides.append(np.tile(side, int((template == index).sum())))
+    return np.concatenate(sides)
+
+
+def _facing(place: Ints, side: Ints) -> bool:
+    """Whether triangles are left on both faces of a side between two cells."""
+    flush = side >= 0
+    axis, far = np.divmod(side[flush], 2)
+    between = place[flush].copy()
+    between[np.arange(len(between)), axis] += far
+    if len(between) == 0:
+        return False
+    between -= between.min(axis=0)
+    extent = between.max(axis=0) + 1
+    key = (between @ np.array([extent[1] * extent[2], extent[2], 1])) * 3 + axis
+    return bool(np.intersect1d(key[far == 0], key[far == 1]).size)

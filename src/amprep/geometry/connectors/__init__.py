@@ -1,0 +1,1 @@
+"""Geometry of connectors between supports and parts."""

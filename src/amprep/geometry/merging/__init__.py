@@ -1,0 +1,1 @@
+"""Merging of lattice cells on the grid."""

@@ -1,0 +1,1 @@
+"""Mesh operations: repair, containment, distance, offset, decimation."""

@@ -1,0 +1,55 @@
+"""Which points lie inside a closed mesh, by winding number along vertical lines."""
+
+import numpy as np
+
+from amprep.geometry.overhangs.find import Bools, Floats, Ints
+
+
+def inside(points: Floats, vertices: Floats, triangles: Ints) -> Bools:
+    """Tell which of `points` ``(n, 3)`` have a winding number above 0 with respect to the mesh.
+
+    Points on the surface may count either way. Time grows with points and triangles that share a square of
+    a horizontal grid, not with their product.
+    """
+    from amprep.kernels.meshes.containment import count_below
+
+    winding = np.zeros(len(points), np.int32)
+    if len(points) and len(triangles):
+        lo, hi = _bounds(vertices)
+        near = np.flatnonzero(_within(points, lo, hi))
+        low, high = lo[:2], hi[:2]
+        side = max(
+            float((high - low).max()) / 512, float(np.sqrt(np.prod(high - low) / (len(near) + 1))), 1e-6
+        )
+        nx, ny = (int(n) for n in (high - low) // side + 1)
+        column = ((points[near, :2] - low) // side).astype(np.int64)
+        square = column[:, 1] * nx + column[:, 0]
+        order = np.argsort(square, kind="stable")
+        first = np.searchsorted(square[order], np.arange(nx * ny + 1))
+        counts = np.zeros(len(near), np.int32)
+        corner = np.append(low, 0.0)
+        count_below(
+            np.ascontiguousarray(points[near][order] - corner),
+            first,
+            np.ascontiguousarray(vertices - corner),
+            np.ascontiguousarray(triangles, np.int64),
+            side,
+            nx,
+            ny,
+            counts,
+        )
+        winding[near[order]] = counts
+    return np.asarray(winding > 0)
+
+
+def _bounds(vertices: Floats) -> tuple[Floats, Floats]:
+    columns = vertices.T
+    return np.array([column.min() for column in columns]), np.array([column.max() for column in columns])
+
+
+def _within(points: Floats, low: Floats, high: Floats) -> Bools:
+    """Tell which points lie in the box; axis by axis, far faster than over rows of three."""
+    within = np.ones(len(points), np.bool_)
+    for axis in range(3):
+        within &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
+    return within

@@ -1,0 +1,248 @@
+"""Is a mesh a solid? manifold3d judges; what may be mended without changing the shape is, and reported."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.meshes.shells import MOST_UNITED, find_inside_out, measure_shells, solid_volume
+from amprep.geometry.meshes.topology import (
+    Bools,
+    Floats,
+    Ints,
+    compact,
+    count_edges,
+    degenerate,
+    first_of_equal_rows,
+    join_near,
+    open_vertices,
+    repeated,
+)
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+__all__ = ["SEAM_TOLERANCE", "Settled", "as_manifold", "find_defect", "settle"]
+
+SEAM_TOLERANCE = 1e-3
+"""mm; open edges closer than this may be sewn together, the distance at which the product counts contact."""
+
+_FLOAT32_STEP = 2.0**-22  # of a coordinate: files keep float32, and exporters round once or twice
+
+
+class Settled(NamedTuple):
+    """A mesh that has been judged.
+
+    Attributes
+    ----------
+    vertices, triangles
+        ``(n, 3)`` float64 mm and ``(m, 3)`` int32: the mesh given, merged and turned where `notes` say so.
+    volume
+        mm3 where the winding number is positive; 0 when there is a problem.
+    notes
+        What was mended, a sentence each.
+    problem
+        Why manifold3d refuses it; empty for a solid.
+    kept
+        ``(m,)`` which of the triangles given each one is.
+    turned
+        ``(m,)`` whether its corners are in reverse order.
+    """
+
+    vertices: Floats
+    triangles: NDArray[np.int32]
+    volume: float
+    notes: tuple[str, ...]
+    problem: str
+    kept: Ints
+    turned: Bools
+
+
+class _Candidate(NamedTuple):
+    vertices: Floats
+    triangles: Ints
+    kept: Ints
+    notes: tuple[str, ...]
+
+
+def find_defect(vertices: ArrayLike, triangles: ArrayLike) -> str:
+    """Say what keeps the arrays from being a mesh at all: nothing there, NaN, indices out of range; or ""."""
+    points, corners = np.asarray(vertices, np.float64), np.asarray(triangles)
+    if len(corners) == 0:
+        return "it has no triangles"
+    finite = np.isfinite(points).all(axis=1)
+    if not finite.all():
+        return f"{(~finite).sum()} of {len(points)} vertices have NaN or infinite coordinates"
+    outside = ((corners < 0) | (corners >= len(points))).any(axis=1)
+    if outside.any():
+        return f"{outside.sum()} of {len(corners)} triangles name a vertex that does not exist"
+    if np.abs(points).max() > 1e12:
+        return f"coordinates reach {np.abs(points).max():.3g} mm, too large to compute with"
+    return ""
+
+
+def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
+    """Judge a mesh by manifold3d, mending only what leaves its shape as it is.
+
+    Equal vertices are merged; degenerate and repeated triangles dropped; seams narrower than
+    `SEAM_TOLERANCE` sewn if the mesh is not accepted otherwise; shells that are inside out turned. A mesh
+    that manifold3d accepts without one of these steps is never refused for it.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm and ``(m, 3)`` indices.
+    """
+    points = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+    corners = np.ascontiguousarray(triangles, np.int64).reshape(-1, 3)
+    defect = find_defect(points, corners)
+    if defect:
+        whole = np.arange(len(corners))
+        return Settled(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
+    found: list[Settled] = []
+    for candidate in _candidates(points, corners):
+        solid = as_manifold(candidate.vertices, candidate.triangles)
+        if accepted(solid):
+            found.append(_oriented(candidate))
+            if not found[-1].problem and _faithful(solid, candidate):
+                return found[-1]
+    solids = [settled for settled in found if not settled.problem]
+    return (solids or found or [_refused(_tidied(points, corners))])[0]
+
+
+def _candidates(vertices: Floats, triangles: Ints) -> Iterator[_Candidate]:
+    """Yield ways to read the mesh: tidied, as it came, and last with its seams sewn."""
+    merged = _tidied(vertices, triangles)
+    unique = _without(merged, repeated(merged.triangles), "repeated triangle")
+    if len(unique.triangles) < len(merged.triangles) and _same_solid(unique, merged):
+        yield unique
+    yield merged
+    yield _Candidate(vertices, triangles, np.arange(len(triangles)), ())
+    yield unique
+    yield from _sewn(unique)
+
+
+def _same_solid(one: _Candidate, other: _Candidate) -> bool:
+    """Tell whether both fill the same: whole shells that come twice do, single triangles do not."""
+    if not all(accepted(as_manifold(mesh.vertices, mesh.triangles)) for mesh in (one, other)):
+        return False
+    return bool(np.isclose(_oriented(one).volume, _oriented(other).volume, rtol=1e-9))
+
+
+def _tidied(vertices: Floats, triangles: Ints) -> _Candidate:
+    """Merge equal vertices and drop degenerate triangles."""
+    first = first_of_equal_rows(vertices)
+    used = np.zeros(len(vertices), np.bool_)
+    used[triangles] = True
+    merged = int((used & (first != np.arange(len(vertices)))).sum())
+    notes = (
+        (f"merged {_count(merged, 'vertex', 'vertices')} with others at the same place",) if merged else ()
+    )
+    whole = _Candidate(vertices, first[triangles], np.arange(len(triangles)), notes)
+    return _without(whole, degenerate(whole.triangles), "degenerate triangle")
+
+
+def _without(mesh: _Candidate, dropped: Bools, what: str) -> _Candidate:
+    """Drop triangles, and the vertices that only they used."""
+    notes = mesh.notes
+    if dropped.any():
+        notes = (*notes, f"dropped {_count(int(dropped.sum()), what, what + 's')}")
+    vertices, triangles = compact(mesh.vertices, mesh.triangles[~dropped])
+    return _Candidate(vertices, triangles, mesh.kept[~dropped], notes)
+
+
+def _sewn(mesh: _Candidate) -> Iterator[_Candidate]:
+    """Join vertices of open edges that lie close together, ever less close."""
+    float32_step = min(float(np.abs(mesh.vertices).max(initial=0.0)) * _FLOAT32_STEP, SEAM_TOLERANCE)
+    loose = open_vertices(mesh.triangles)
+    for tolerance in sorted({float32_step, SEAM_TOLERANCE / 10, SEAM_TOLERANCE}):
+        source = join_near(mesh.vertices, loose, tolerance)
+        joined = int((source != np.arange(len(source))).sum())
+        if joined:
+            number = _count(joined, "vertex", "vertices")
+            note = f"joined {number} along open seams up to {tolerance:.2g} mm wide"
+            whole = mesh._replace(triangles=source[mesh.triangles], notes=(*mesh.notes, note))
+            yield _without(whole, degenerate(whole.triangles), "degenerate triangle")
+
+
+def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
+    """Tell whether manifold3d measures what the triangles enclose.
+
+    Where many triangles share an edge it may pair them so that too many cancel; other readings may do better.
+    """
+    corners = mesh.vertices[mesh.triangles] - mesh.vertices[0]
+    enclosed = float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
+    size = float(np.prod(np.ptp(mesh.vertices, axis=0)))
+    return bool(abs(solid.volume() - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
+
+
+def _oriented(mesh: _Candidate) -> Settled:
+    """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
+    shells = measure_shells(mesh.vertices, mesh.triangles)
+    if shells.crowded.sum() > MOST_UNITED:
+        note = f"more than {MOST_UNITED} shells that may overlap: its volume counts overlaps repeatedly"
+        mesh = mesh._replace(notes=(*mesh.notes, note))
+    turn, outer = find_inside_out(shells)
+    if outer:
+        turned = turn[shells.label]
+        triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+        right = shells._replace(volume=np.where(turn, -shells.volume, shells.volume))
+        volume = solid_volume(mesh.vertices, triangles, right)
+        if volume > _least_volume(mesh):
+            note = _turning_note(bool(turn.all()), outer, len(turn))
+            return _settled(mesh._replace(triangles=triangles, notes=(*mesh.notes, note)), volume, "", turned)
+    volume = solid_volume(mesh.vertices, mesh.triangles, shells)
+    problem = "" if volume > _least_volume(mesh) else "its volume is zero: it encloses nothing"
+    return _settled(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
+
+
+def _settled(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> Settled:
+    triangles = mesh.triangles.astype(np.int32)
+    measured = 0.0 if problem else volume
+    return Settled(mesh.vertices, triangles, measured, mesh.notes, problem, mesh.kept, turned)
+
+
+def _least_volume(mesh: _Candidate) -> float:
+    """Return what rounding alone may make of a volume of zero, mm3."""
+    return 1e-15 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) ** 3
+
+
+def _turning_note(whole: bool, count: int, shells: int) -> str:
+    if whole:
+        return "the mesh was inside out: turned"
+    return (
+        f"{count} of {_count(shells, 'shell', 'shells')} {'were' if count > 1 else 'was'} inside out: turned"
+    )
+
+
+def _refused(mesh: _Candidate) -> Settled:
+    problem = _describe_edges(mesh) if len(mesh.triangles) else "every triangle is without area"
+    return _settled(mesh, 0.0, problem, np.zeros(len(mesh.triangles), np.bool_))
+
+
+def _describe_edges(mesh: _Candidate) -> str:
+    """Say in words which edges keep the mesh from being a solid, and where the first one is."""
+    edges, uses, balance = count_edges(mesh.triangles)
+    where = mesh.vertices[edges].mean(axis=1)
+    odd, twisted = uses % 2 == 1, (uses % 2 == 0) & (balance != 0)
+    if odd.any():
+        what = "an odd number of triangles (a hole, or a wall that ends inside)"
+        return f"{_edges(odd)} {what}, first near {_point(where[odd][0])}"
+    if twisted.any():
+        return f"{_edges(twisted)} triangles that face opposite ways, first near {_point(where[twisted][0])}"
+    return "its volume is zero: every triangle is cancelled by an opposite one"
+
+
+def _edges(chosen: Bools) -> str:
+    number = int(chosen.sum())
+    return f"{_count(number, 'edge borders', 'edges border')}"
+
+
+def _point(point: Floats) -> str:
+    return "({:.6g}, {:.6g}, {:.6g})".format(*point)
+
+
+def _count(number: int, one: str, many: str) -> str:
+    return f"{number} {one if number == 1 else many}"

@@ -1,0 +1,86 @@
+"""Sample points on faces and edges, dense enough that no point of them is far from one."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.geometry.overhangs.find import Bools, Floats, Ints, Longs, Overhangs
+
+
+class Samples(NamedTuple):
+    """Points ``(n, 3)`` mm on what needs support, and the region ``(n,)`` of each.
+
+    `inner` tells the points of a lattice over the faces, each of which stands for the same area in plan.
+    """
+
+    points: Floats
+    region: Longs
+    inner: Bools
+
+
+def sample_overhangs(vertices: Floats, triangles: Ints, overhangs: Overhangs, spacing: float) -> Samples:
+    """Return points on everything that needs support: lattices on faces, their rims, edges, tips.
+
+    Every point of a face lies within ``spacing / sqrt(2)`` of a sample in plan, every point of a rim or an
+    edge within half of `spacing` (mm).
+    """
+    faces = np.asarray(triangles[overhangs.faces], np.int64)
+    inner, owner = _lattice(vertices, faces, spacing)
+    ends, rim_owner = _rim(faces)
+    rims, rim = sample_segments(vertices[ends[:, 0]], vertices[ends[:, 1]], spacing)
+    sharp = overhangs.edges
+    edges, edge = sample_segments(vertices[sharp[:, 0]], vertices[sharp[:, 1]], spacing)
+    region = [
+        overhangs.face_region[owner],
+        overhangs.face_region[rim_owner[rim]],
+        overhangs.edge_region[edge],
+        overhangs.tip_region,
+    ]
+    points = np.concatenate([inner, rims, edges, vertices[overhangs.tips]])
+    return Samples(points, np.concatenate(region).astype(np.int64), np.arange(len(points)) < len(inner))
+
+
+def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Longs]:
+    """Return points along segments, both ends included, and the segment of each."""
+    length = np.linalg.norm(end - start, axis=1)
+    pieces = np.maximum(np.ceil(length / spacing), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(pieces)), pieces + 1)
+    first = np.concatenate([[0], np.cumsum(pieces + 1)])[:-1]
+    share = (np.arange(len(owner)) - first[owner]) / pieces[owner]
+    return start[owner] + share[:, None] * (end - start)[owner], owner
+
+
+def sample_triangles(corners: Floats, spacing: float) -> Floats:
+    """Return points of triangles ``(n, 3, 3)``, edges and corners included, in rows at most `spacing` mm apart."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    length = np.linalg.norm(sides, axis=2)
+    longest = length.argmax(axis=1)
+    every = np.arange(len(corners))
+    a, b, c = (corners[every, (longest + i) % 3] for i in range(3))
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    rows = np.maximum(np.ceil(area / np.maximum(length.max(axis=1, initial=0.0), 1e-12) / spacing), 1).astype(
+        np.int64
+    )
+    owner = np.repeat(every, rows + 1)
+    share = (np.arange(len(owner)) - np.repeat(np.cumsum(rows + 1) - rows - 1, rows + 1)) / rows[owner]
+    start, end = (each[owner] + share[:, None] * (c - each)[owner] for each in (a, b))
+    return sample_segments(start, end, spacing)[0]
+
+
+def _lattice(vertices: Floats, faces: Longs, spacing: float) -> tuple[Floats, Longs]:
+    from amprep.kernels.meshes.sampling import lattice_points
+
+    corners = np.ascontiguousarray(vertices, np.float64)
+    count = lattice_points(corners, faces, spacing, np.empty((0, 3)), np.empty(0, np.int64))
+    points, owner = np.empty((count, 3)), np.empty(count, np.int64)
+    lattice_points(corners, faces, spacing, points, owner)
+    return points, owner
+
+
+def _rim(faces: Longs) -> tuple[Longs, Longs]:
+    """Return the edges ``(n, 2)`` that only one of `faces` has, and that face."""
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+    key = ends[:, 0] * (int(ends.max(initial=0)) + 1) + ends[:, 1]
+    _, first, count = np.unique(key, return_index=True, return_counts=True)
+    rim = first[count == 1]
+    return ends[rim], rim // 3

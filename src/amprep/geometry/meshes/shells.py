@@ -1,0 +1,226 @@
+"""Shells of a mesh: which are inside out, and the volume where the winding number is positive."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.topology import Bools, Floats, Ints
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+MOST_UNITED = 20_000
+"""Where more shells overlap, overlaps count as often as they occur; uniting them would take minutes."""
+
+_MOST_PAIRS = 50_000_000
+
+
+class Shells(NamedTuple):
+    """The shells of a mesh: triangles joined by edges.
+
+    Attributes
+    ----------
+    label
+        ``(m,)`` the shell of each triangle, 0 to k - 1.
+    volume
+        ``(k,)`` signed, mm3; rounding counts as zero.
+    lo, hi
+        ``(k, 3)`` corners of their boxes.
+    crowded
+        ``(k,)`` whether a shell may overlap another, or itself, so that volumes do not just add up.
+    """
+
+    label: Ints
+    volume: Floats
+    lo: Floats
+    hi: Floats
+    crowded: Bools
+
+
+def label_shells(triangles: Ints, vertex_count: int) -> tuple[int, Ints]:
+    """Return how many pieces (triangles joined by vertices) there are, and each triangle's, ``(m,)``."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    start, end = triangles[:, [0, 1]].T.ravel(), triangles[:, [1, 2]].T.ravel()
+    graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(vertex_count, vertex_count))
+    _, label = connected_components(graph.tocsr(), directed=False)
+    shells, of_triangle = np.unique(label[triangles[:, 0]], return_inverse=True)
+    return len(shells), of_triangle.astype(np.int64)
+
+
+def measure_shells(vertices: Floats, triangles: Ints) -> Shells:
+    """Find and measure the shells of a mesh whose edges match."""
+    count, label, simple = _join_by_edges(triangles)
+    corners = vertices[triangles]
+    lo, hi = _boxes(corners, label, count)
+    crowded = ~simple | _overlapping(lo, hi)
+    return Shells(label, _volumes(corners, label, count), lo, hi, crowded)
+
+
+def find_inside_out(shells: Shells) -> tuple[Bools, int]:
+    """Find shells that lie in no other shell and have negative volume, with all the shells inside them.
+
+    Lying inside is judged by the boxes. A cavity is a shell of negative volume inside another: it stays.
+
+    Returns
+    -------
+    turn
+        ``(k,)`` whether a shell has to be turned over.
+    outer
+        How many of these lie in no other.
+    """
+    if (shells.volume >= 0.0).all():
+        return np.zeros(len(shells.volume), np.bool_), 0
+    outer = _outermost(shells.lo, shells.hi)
+    turn = shells.volume[outer] < 0.0
+    return turn, int((turn & (outer == np.arange(len(outer)))).sum())
+
+
+def solid_volume(vertices: Floats, triangles: Ints, shells: Shells) -> float:
+    """Volume where the winding number is positive: shells that overlap count once, cavities are hollow.
+
+    Of one self-intersecting shell the volume is the signed one.
+    """
+    crowded = shells.crowded
+    alone = float(shells.volume[~crowded].clip(min=0.0).sum())
+    if not crowded.any():
+        return alone
+    if crowded.sum() > MOST_UNITED:
+        return alone + max(0.0, float(shells.volume[crowded].sum()))
+    pieces = [
+        piece
+        for shell in _split(triangles[crowded[shells.label]], shells.label[crowded[shells.label]])
+        for piece in _manifold_of(vertices, shell).decompose()
+    ]
+    outward = [piece for piece in pieces if piece.volume() > 0.0]
+    cavities = [piece for piece in pieces if piece.volume() < 0.0]
+    if not cavities:
+        return alone + float(_union(outward).volume())
+    return alone + _volume_with_cavities(outward, cavities)
+
+
+def _manifold_of(vertices: Floats, triangles: Ints) -> "Manifold":
+    used, corners = np.unique(triangles, return_inverse=True)
+    return as_manifold(vertices[used], corners.reshape(-1, 3))
+
+
+def _join_by_edges(triangles: Ints) -> tuple[int, Ints, Bools]:
+    """Return the number of shells, each triangle's, and which have two triangles at every edge."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    keys = np.minimum(start, end) * (int(triangles.max()) + 1) + np.maximum(start, end)
+    order = np.argsort(keys, kind="stable")
+    same = keys[order[1:]] == keys[order[:-1]]
+    owner = order // 3
+    one, other = owner[:-1][same], owner[1:][same]
+    graph = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(len(triangles),) * 2)
+    count, label = connected_components(graph, directed=False)
+    simple = np.ones(count, np.bool_)
+    simple[label[owner[1:-1][same[1:] & same[:-1]]]] = False
+    return count, label.astype(np.int64), simple
+
+
+def _split(triangles: Ints, label: Ints) -> list[Ints]:
+    """Return the triangles of each label, ascending."""
+    order = np.argsort(label, kind="stable")
+    return np.split(triangles[order], np.flatnonzero(np.diff(label[order])) + 1)
+
+
+def _overlapping(lo: Floats, hi: Floats) -> Bools:
+    """Tell which boxes meet another one; all of them where there are too many pairs to look at."""
+    if len(lo) == 1:
+        return np.zeros(1, np.bool_)
+    sweeps = [_sweep(lo, hi, axis) for axis in range(3)]
+    order, last = min(sweeps, key=lambda sweep: int(sweep[1].sum()))
+    ahead = last - np.arange(len(last)) - 1
+    if ahead.sum() > _MOST_PAIRS:
+        return np.ones(len(lo), np.bool_)
+    first = np.repeat(np.arange(len(last)), ahead)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(ahead) - ahead, ahead)
+    one, other = order[first], order[second]
+    meet = ((lo[one] <= hi[other]) & (lo[other] <= hi[one])).all(axis=1)
+    result = np.zeros(len(lo), np.bool_)
+    result[one[meet]] = result[other[meet]] = True
+    return result
+
+
+def _sweep(lo: Floats, hi: Floats, axis: int) -> tuple[Ints, Ints]:
+    """Order boxes along an axis; return the order, and for each place the end of the boxes it reaches."""
+    order = np.argsort(lo[:, axis], kind="stable")
+    return order, np.searchsorted(lo[order, axis], hi[order, axis], side="right")
+
+
+def _volume_with_cavities(outward: Sequence["Manifold"], cavities: Sequence["Manifold"]) -> float:
+    """Volume of the points that lie in more outward shells than cavities."""
+    from manifold3d import Manifold
+
+    hollow = _levels([_turned(shell) for shell in cavities], len(outward))
+    filled = _levels(outward, len(hollow) + 1)
+    layers = [layer - hollow[depth] if depth < len(hollow) else layer for depth, layer in enumerate(filled)]
+    return float(_union(layers).volume()) if layers else Manifold().volume()
+
+
+def _levels(shells: Sequence["Manifold"], most: int) -> list["Manifold"]:
+    """Return the sets of points inside at least 1, 2, ... of the shells, as far as not empty."""
+    whole = _union(shells)
+    if most < 2 or np.isclose(whole.volume(), sum(s.volume() for s in shells), rtol=1e-9):
+        return [whole]
+    half = len(shells) // 2
+    return _merged(_levels(shells[:half], most), _levels(shells[half:], most), most)
+
+
+def _merged(a: list["Manifold"], b: list["Manifold"], most: int) -> list["Manifold"]:
+    """Return the levels of two families together: in i of the one and k - i of the other."""
+    levels = []
+    for k in range(1, min(len(a) + len(b), most) + 1):
+        both = [a[i - 1] ^ b[k - i - 1] for i in range(1, k) if i <= len(a) and k - i <= len(b)]
+        level = _union(a[k - 1 : k] + b[k - 1 : k] + both)
+        if level.is_empty():
+            break
+        levels.append(level)
+    return levels
+
+
+def _union(solids: Sequence["Manifold"]) -> "Manifold":
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(solids, OpType.Add)
+
+
+def _turned(solid: "Manifold") -> "Manifold":
+    """Return the solid with every triangle turned over."""
+    mesh = solid.to_mesh64()
+    return as_manifold(mesh.vert_properties[:, :3], mesh.tri_verts[:, ::-1])
+
+
+def _volumes(corners: Floats, shell: Ints, count: int) -> Floats:
+    """Signed volume of each shell, measured from the shell's own corner; rounding counts as zero."""
+    first = np.unique(shell, return_index=True)[1]
+    local = corners - corners[first, 0][shell][:, None]
+    parts = np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2])) / 6.0
+    volume: Floats = np.bincount(shell, parts, count).astype(np.float64)
+    volume[np.abs(volume) <= 1e-12 * np.bincount(shell, np.abs(parts), count)] = 0.0
+    return volume
+
+
+def _boxes(corners: Floats, shell: Ints, count: int) -> tuple[Floats, Floats]:
+    """Least and greatest corner of each shell, ``(count, 3)``."""
+    lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(lo, shell, corners.min(axis=1))
+    np.maximum.at(hi, shell, corners.max(axis=1))
+    return lo, hi
+
+
+def _outermost(lo: Floats, hi: Floats) -> Ints:
+    """Return for each box the largest box that holds it, itself if there is none."""
+    owner = np.full(len(lo), -1, np.int64)
+    for box in np.argsort(-np.prod(hi - lo, axis=1), kind="stable"):
+        if owner[box] < 0:
+            inside = (lo >= lo[box]).all(axis=1) & (hi <= hi[box]).all(axis=1)
+            owner[inside & (owner < 0)] = box
+    return owner

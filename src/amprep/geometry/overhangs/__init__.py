@@ -1,0 +1,1 @@
+"""Finding overhanging faces, edges and tips."""

@@ -1,0 +1,1 @@
+"""Trapped powder and drain holes."""

@@ -1,0 +1,1 @@
+"""Geometry of support bodies: beams, bases, walls, contact area."""

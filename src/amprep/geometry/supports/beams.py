@@ -1,0 +1,183 @@
+"""Round beams with balls at their ends as arrays: points on them, what carries what, and where they may not be."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.meshes.containment import inside
+from amprep.geometry.meshes.shells import label_shells
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.signedinteger[Any]]
+Bools = NDArray[np.bool_]
+
+_AXES = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+DIRECTIONS: Floats = _AXES[np.abs(_AXES).any(axis=1)] / np.linalg.norm(
+    _AXES[np.abs(_AXES).any(axis=1)], axis=1, keepdims=True
+)
+"""``(26, 3)`` unit vectors; no direction is more than 28 degrees from one of them."""
+
+
+def sphere(count: int) -> Floats:
+    """Return points spread evenly over the unit sphere, ``(count, 3)``, by the golden angle."""
+    z = 1.0 - 2.0 * (np.arange(count) + 0.5) / count
+    angle = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(angle), flat * np.sin(angle), z])
+
+
+_SHELLS = (0.25, 0.5, 0.95)
+"""Shares of a ball's radius at which points are tried: what it touches may be a plate thinner than the ball."""
+
+
+_GRID, _MOST_CELLS = 128, 4_000_000
+"""Cells along the longest side of the grid that tells what is near a surface; how many are marked at once."""
+
+
+class Samples(NamedTuple):
+    """Places along beams, end to end, at most `step` radii apart.
+
+    Attributes
+    ----------
+    centres, radii
+        ``(k, 3)`` and ``(k,)`` mm; the balls there make up the beam.
+    strut, share
+        ``(k,)`` of which strut; how far along it, 0 to 1.
+    """
+
+    centres: Floats
+    radii: Floats
+    strut: Ints
+    share: Floats
+
+
+def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> Samples:
+    """Return places along beams, sorted by strut and share.
+
+    Parameters
+    ----------
+    nodes, struts, radii
+        ``(n, 3)`` mm, ``(m, 2)``, ``(m, 2)`` mm.
+    step
+        Greatest distance of two places, in radii of the thinner end.
+    """
+    start, end = nodes[struts[:, 0]], nodes[struts[:, 1]]
+    length = np.linalg.norm(end - start, axis=1)
+    count = np.ceil(length / (step * radii.min(axis=1, initial=np.inf))).astype(np.int64) + 1
+    strut = np.repeat(np.arange(len(struts)), count)
+    place = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+    share = place / np.maximum(count - 1, 1)[strut]
+    centres = start[strut] + share[:, None] * (end - start)[strut]
+    radius = radii[strut, 0] + share * (radii[strut, 1] - radii[strut, 0])
+    return Samples(centres, radius, strut, share)
+
+
+def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) -> Bools:
+    """Tell which points lie in a closed mesh with the point `depth` mm below them in it too."""
+    found = inside(points, vertices, triangles)
+    within = np.flatnonzero(found)
+    found[within] = inside(points[within] - (0.0, 0.0, depth), vertices, triangles)
+    return found
+
+
+def balls_too_deep(
+    centres: Floats, reach: Floats, vertices: Floats, triangles: Ints, depth: float, directions: Floats
+) -> Bools:
+    """Tell which balls have their centre, or a point at distance `reach` ``(k,)`` of it, `too_deep`."""
+    found = too_deep(centres, vertices, triangles, depth)
+    near = np.flatnonzero(near_surface(centres, float(reach.max(initial=0.0)), vertices, triangles) & ~found)
+    for direction in directions:
+        near = near[~found[near]]
+        points = centres[near] + reach[near, None] * direction
+        found[near] = too_deep(points, vertices, triangles, depth)
+    return found
+
+
+def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints) -> Bools:
+    """Tell which points may have a triangle within `reach` mm; of the others it is certain that they have none."""
+    near = np.zeros(len(points), np.bool_)
+    if not len(triangles) or not len(points):
+        return near
+    corners = vertices[triangles]
+    low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
+    origin, extent = low.min(axis=0), high.max(axis=0) - low.min(axis=0)
+    side = max(2.0 * reach, float(extent.max()) / _GRID, 1e-6)
+    shape = np.floor(extent / side).astype(np.int64) + 1
+    first, last = (np.floor((each - origin) / side).astype(np.int64) for each in (low, high))
+    taken = np.zeros(int(shape.prod()), np.bool_)
+    spans = last - first + 1
+    for some in np.array_split(np.arange(len(triangles)), 1 + int(spans.prod(axis=1).sum()) // _MOST_CELLS):
+        sizes = spans[some].prod(axis=1)
+        owner = np.repeat(some, sizes)
+        place = np.arange(len(owner)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+        x, rest = place % spans[owner, 0], place // spans[owner, 0]
+        cell = first[owner] + np.column_stack([x, rest % spans[owner, 1], rest // spans[owner, 1]])
+        taken[np.ravel_multi_index(tuple(cell.T), tuple(shape))] = True
+    within = ((points >= origin) & (points <= origin + extent)).all(axis=1)
+    cell = np.minimum(np.floor((points[within] - origin) / side).astype(np.int64), shape - 1)
+    near[within] = taken[np.ravel_multi_index(tuple(cell.T), tuple(shape))]
+    return near
+
+
+class Carried(NamedTuple):
+    """What stands: ``(m,)`` struts, ``(t,)`` triangles of the solids; and how many pieces hang in the air."""
+
+    struts: Bools
+    triangles: Bools
+    hanging: int
+
+
+def carried(
+    nodes: Floats,
+    struts: Ints,
+    radii: Floats,
+    points: Floats,
+    triangles: Ints,
+    rests: Callable[[Floats], Bools],
+) -> Carried:
+    """Tell which beams and solids stand on the plate, or on one another down to it.
+
+    Parameters
+    ----------
+    points, triangles
+        Closed solids that beams may carry and stand on, ``(p, 3)`` mm and ``(t, 3)``; any number of pieces.
+    rests
+        Tells which of the vertices of the solids rest on something, ``(p,)``; the plate for one.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    radius = np.zeros(len(nodes))
+    np.maximum.at(radius, struts.ravel(), radii.ravel())
+    used = np.flatnonzero(radius > 0.0)
+    pieces, piece = label_shells(triangles, len(points)) if len(triangles) else (0, np.empty(0, np.int64))
+    plate = len(nodes) + pieces
+    low = used[nodes[used, 2] <= 0.5 * radius[used]]
+    standing = np.unique(piece[rests(points)[triangles].any(axis=1)]) if pieces else np.empty(0, np.int64)
+    touching = [_touches(nodes, radius, used, points, triangles[piece == each]) for each in range(pieces)]
+    numbers = np.repeat(np.arange(pieces), [len(each) for each in touching])
+    first = np.concatenate([struts[:, 0], low, len(nodes) + standing, *touching])
+    second = np.concatenate([struts[:, 1], np.full(len(low) + len(standing), plate), len(nodes) + numbers])
+    graph = coo_array((np.ones(len(first), np.int8), (first, second)), shape=(plate + 1, plate + 1))
+    label = connected_components(graph, directed=False)[1]
+    stands = label == label[plate]
+    loose = np.concatenate([used, len(nodes) + np.arange(pieces)])
+    hanging = len(np.unique(label[loose[~stands[loose]]]))
+    return Carried(stands[struts[:, 0]], stands[len(nodes) + piece], hanging)
+
+
+def _touches(nodes: Floats, radius: Floats, used: Ints, points: Floats, triangles: Ints) -> Ints:
+    """Return the nodes whose balls reach into a piece."""
+    local, corners = np.unique(triangles, return_inverse=True)
+    own, reach = points[local], radius[used, None]
+    near = used[
+        ((nodes[used] + reach > own.min(axis=0)) & (nodes[used] - reach < own.max(axis=0))).all(axis=1)
+    ]
+    rings = np.vstack([np.zeros((1, 3)), *(share * DIRECTIONS for share in _SHELLS)])
+    tried = nodes[near, None] + radius[near, None, None] * rings
+    found = inside(tried.reshape(-1, 3), own, corners.reshape(-1, 3).astype(np.int64)).reshape(
+        len(near), len(rings)
+    )
+    return np.asarray(near[found.any(axis=1)])

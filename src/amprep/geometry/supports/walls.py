@@ -1,0 +1,202 @@
+"""Walls of parts, all that supports do not hold, and the space sideways of them that supports leave free."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.geometry.overhangs.find import Overhangs
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Ints = NDArray[np.integer]
+
+_LEVEL = 1e-6
+"""Horizontal share of a unit normal below which a face counts as level: it has no side."""
+
+_UP = 1e-3
+
+_CORNERS = 9
+"""Of the polygon around the half disc that a wall is swept by: at most 2 % farther out than its radius."""
+
+_MOST_CELLS, _LONGEST, _FINEST = 2_000_000, 2000, 0.5
+"""Cells of a grid over all and along its longest side; mm of a cell."""
+
+
+class Walls(NamedTuple):
+    """Faces that look sideways.
+
+    Attributes
+    ----------
+    corners
+        ``(n, 3, 3)`` mm.
+    outward
+        ``(n, 2)`` unit vectors, x and y, out of the part.
+    """
+
+    corners: Floats
+    outward: Floats
+
+    def chosen(self, keep: Bools) -> "Walls":
+        """Return only the walls that `keep` ``(n,)`` names."""
+        return Walls(self.corners[keep], self.outward[keep])
+
+
+def walls_of(
+    vertices: Floats, triangles: Ints, held: Overhangs, overlap: float, *, stood_on: bool = False
+) -> Walls:
+    """Return all faces of a mesh that are not level, but for what supports run up to.
+
+    Parameters
+    ----------
+    held
+        Faces of these are no walls; above their edges and tips walls begin `overlap` mm higher.
+    stood_on
+        Whether supports may stand on the part: then no face that looks up is a wall.
+    """
+    first, second, third = (vertices[triangles[:, i]] for i in range(3))
+    normal = np.cross(second - first, third - first)
+    length = np.linalg.norm(normal, axis=1)
+    aside = np.linalg.norm(normal[:, :2], axis=1)
+    keep = aside > _LEVEL * np.maximum(length, 1e-300)
+    keep[held.faces] = False
+    if stood_on:
+        keep &= normal[:, 2] <= _UP * length
+    sharp = np.zeros(len(vertices), np.bool_)
+    sharp[held.edges], sharp[held.tips] = True, True
+    begins = sharp[triangles]
+    cut = keep & begins.any(axis=1)
+    clipped, owner = _clipped(vertices[triangles[cut]], begins[cut], overlap)
+    number = np.concatenate([np.flatnonzero(keep & ~cut), np.flatnonzero(cut)[owner]])
+    corners = np.concatenate([vertices[triangles[keep & ~cut]], clipped])
+    return Walls(corners, normal[number, :2] / aside[number, None])
+
+
+def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDArray[np.int64]]:
+    """Cut triangles ``(n, 3, 3)`` off below `overlap` mm above their sharp corners; return them with their owner.
+
+    In between heights are those above the line through both, or the one, sharp corners.
+    """
+    z = corners[:, :, 2]
+    base = np.where(sharp, z, 0.0).sum(axis=1) / sharp.sum(axis=1)
+    height = np.where(sharp, 0.0, z - base[:, None]) - overlap
+    found: list[Floats] = []
+    owner: list[int] = []
+    for index, (triangle, above) in enumerate(zip(corners, height, strict=True)):
+        outline = []
+        for i in range(3):
+            j = (i + 1) % 3
+            if above[i] >= 0.0:
+                outline.append(triangle[i])
+            if above[i] * above[j] < 0.0:
+                share = above[i] / (above[i] - above[j])
+                outline.append(triangle[i] + share * (triangle[j] - triangle[i]))
+        for i in range(1, len(outline) - 1):
+            found.append(np.array([outline[0], outline[i], outline[i + 1]]))
+            owner.append(index)
+    return np.array(found).reshape(-1, 3, 3), np.array(owner, np.int64)
+
+
+class Occupied(NamedTuple):
+    """The cells of a grid that boxes lie in.
+
+    Attributes
+    ----------
+    origin, side
+        Corner ``(3,)`` of the grid and size of a cell, mm.
+    before
+        ``(nx + 1, ny + 1, nz + 1)`` how many cells that are taken lie before each corner of the grid, on all axes.
+    """
+
+    origin: Floats
+    side: float
+    before: NDArray[np.int64]
+
+    def near(self, corners: Floats, distance: float) -> Bools:
+        """Tell which triangles ``(n, 3, 3)`` may have one of the boxes within `distance` mm sideways.
+
+        Of the others it is certain that they have none.
+        """
+        aside = np.array([distance, distance, 0.0])
+        shape = np.array(self.before.shape) - 1
+        first = np.floor((corners.min(axis=1) - aside - self.origin) / self.side)
+        behind = np.floor((corners.max(axis=1) + aside - self.origin) / self.side) + 1
+        first, behind = (np.clip(each, 0, shape).astype(np.int64) for each in (first, behind))
+        found = np.zeros(len(corners), np.int64)
+        for end in np.ndindex(2, 2, 2):
+            sign = 1 - 2 * ((3 - sum(end)) % 2)
+            found += sign * self.before[tuple(np.where(end, behind, first).T)]
+        return np.asarray(found > 0)
+
+
+def occupied(lo: Floats, hi: Floats) -> Occupied:
+    """Lay a grid over boxes from `lo` to `hi` ``(k, 3)`` mm, and mark the cells that they lie in."""
+    if not len(lo):
+        return Occupied(np.zeros(3), 1.0, np.zeros((2, 2, 2), np.int64))
+    origin = lo.min(axis=0)
+    extent = np.maximum(hi.max(axis=0) - origin, _FINEST)
+    side = max(float(np.cbrt(extent.prod() / _MOST_CELLS)), float(extent.max()) / _LONGEST, _FINEST)
+    shape = np.floor(extent / side).astype(np.int64) + 1
+    first, last = (
+        np.clip(np.floor((each - origin) / side), 0, shape - 1).astype(np.int64) for each in (lo, hi)
+    )
+    change = np.zeros(int((shape + 1).prod()))
+    for end in np.ndindex(2, 2, 2):
+        place = np.ravel_multi_index(tuple(np.where(end, last + 1, first).T), tuple(shape + 1))
+        change += (1 - 2 * (sum(end) % 2)) * np.bincount(place, minlength=len(change))
+    covers = change.reshape(shape + 1).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)[:-1, :-1, :-1]
+    before = np.zeros(shape + 1, np.int64)
+    before[1:, 1:, 1:] = (covers > 0.5).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
+    return Occupied(origin, side, before)
+
+
+def beside(walls: Walls, gap: float) -> list["Manifold"]:
+    """Return the space nearer than `gap` mm to walls on their outer side, measured sideways; one solid for each."""
+    from manifold3d import Manifold
+
+    angle = np.linspace(-np.pi / 2, np.pi / 2, _CORNERS)
+    radius = gap / np.cos(np.pi / (2 * (_CORNERS - 1)))
+    fan = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    along = np.column_stack([-walls.outward[:, 1], walls.outward[:, 0]])
+    moves = walls.outward[:, None] * fan[:, :1] + along[:, None] * fan[:, 1:]
+    points = np.repeat(walls.corners[:, None], len(fan), axis=1)
+    points[..., :2] += moves[:, :, None]
+    return [Manifold.hull_points(np.ascontiguousarray(each.reshape(-1, 3))) for each in points]
+
+
+def wall_distance(points: Floats, walls: Walls, reach: float, slack: float) -> tuple[Floats, Floats]:
+    """Return how far each point ``(n, 3)`` is from the nearest wall on whose outer side it lies, sideways.
+
+    Points less than `slack` mm out of a wall's plane are on neither side of it, and walls end `slack` before their
+    lowest and highest corner: what holds the face below may be flush with the wall.
+
+    Returns
+    -------
+    away, foot
+        ``(n,)`` mm, infinite where there is none within `reach`; the nearest place on that wall ``(n, 3)``.
+    """
+    from amprep.kernels.meshes.walls import nearest_walls
+
+    away, foot = np.full(len(points), np.inf), points.copy()
+    if not len(points) or not len(walls.corners):
+        return away, foot
+    corner = points[:, :2].min(axis=0)
+    plan = points[:, :2] - corner
+    side = max(reach, float(np.sqrt(np.ptp(plan, axis=0).prod() / (len(points) + 1))), 1e-3)
+    column = (plan // side).astype(np.int64)
+    nx, ny = (int(each) + 1 for each in column.max(axis=0))
+    square = column[:, 1] * nx + column[:, 0]
+    order = np.argsort(square, kind="stable")
+    first = np.searchsorted(square[order], np.arange(nx * ny + 1))
+    shift = np.append(corner, 0.0)
+    found, place = away.copy(), np.zeros((len(points), 2))
+    corners = walls.corners - shift
+    nearest_walls(
+        points[order] - shift, first, side, (ny, nx), corners, walls.outward, reach, slack, found, place
+    )
+    away[order] = found
+    foot[order, :2] = place + corner
+    return away, foot

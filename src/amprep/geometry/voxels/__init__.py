@@ -1,0 +1,1 @@
+"""Voxelisation of meshes."""

@@ -1,0 +1,1 @@
+"""Regions of parts that are filled with lattice cells."""

@@ -1,0 +1,120 @@
+"""Which regions of which parts are to be filled: modifiers in the file, meshes of other files, or all but a shell."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from amprep.errors import InputError, JobError, MeshError, nearest_hint
+from amprep.geometry.meshes.repair import settle
+from amprep.model import Mesh, Part, Region
+from amprep.model.part import RegionKind
+from amprep.threemf import modifier_note
+
+Read = Callable[[Path], list[Part]]
+
+KIND: RegionKind = "lattice"
+
+
+def with_files(parts: Sequence[Part], files: Sequence[Path], read: Read) -> list[Part]:
+    """Return the parts, each with the meshes of the files that meet the box around it as further regions.
+
+    Raises
+    ------
+    InputError
+        When a file is not there, cannot be read, or is near no part.
+    """
+    result = list(parts)
+    for file in files:
+        if not file.is_file():
+            raise InputError(f"{file}: no such file; a region is a mesh file in the coordinates of the input")
+        found = [
+            Region(KIND, piece.name, mesh=mesh) for piece in read(file) for mesh in _where_it_lies(piece)
+        ]
+        near = [[_at(region, part) for region in found if _meet(region, part)] for part in parts]
+        if not any(near):
+            raise JobError(
+                f"{file}: the region lies outside all parts; it takes the coordinates of the input"
+            )
+        result = [
+            replace(part, regions=(*part.regions, *own)) for part, own in zip(result, near, strict=True)
+        ]
+    return result
+
+
+def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[tuple[Region, ...]]:
+    """Return for each part its closed regions of the given names, all without names.
+
+    Raises
+    ------
+    JobError
+        When there is none, or none of a name.
+    MeshError
+        When a region is no closed mesh.
+    """
+    found = [
+        [region for region in part.regions if region.kind == KIND and region.mesh is not None]
+        for part in parts
+    ]
+    known = {region.name for own in found for region in own}
+    if not known:
+        raise JobError(
+            "no region to fill: mark one as a modifier in the slicer, or give a mesh with --region, or --shell"
+        )
+    for name in names:
+        if name not in known:
+            raise JobError(f"no region is called {name!r}{nearest_hint(name, known)}")
+    return [
+        tuple(_closed(region, part) for region in own if not names or region.name in names)
+        for part, own in zip(parts, found, strict=True)
+    ]
+
+
+def without(part: Part, filled: Sequence[Region]) -> Part:
+    """Return the part without the regions that were filled, and without what reading said of them."""
+    names = {region.name for region in filled}
+    notes = {modifier_note(name) for name in names}
+    kept = [region for region in part.regions if region.kind != KIND or region.name not in names]
+    return replace(part, regions=tuple(kept), notes=tuple(note for note in part.notes if note not in notes))
+
+
+def positions(part: Part) -> np.ndarray:
+    """Return where the part's origin lies, ``(k, 3)`` mm."""
+    return np.zeros((1, 3)) if part.positions is None else part.positions
+
+
+def _where_it_lies(part: Part) -> list[Mesh]:
+    return [Mesh(part.mesh.vertices + at, part.mesh.triangles) for at in positions(part)]
+
+
+def _meet(region: Region, part: Part) -> bool:
+    return _touched(region, part) is not None
+
+
+def _touched(region: Region, part: Part) -> np.ndarray | None:
+    """Return the first position of the part whose box meets the region's."""
+    if region.mesh is None:
+        return None
+    (low, high), (part_low, part_high) = region.mesh.bounds, part.mesh.bounds
+    for at in positions(part):
+        if (low < part_high + at).all() and (high > part_low + at).all():
+            return np.asarray(at)
+    return None
+
+
+def _at(region: Region, part: Part) -> Region:
+    """Return the region in the part's own coordinates."""
+    at = _touched(region, part)
+    if region.mesh is None or at is None:
+        return region
+    return replace(region, mesh=Mesh(region.mesh.vertices - at, region.mesh.triangles))
+
+
+def _closed(region: Region, part: Part) -> Region:
+    if region.mesh is None:
+        return region
+    settled = settle(region.mesh.vertices, region.mesh.triangles)
+    if settled.problem:
+        raise MeshError(f"{part.name}: the region {region.name!r} is no closed mesh: {settled.problem}")
+    return replace(region, mesh=Mesh(settled.vertices, settled.triangles))

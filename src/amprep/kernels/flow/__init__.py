@@ -1,0 +1,1 @@
+"""Compiled kernels of network flow on the support grid."""

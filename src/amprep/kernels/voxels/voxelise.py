@@ -1,0 +1,168 @@
+"""Voxelisation kernels: which cubes triangles, edges and points meet, and which cube centres lie inside.
+
+Coordinates are mm relative to the window's corner; a window is an array over cubes ``[k, y, x]``.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from amprep.kernels.meshes.rows import ends_in_row, slopes_of
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+Ints = NDArray[np.int32]
+Shorts = NDArray[np.int16]
+
+
+@njit(cache=True)
+def _clip(source: Floats, count: int, axis: int, bound: float, sign: float, target: Floats) -> int:
+    """Clip the polygon `source[:count]` to ``sign * (p[axis] - bound) >= 0``; return the corners kept."""
+    kept = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        a = sign * (source[i, axis] - bound)
+        b = sign * (source[j, axis] - bound)
+        if a >= 0.0:
+            for c in range(3):
+                target[kept, c] = source[i, c]
+            kept += 1
+        if (a > 0.0 and b < 0.0) or (a < 0.0 and b > 0.0):
+            share = a / (a - b)
+            for c in range(3):
+                target[kept, c] = source[i, c] + share * (source[j, c] - source[i, c])
+            target[kept, axis] = bound
+            kept += 1
+    return kept
+
+
+@njit(cache=True)
+def _mark_column(
+    polygon: Floats,
+    count: int,
+    label: int,
+    step: float,
+    tolerance: float,
+    holds: bool,
+    iy: int,
+    ix: int,
+    marks: Ints,
+) -> None:
+    """Mark the cubes of one column that the height interval of `polygon` meets."""
+    low = polygon[0, 2]
+    high = low
+    for i in range(1, count):
+        low = min(low, polygon[i, 2])
+        high = max(high, polygon[i, 2])
+    first = int(np.floor((low + tolerance) / step))
+    last = int(np.ceil((high - tolerance) / step)) - 1
+    if holds and last < first:
+        last = first
+    for k in range(max(first, 0), min(last, marks.shape[0] - 1) + 1):
+        marks[k, iy, ix] = min(marks[k, iy, ix], label)
+
+
+@njit(cache=True)
+def mark_elements(
+    points: Floats,
+    elements: Longs,
+    labels: Ints,
+    pitch: float,
+    step: float,
+    grow: float,
+    tolerance: float,
+    holds: bool,
+    marks: Ints,
+) -> None:
+    """Lower `marks` (int32, modified in place) to the least label of the elements that meet each cube.
+
+    Elements are triangles, edges ``(a, b, b)`` or points ``(a, a, a)``. Each is clipped to every xy-square,
+    widened by `grow` mm on each side (negative: shrunk); the clipped polygon is connected, so its height
+    interval says exactly which cubes of the column it meets. Heights within `tolerance` of a grid plane do
+    not reach the cube beyond it. With `holds`, what lies on a grid plane belongs to the cube above.
+    """
+    ny, nx = marks.shape[1], marks.shape[2]
+    whole = np.empty((3, 3))
+    band = np.empty((12, 3))
+    piece = np.empty((12, 3))
+    spare = np.empty((12, 3))
+    for e in range(elements.shape[0]):
+        for i in range(3):
+            for c in range(3):
+                whole[i, c] = points[elements[e, i], c]
+        y_low = min(whole[0, 1], whole[1, 1], whole[2, 1])
+        y_high = max(whole[0, 1], whole[1, 1], whole[2, 1])
+        for iy in range(
+            max(int(np.floor((y_low - grow) / pitch)), 0),
+            min(int(np.floor((y_high + grow) / pitch)), ny - 1) + 1,
+        ):
+            bottom, top = iy * pitch - grow, (iy + 1) * pitch + grow
+            if y_low >= bottom and y_high <= top:
+                count = 3
+                for i in range(3):
+                    for c in range(3):
+                        band[i, c] = whole[i, c]
+            else:
+                count = _clip(whole, 3, 1, bottom, 1.0, spare)
+                count = _clip(spare, count, 1, top, -1.0, band)
+            if count == 0:
+                continue
+            x_low, x_high = band[0, 0], band[0, 0]
+            for i in range(1, count):
+                x_low = min(x_low, band[i, 0])
+                x_high = max(x_high, band[i, 0])
+            for ix in range(
+                max(int(np.floor((x_low - grow) / pitch)), 0),
+                min(int(np.floor((x_high + grow) / pitch)), nx - 1) + 1,
+            ):
+                left, right = ix * pitch - grow, (ix + 1) * pitch + grow
+                if x_low >= left and x_high <= right:
+                    _mark_column(band, count, labels[e], step, tolerance, holds, iy, ix, marks)
+                    continue
+                corners = _clip(band, count, 0, left, 1.0, spare)
+                corners = _clip(spare, corners, 0, right, -1.0, piece)
+                if corners > 0:
+                    _mark_column(piece, corners, labels[e], step, tolerance, holds, iy, ix, marks)
+
+
+@njit(cache=True)
+def count_crossings(points: Floats, triangles: Longs, pitch: float, step: float, change: Shorts) -> None:
+    """Add to `change` (int16, modified in place) how the winding number changes up each line of cube centres.
+
+    ``change[k]`` collects the crossings between centres k - 1 and k.
+    """
+    nz, ny, nx = change.shape
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ax, ay, az = points[a, 0], points[a, 1], points[a, 2]
+        slope_x, slope_y = slopes_of(points, a, b, c)
+        low, high = min(az, points[b, 2], points[c, 2]), max(az, points[b, 2], points[c, 2])
+        y_low, y_high = min(ay, points[b, 1], points[c, 1]), max(ay, points[b, 1], points[c, 1])
+        for iy in range(
+            max(int(np.ceil(y_low / pitch - 0.5)), 0), min(int(np.floor(y_high / pitch - 0.5)), ny - 1) + 1
+        ):
+            y = (iy + 0.5) * pitch
+            up, down = ends_in_row(points, triangles, t, y)
+            if np.isinf(up) or np.isinf(down):
+                continue
+            sign = 1 if up < down else -1  # clockwise seen from above: it looks down, the solid begins
+            first = int(np.ceil(min(up, down) / pitch - 0.5))
+            last = int(np.ceil(max(up, down) / pitch - 0.5)) - 1
+            for ix in range(max(first, 0), min(last, nx - 1) + 1):
+                z = az + slope_x * ((ix + 0.5) * pitch - ax) + slope_y * (y - ay)
+                k = int(np.floor(min(max(z, low), high) / step - 0.5)) + 1
+                if k < nz:
+                    change[max(k, 0), iy, ix] += sign
+
+
+@njit(cache=True)
+def mark_interior(change: Shorts, marks: Ints) -> None:
+    """Mark with 0 the cubes whose centre has a positive winding number, from `count_crossings`."""
+    nz, ny, nx = change.shape
+    for iy in range(ny):
+        for k in range(nz):
+            for ix in range(nx):
+                if k > 0:
+                    change[k, iy, ix] += change[k - 1, iy, ix]
+                if change[k, iy, ix] > 0:
+                    marks[k, iy, ix] = 0

@@ -1,0 +1,32 @@
+"""Measures a filled part: its mass, and the powder that cannot leave it."""
+
+import numpy as np
+
+from amprep.geometry.powder.pockets import Pocket, find_pockets
+from amprep.measures.removability import density_of
+from amprep.model import Mesh, Part
+
+_LIFT = 1000.0
+"""mm; parts are looked at that high above the plate, which closes nothing once they are off it."""
+
+
+def mass(part: Part, volume: float, density: float | None) -> float | None:
+    """Return grams, None where neither a density (g/cm3) is given nor the part's material is known."""
+    density = density or density_of(part.appearance.material)
+    return None if density is None else volume * density / 1000.0
+
+
+def pockets_of(mesh: Mesh, hole: float) -> tuple[Pocket, ...]:
+    """Return the pockets in a solid that a ball of diameter `hole` mm cannot leave, in any direction."""
+    shift = np.array([0.0, 0.0, _LIFT - mesh.bounds[0][2]])
+    return tuple(
+        pocket._replace(
+            point=_moved(pocket.point, -shift), lo=_moved(pocket.lo, -shift), hi=_moved(pocket.hi, -shift)
+        )
+        for pocket in find_pockets([(mesh.vertices + shift, mesh.triangles)], [], hole)
+    )
+
+
+def _moved(point: tuple[float, float, float], shift: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (np.array(point) + shift).tolist()
+    return x, y, z

@@ -1,0 +1,117 @@
+"""What supports cost and how they come off: mass, scanned area, contacts with the parts, powder locked in."""
+
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from amprep.geometry.powder.pockets import Pocket, find_pockets, spacing_for
+from amprep.geometry.supports.contact_area import measure_contact
+from amprep.model import Build, SupportBody
+
+DENSITIES = {"alsi10mg": 2.67, "ti64": 4.41, "ti6al4v": 4.41, "316l": 7.9, "in718": 8.15, "inconel718": 8.15}
+"""g/cm3 of solid metal by words in a material's name: usual values, rounded; `cells.density_g_cm3` comes before."""
+
+_MOST_AT_ONCE = 4
+"""Bodies measured at the same time: each takes memory of its own."""
+
+
+@dataclass(frozen=True)
+class RemovalRules:
+    """What is measured, and by which figures.
+
+    Attributes
+    ----------
+    layer_mm
+        Thickness of a printed layer.
+    density_g_cm3
+        Of the supports; None takes it from the material of the part they hold, if that is a known one.
+    hole_mm
+        Powder is loose where a ball of this diameter can leave.
+    thorough
+        Whether contacts and powder are measured, too.
+    """
+
+    layer_mm: float = 0.04
+    density_g_cm3: float | None = None
+    hole_mm: float = 0.2
+    thorough: bool = False
+
+
+@dataclass(frozen=True)
+class Removal:
+    """The figures of one support body.
+
+    Attributes
+    ----------
+    mass_g
+        None where the density is not known.
+    scan_mm2
+        Sum over the printed layers of the body's cross-section: its volume over the thickness of a layer.
+    contact_mm2, contacts
+        Area of the parts' surfaces inside the body, and number of patches; None when not measured.
+    pockets
+        Powder that cannot leave, largest first; None when not measured.
+    resolution_mm
+        To within which the ways out are measured.
+    """
+
+    mass_g: float | None
+    scan_mm2: float
+    contact_mm2: float | None = None
+    contacts: int | None = None
+    pockets: tuple[Pocket, ...] | None = None
+    resolution_mm: float | None = None
+
+    @property
+    def trapped_mm3(self) -> float | None:
+        """Volume of the powder that cannot leave."""
+        return None if self.pockets is None else sum(pocket.volume for pocket in self.pockets)
+
+
+def measure_removal(build: Build, rules: RemovalRules) -> tuple[Removal, ...]:
+    """Return the figures of each support body of a build; walls without thickness weigh nothing.
+
+    Bodies are measured side by side, as far as the machine has processors.
+    """
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_AT_ONCE)) as pool:
+        return tuple(pool.map(lambda body: _removal(build, body, rules), build.supports))
+
+
+def totals(removal: tuple[Removal, ...]) -> dict[str, float | None]:
+    """Return the sums over all bodies by name; None where a body's figure is not known."""
+    names = ("mass_g", "scan_mm2", "contact_mm2", "contacts", "trapped_mm3")
+    return {name: _sum([getattr(each, name) for each in removal]) for name in names}
+
+
+def _sum(values: list[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return sum(known) if len(known) == len(values) else None
+
+
+def density_of(material: str | None) -> float | None:
+    """Return the density of a known metal named by `material`, g/cm3, or None."""
+    name = re.sub(r"[\W_]+", "", (material or "").casefold())
+    return next((density for word, density in DENSITIES.items() if word in name), None)
+
+
+def _removal(build: Build, body: SupportBody, rules: RemovalRules) -> Removal:
+    volume = 0.0 if body.surface else abs(body.mesh.signed_volume)
+    materials = [build.parts[index].part.appearance.material for index in body.parts]
+    density = rules.density_g_cm3 or next(filter(None, map(density_of, materials)), None)
+    mass = None if density is None else volume * density / 1000.0
+    scan = volume / rules.layer_mm
+    if body.surface or not rules.thorough:
+        return Removal(mass, scan)
+    solid = body.mesh.vertices, body.mesh.triangles
+    held = [(build.parts[index].mesh.vertices, build.parts[index].mesh.triangles) for index in body.parts]
+    contacts = [measure_contact(solid, part) for part in held]
+    low, high = body.mesh.bounds
+    return Removal(
+        mass,
+        scan,
+        sum(contact.area for contact in contacts),
+        sum(contact.patches for contact in contacts),
+        tuple(find_pockets([solid], held, rules.hole_mm)),
+        spacing_for(rules.hole_mm, high - low),
+    )

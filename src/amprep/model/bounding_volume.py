@@ -1,0 +1,56 @@
+"""Bounding volumes: what a packer moves instead of the part. All in part coordinates, mm."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from amprep.arrays import Floats, frozen
+from amprep.model.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """Axis-parallel boxes in fixed relative position whose union contains the part.
+
+    Attributes
+    ----------
+    lo, hi
+        ``(k, 3)`` corners.
+    """
+
+    lo: Floats
+    hi: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "lo", frozen(self.lo, np.float64, 3))
+        object.__setattr__(self, "hi", frozen(self.hi, np.float64, 3))
+
+    def enclosing(self) -> tuple[Floats, Floats]:
+        """Least and greatest corner of the enclosing box, each ``(3,)``."""
+        return self.lo.min(axis=0), self.hi.max(axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPieces:
+    """Closed convex meshes whose union contains the part."""
+
+    pieces: tuple[Mesh, ...]
+
+    def enclosing(self) -> tuple[Floats, Floats]:
+        """Least and greatest corner of the enclosing box, each ``(3,)``."""
+        bounds = [piece.bounds for piece in self.pieces]
+        return np.min([lo for lo, _ in bounds], axis=0), np.max([hi for _, hi in bounds], axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A closed mesh that contains the part, or is the part's own."""
+
+    mesh: Mesh
+
+    def enclosing(self) -> tuple[Floats, Floats]:
+        """Least and greatest corner of the enclosing box, each ``(3,)``."""
+        return self.mesh.bounds
+
+
+BoundingVolume = Boxes | ConvexPieces | Solid

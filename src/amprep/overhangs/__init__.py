@@ -1,0 +1,1 @@
+"""What needs support, which regions block or enforce it, and what stayed unsupported."""

@@ -1,0 +1,282 @@
+"""Fills marked regions of parts with cells: read, fill, judge, measure, write, report."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from amprep import __version__
+from amprep.cells.instances import arrays
+from amprep.checks.infill import check_filled
+from amprep.errors import JobError
+from amprep.geometry.meshes.offset import inset
+from amprep.hookspecs import CellEmitter
+from amprep.host import Host, Listed
+from amprep.infill.block import usual_size
+from amprep.infill.fill_region import Filled, fill_region, meets
+from amprep.infill.regions import KIND, chosen, positions, with_files, without
+from amprep.job import Job
+from amprep.measures.filled_part import mass, pockets_of
+from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Region, Report, Stop
+from amprep.pipeline.choose_cell import choose_cell
+from amprep.pipeline.outputs import OutputFolder, safe_name
+from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.pipeline.stages import Clock, Watcher
+from amprep.report.cutaway import draw_cut
+from amprep.report.infill import FilledRecord, LatticeRecord, write_json
+from amprep.supports.solids.request import Emit
+from amprep.threemf import write_parts, write_stl
+
+
+@dataclass(frozen=True)
+class LatticeOptions:
+    """What the command line decides.
+
+    Attributes
+    ----------
+    folder, stem
+        Where the outputs go, and what their names begin with.
+    regions
+        Mesh files of further regions.
+    names
+        Regions to fill; all when empty.
+    shell
+        mm; everything deeper than that below the surface is filled instead of marked regions.
+    size, height
+        mm, of a cell; None is chosen, the height as the size.
+    """
+
+    folder: Path
+    stem: str
+    regions: tuple[Path, ...] = ()
+    names: tuple[str, ...] = ()
+    shell: float | None = None
+    size: float | None = None
+    height: float | None = None
+    stl: bool = False
+    dry_run: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """A part as it was read, the regions that meet it, and what has become of it."""
+
+    part: Part
+    regions: tuple[Region, ...]
+    filled: Filled | None = None
+
+    @property
+    def result(self) -> Part:
+        """The part as it is to be written; colours of single triangles and painted regions are lost."""
+        if self.filled is None:
+            return self.part
+        part = without(self.part, self.regions)
+        return replace(
+            part,
+            mesh=self.filled.mesh,
+            volume_mm3=self.filled.mesh.signed_volume,
+            appearance=Appearance(part.appearance.colour, part.appearance.material),
+            regions=tuple(region for region in part.regions if region.triangles is None),
+        )
+
+
+def fill_lattice(
+    job: Job, host: Host, options: LatticeOptions, *, watcher: Watcher, stop: Stop
+) -> LatticeRecord:
+    """Fill the marked regions of the job's parts with its cell and return what was done.
+
+    Files appear together at the end; an interrupted run leaves none.
+
+    Raises
+    ------
+    AmprepError
+        For wrong input, an unknown or failing cell, or when there is no region to fill.
+    """
+    _check(options)
+    clock = Clock(watcher)
+    cell = choose_cell(host, job)
+    params = host.params(cell, job.cells.params)
+    with clock.stage("read") as report:
+        parts = _read(job, host, options, report)
+    with clock.stage("regions") as report:
+        work = _regions(parts, options, report)
+    marked = [region.mesh for each in work for region in each.regions if region.mesh]
+    size = options.size or usual_size(marked)
+    height = options.height or size
+    done = []
+    for each in work:
+        with clock.stage("fill") as report:
+
+            def emit(request: CellRequest, report: Report = report) -> Cells:
+                return host.call(cell, request, params=params, stop=stop, report=report)
+
+            done.append(_filled(each, emit, job, size, height, report))
+    records = []
+    for each in done:
+        if each.filled is not None:
+            records.append(_measured(each, each.filled, job, clock))
+    record = LatticeRecord(
+        job.name,
+        __version__,
+        _name(cell),
+        size,
+        height,
+        job.cells.powder_hole_mm,
+        tuple(records),
+        tuple(each.part.name for each in done if each.filled is None),
+        warnings=(*host.warnings, *_notes(done, job)),
+    )
+    if options.dry_run:
+        return replace(record, stages=clock.times)
+    with OutputFolder(options.folder, options.stem, numbered=False) as outputs:
+        return _written(record, done, job, options, outputs, clock)
+
+
+def _check(options: LatticeOptions) -> None:
+    for name, value in (("--size", options.size), ("--height", options.height), ("--shell", options.shell)):
+        if value is not None and not 0.0 < value < 1e4:
+            raise JobError(f"{name} is in mm and above 0, got {value:g}")
+    if options.shell is not None and (options.regions or options.names):
+        raise JobError("--shell fills the whole inside; give it without --region and --region-name")
+
+
+def _read(job: Job, host: Host, options: LatticeOptions, report: Report) -> list[Part]:
+    def read(path: Path) -> list[Part]:
+        reader = host.reader_for(path, job.reading.readers)
+        return host.call(
+            reader, path, params=host.params(reader, job.reading.params.get(reader.offer.name, {}))
+        )
+
+    files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
+    return with_files(read_all(files, read, report=report), options.regions, read)
+
+
+def _regions(parts: Sequence[Part], options: LatticeOptions, report: Report) -> list[_Work]:
+    """Return every part with the regions that meet it."""
+    if options.shell is not None:
+        return [_Work(part, _inside(part, options.shell, report)) for part in parts]
+    work = []
+    for part, regions in zip(parts, chosen(parts, options.names), strict=True):
+        met = tuple(each for each in regions if each.mesh and meets(part.mesh, each.mesh))
+        work.append(_Work(part, met))
+    if not any(each.regions for each in work):
+        raise JobError("the regions lie outside the parts: nothing of them can be filled with cells")
+    return work
+
+
+def _inside(part: Part, shell: float, report: Report) -> tuple[Region, ...]:
+    report(0.1, f"looking for the inside of {part.name}")
+    points, triangles = inset(*arrays(part.mesh), shell, shell / 2.0)
+    if not len(triangles):
+        raise JobError(
+            f"{part.name} is nowhere thicker than twice the shell of {shell:g} mm; choose a thinner --shell"
+        )
+    return (Region(KIND, f"inside of {part.name}", mesh=Mesh(points, triangles)),)
+
+
+def _filled(each: _Work, emit: Emit, job: Job, size: float, height: float, report: Report) -> _Work:
+    if not each.regions:
+        return each
+    filled = fill_region(
+        each.part.mesh,
+        [region.mesh for region in each.regions if region.mesh],
+        emit,
+        size=size,
+        height=height,
+        overlap=job.cells.overlap_mm,
+        beams=_beams(job),
+        report=report,
+    )
+    return replace(each, filled=filled)
+
+
+def _beams(job: Job) -> bool | None:
+    """Return whether struts become beams, None to leave it to the cell's parameters; slicers know none."""
+    if job.target != "generic" or job.cells.lattice == "mesh":
+        return False
+    return True if job.cells.lattice == "beams" else None
+
+
+def _measured(each: _Work, filled: Filled, job: Job, clock: Clock) -> FilledRecord:
+    """Judge a filled part and measure it."""
+    part, wishes = each.part, job.cells
+    regions = [region.mesh for region in each.regions if region.mesh]
+    with clock.stage("judge"):
+        found = check_filled(
+            part.name, part.mesh, regions, filled.cells, filled.mesh, dropped=filled.islands_mm3
+        )
+    with clock.stage("powder"):
+        pockets = pockets_of(filled.mesh, wishes.powder_hole_mm)
+        before = pockets_of(part.mesh, wishes.powder_hole_mm) if pockets else ()
+    volume, density = filled.mesh.signed_volume, wishes.density_g_cm3
+    return FilledRecord(
+        name=part.name,
+        regions=tuple(region.name for region in each.regions),
+        cells=filled.count,
+        beams=0 if filled.lattice is None else len(filled.lattice.struts),
+        triangles=len(filled.mesh.triangles),
+        before_mm3=part.volume_mm3,
+        after_mm3=volume,
+        region_mm3=filled.region.signed_volume,
+        cells_mm3=filled.cells_mm3,
+        before_g=mass(part, part.volume_mm3, density),
+        after_g=mass(part, volume, density),
+        islands=filled.islands,
+        islands_mm3=filled.islands_mm3,
+        genus=filled.genus,
+        pockets=pockets,
+        pockets_before_mm3=sum(pocket.volume for pocket in before),
+        violations=tuple(found),
+    )
+
+
+def _notes(done: Sequence[_Work], job: Job) -> list[str]:
+    """Say what was mended in reading, and what of a part is lost by filling it."""
+    notes = []
+    for each in done:
+        result = each.result
+        notes += [f"{each.part.name}: {note}" for note in result.notes]
+        if each.filled is None:
+            continue
+        if each.part.appearance.triangle_colours is not None:
+            notes.append(f"{each.part.name}: colours of single triangles are not kept")
+        if len(result.regions) < len(without(each.part, each.regions).regions):
+            notes.append(f"{each.part.name}: painted supports are not kept")
+        if job.target != "prusaslicer" and any(region.kind != KIND for region in result.regions):
+            notes.append(f"{each.part.name}: blockers and enforcers are kept in files for PrusaSlicer only")
+    return notes
+
+
+def _written(
+    record: LatticeRecord,
+    done: Sequence[_Work],
+    job: Job,
+    options: LatticeOptions,
+    outputs: OutputFolder,
+    clock: Clock,
+) -> LatticeRecord:
+    """Write everything, let all files appear, and return the record with their names."""
+    parts = [each.result for each in done]
+    lattices: dict[int, tuple[Lattice, Mesh]] = {
+        index: (each.filled.lattice, each.part.mesh)
+        for index, each in enumerate(done)
+        if each.filled is not None and each.filled.lattice is not None
+    }
+    files = [outputs.name("3mf")]
+    with clock.stage("write"):
+        write_parts(parts, outputs.path("3mf"), title=outputs.stem, target=job.target, lattices=lattices)
+        for number, part in enumerate(parts if options.stl else (), start=1):
+            suffix = f"{number:03d}.{safe_name(part.name)}.stl"
+            at = positions(part)[0]
+            write_stl(Mesh(part.mesh.vertices + at, part.mesh.triangles), outputs.path(suffix))
+            files.append(outputs.name(suffix))
+    with clock.stage("picture"):
+        draw_cut([each.result.mesh for each in done if each.filled is not None], outputs.path("png"))
+    files += [outputs.name("png"), outputs.name("report.json")]
+    record = replace(record, files=tuple(files), stages=clock.times)
+    write_json(record, outputs.path("report.json"))
+    outputs.publish()
+    return record
+
+
+def _name(cell: Listed[CellEmitter]) -> str:
+    return cell.offer.name

@@ -1,0 +1,89 @@
+"""The built-in packers."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from amprep.hookspecs import Packer, PackerAccepts, hookimpl, later
+from amprep.plugins.packers.integer_program.params import (
+    ColumnGenerationParams,
+    IpLocalSearchParams,
+    IpParams,
+)
+from amprep.plugins.packers.params import (
+    AutoParams,
+    BlockBuildingParams,
+    ExtremePointsParams,
+    SweepParams,
+    TabuParams,
+)
+
+amprep_api = 1
+
+
+_BOXES = PackerAccepts(volumes=frozenset({"box", "boxes"}), orientations=frozenset({"fixed", "axis"}))
+_BUILDS, _FILL = frozenset({"builds"}), frozenset({"fill"})
+_ANY_LIST = frozenset({"fixed", "axis", "list"})
+_ALL = replace(
+    _BOXES, objectives=_BUILDS | _FILL, orientations=_ANY_LIST, cylinder=True, zones=True, fixed=True
+)
+
+
+@hookimpl
+def amprep_packers() -> Iterable[Packer]:
+    """Yield the built-in packers."""
+    yield Packer(
+        name="extreme-points",
+        summary="The best of many sortings, each item at its best extreme point (Crainic, Perboli, Tadei).",
+        run=later("amprep.plugins.packers.extreme_points:pack_extreme_points"),
+        accepts=_ALL,
+        params=ExtremePointsParams,
+    )
+    yield Packer(
+        name="auto",
+        summary="Extreme points at once, then a search that packs a few builds anew until one is saved.",
+        run=later("amprep.plugins.packers.auto:pack_auto"),
+        accepts=_ALL,
+        params=AutoParams,
+    )
+    yield Packer(
+        name="block-building",
+        summary="Beam search over blocks of boxes in maximal empty spaces (Araya, Riff; Fanslau, Bortfeldt).",
+        run=later("amprep.plugins.packers.block_building:pack_block_building"),
+        accepts=replace(_BOXES, volumes=frozenset({"box"}), objectives=_FILL, zones=True, fixed=True),
+        params=BlockBuildingParams,
+    )
+    yield Packer(
+        name="sweep",
+        summary="Builds sliced into layers and rows, rows packed along one axis (Sweep 2003).",
+        run=later("amprep.plugins.packers.sweep:pack_sweep"),
+        accepts=replace(_BOXES, objectives=_BUILDS | _FILL, orientations=_ANY_LIST),
+        params=SweepParams,
+    )
+    yield Packer(
+        name="tabu",
+        summary="Tabu search that empties one build after another (Lodi, Martello, Vigo; thesis 2.4).",
+        run=later("amprep.plugins.packers.tabu:pack_tabu"),
+        accepts=replace(_BOXES, orientations=_ANY_LIST, zones=True),
+        params=TabuParams,
+    )
+    yield Packer(
+        name="ip",
+        summary="The thesis's integer program, by HiGHS or any solver of pulp, after extreme points.",
+        run=later("amprep.plugins.packers.integer_program:pack_ip"),
+        accepts=replace(_BOXES, objectives=_BUILDS | _FILL, zones=True, fixed=True),
+        params=IpParams,
+    )
+    yield Packer(
+        name="ip-local-search",
+        summary="Steps to the best build near the last one, by the integer program (thesis 2.2).",
+        run=later("amprep.plugins.packers.integer_program.local_search:pack_ip_local_search"),
+        accepts=replace(_BOXES, objectives=_FILL, zones=True, fixed=True),
+        params=IpLocalSearchParams,
+    )
+    yield Packer(
+        name="column-generation",
+        summary="Set covering over builds, priced by the fill problem; proves bounds (thesis 2.1).",
+        run=later("amprep.plugins.packers.column_generation:pack_column_generation"),
+        accepts=replace(_BOXES, zones=True),
+        params=ColumnGenerationParams,
+    )

@@ -1,0 +1,1 @@
+"""A packing problem prepared for box packers."""

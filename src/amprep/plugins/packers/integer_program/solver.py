@@ -1,0 +1,174 @@
+"""Solving a program by HiGHS or any other solver that pulp knows, with bound, budget and cancellation."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import highspy
+import pulp
+
+from amprep.errors import AmprepError, nearest_hint
+from amprep.model.control import Report, Stop
+from amprep.plugins.packers.integer_program.params import IpParams
+
+Proof = Literal["optimal", "infeasible", "stopped"]
+
+TOLERANCE = 1e-6
+"""Integers and constraints are met, and gaps closed, to within this."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a solver said.
+
+    Attributes
+    ----------
+    status
+        ``optimal``, ``infeasible``, or ``stopped`` when it ended without proof.
+    bound
+        Proved bound of the objective in the program's own sense; None when the solver tells none.
+    solved
+        Whether the variables hold a solution.
+    stop_reason
+        Why it ended.
+    """
+
+    status: Proof
+    bound: float | None
+    solved: bool
+    stop_reason: str
+    nodes: int = 0
+
+
+def solve(
+    program: pulp.LpProblem,
+    params: IpParams,
+    *,
+    nodes: int,
+    stop: Stop,
+    report: Report,
+    start: Mapping[Any, float] | None = None,
+) -> Outcome:
+    """Solve, and leave the solution in the variables.
+
+    Parameters
+    ----------
+    nodes
+        Of the branch-and-bound tree, at most.
+    start
+        Values of variables in a known solution; a wrong one is no matter.
+
+    Raises
+    ------
+    AmprepError
+        If pulp does not know the solver, or it is not installed or fails.
+    """
+    if stop():
+        return Outcome("stopped", None, solved=False, stop_reason=stop.reason)
+    if params.solver == "HiGHS":
+        return _solve_by_highs(program, params, nodes, stop, report, start or {})
+    return _solve_by_name(program, params.solver, stop)
+
+
+def _solve_by_highs(
+    program: pulp.LpProblem,
+    params: IpParams,
+    nodes: int,
+    stop: Stop,
+    report: Report,
+    start: Mapping[Any, float],
+) -> Outcome:
+    """Solve by HiGHS, step by step, for pulp passes on neither a start nor the bound."""
+    kinds = highspy.cb.HighsCallbackType
+
+    def look(_kind: Any, _words: str, at: Any, answer: Any, _own: Any) -> None:
+        report(min(at.mip_node_count / max(nodes, 1), 1.0), f"gap {at.mip_gap:.1%}")
+        if stop():
+            answer.user_interrupt = True
+
+    solver = pulp.HiGHS(
+        msg=False,
+        threads=params.threads,
+        gapRel=TOLERANCE,
+        gapAbs=TOLERANCE,
+        timeLimit=None if stop.deadline is None else max(stop.remaining(), 0.0),
+        random_seed=params.seed,
+        mip_allow_restart=False,  # a restart may take longer than all nodes of a small budget
+        mip_max_nodes=nodes,
+        mip_feasibility_tolerance=TOLERANCE / 100.0,
+        callbackTuple=(look, None),
+        callbacksToActivate=[kinds.kCallbackMipInterrupt],
+    )
+    solver.createAndConfigureSolver(program)
+    solver.buildSolverModel(program)
+    highs = program.solverModel
+    variables = program.variables()
+    if start:
+        known = highspy.HighsSolution()
+        known.col_value = [float(start.get(variable, 0.0)) for variable in variables]
+        highs.setSolution(known)
+    highs.run()
+    return _outcome_of_highs(program, variables, stop)
+
+
+def _outcome_of_highs(program: pulp.LpProblem, variables: list[Any], stop: Stop) -> Outcome:
+    """Read status, bound and solution; HiGHS was given the negative of what is to be maximised."""
+    highs, statuses = program.solverModel, highspy.HighsModelStatus
+    status, info = highs.getModelStatus(), highs.getInfo()
+    reasons = {
+        statuses.kOptimal: "finished",
+        statuses.kInfeasible: "finished",
+        statuses.kSolutionLimit: "work used up",
+        statuses.kTimeLimit: "time limit",
+        statuses.kInterrupt: stop.reason,
+    }
+    solved = info.primal_solution_status == highspy.SolutionStatus.kSolutionStatusFeasible
+    for variable, value in zip(variables, highs.getSolution().col_value if solved else (), strict=False):
+        variable.varValue = value
+    sign = -1.0 if program.sense == pulp.LpMaximize else 1.0
+    bound = sign * float(info.mip_dual_bound)
+    return Outcome(
+        "optimal"
+        if status == statuses.kOptimal
+        else "infeasible"
+        if status == statuses.kInfeasible
+        else "stopped",
+        bound if abs(bound) < highspy.kHighsInf else None,
+        solved,
+        reasons.get(status, f"HiGHS: {highs.modelStatusToString(status)}"),
+        max(int(info.mip_node_count), 0),
+    )
+
+
+def _solve_by_name(program: pulp.LpProblem, name: str, stop: Stop) -> Outcome:
+    """Solve by any solver of pulp; only an optimum tells a bound."""
+    limit = None if stop.deadline is None else max(stop.remaining(), 1.0)
+    try:
+        status = program.solve(installed_solver(name, limit))
+    except pulp.PulpSolverError as error:
+        raise AmprepError(
+            f"the solver {name} failed: {error}; choose another one, for example HiGHS"
+        ) from error
+    if status == pulp.LpStatusInfeasible:
+        return Outcome("infeasible", None, solved=False, stop_reason="finished")
+    solved = program.sol_status in {pulp.LpSolutionOptimal, pulp.LpSolutionIntegerFeasible}
+    if program.sol_status == pulp.LpSolutionOptimal:
+        return Outcome("optimal", float(pulp.value(program.objective)), solved, "finished")
+    return Outcome("stopped", None, solved, "time limit")
+
+
+def installed_solver(name: str, time_limit: float | None = None, **options: Any) -> Any:
+    """Return pulp's solver of that name, silent; `options` are its own.
+
+    Raises
+    ------
+    AmprepError
+        If pulp does not know it, or its program is not installed.
+    """
+    if name not in pulp.listSolvers():
+        raise AmprepError(f"pulp knows no solver {name!r}{nearest_hint(name, pulp.listSolvers())}")
+    solver = pulp.getSolver(name, msg=False, timeLimit=time_limit, **options)
+    if not solver.available():
+        known = ", ".join(pulp.listSolvers(onlyAvailable=True))
+        raise AmprepError(f"the solver {name} is not installed; installed: {known}")
+    return solver

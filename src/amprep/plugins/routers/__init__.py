@@ -1,0 +1,83 @@
+"""The built-in support routers."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from amprep.hookspecs import NoParams, SupportRouter, hookimpl, later
+from amprep.model.control import Report, Stop
+from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
+
+amprep_api = 1
+
+
+def _min_cost_flow(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,  # noqa: ARG001
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.routers.min_cost_flow import route_min_cost_flow
+
+    return route_min_cost_flow(problem, stop=stop, report=report)
+
+
+def _push_relabel(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,  # noqa: ARG001
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.routers.push_relabel import route_push_relabel
+
+    return route_push_relabel(problem, stop=stop, report=report)
+
+
+def _auto(
+    problem: SupportProblem,
+    *,
+    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    rng: np.random.Generator,
+    stop: Stop,
+    report: Report,
+) -> SupportPlan:
+    from amprep.plugins.routers.auto import route_auto
+
+    return route_auto(problem, rng=rng, stop=stop, report=report)
+
+
+@hookimpl
+def amprep_support_routers() -> Iterable[SupportRouter]:
+    """Yield the built-in support routers."""
+    yield SupportRouter(
+        name="shortest-paths",
+        summary="Iterated shortest paths that gather into trunks; fast on large grids (thesis 3.4).",
+        run=later("amprep.plugins.routers.shortest_paths:route_shortest_paths"),
+        params=ShortestPathsParams,
+    )
+    yield SupportRouter(
+        name="min-cost-flow",
+        summary="As many paths as the capacities allow at the least cost; exact (thesis 3.3).",
+        run=_min_cost_flow,
+    )
+    yield SupportRouter(
+        name="push-relabel",
+        summary="As many paths as the capacities allow, straight before sideways; the fastest (thesis 3.3).",
+        run=_push_relabel,
+    )
+    yield SupportRouter(
+        name="tree",
+        summary="Least material: local search over merges, from shortest paths and from a least-cost flow.",
+        run=later("amprep.plugins.routers.tree:route_tree"),
+        params=TreeParams,
+    )
+    yield SupportRouter(
+        name="auto",
+        summary="Picks one of the others by size and capacities, and says why.",
+        run=_auto,
+    )

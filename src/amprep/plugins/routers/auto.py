@@ -1,0 +1,61 @@
+"""The router `auto`: picks one of the others by size and capacities, and says why."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.model.control import Report, Stop
+from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.plugins.routers.min_cost_flow import route_min_cost_flow
+from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
+from amprep.plugins.routers.push_relabel import route_push_relabel
+from amprep.plugins.routers.shortest_paths import route_shortest_paths
+from amprep.plugins.routers.tree import route_tree
+
+TIGHT = 2
+"""Capacity up to which so few paths may share an edge that gathering them saves little."""
+
+LARGE_JAM = 2_000_000
+"""Cubes up to which a jam is solved at least cost in seconds rather than minutes."""
+
+SMALL = 500_000
+"""Cubes up to which searching for the least material takes about a second."""
+
+
+class Choice(NamedTuple):
+    """A router's name, and why."""
+
+    router: str
+    reason: str
+
+
+def choose(problem: SupportProblem) -> Choice:
+    """Return which router suits a problem."""
+    capacity = min((c for c in (problem.edge_capacity, problem.node_capacity) if c), default=0)
+    cubes = f"{problem.cubes.size:,} cubes"
+    if 0 < capacity <= TIGHT:
+        few = f"with a capacity of {capacity} paths can hardly be gathered"
+        if problem.cubes.size <= LARGE_JAM:
+            return Choice("min-cost-flow", f"{few}, so they are to be straight")
+        return Choice("push-relabel", f"{few}, and {cubes} are many for a least-cost flow in a jam")
+    if problem.cubes.size <= SMALL:
+        return Choice("tree", f"{cubes} are few enough to search for the least material")
+    return Choice("shortest-paths", f"it gathers paths quickly, and {cubes} are many for `tree`")
+
+
+def route_auto(
+    problem: SupportProblem, *, rng: np.random.Generator, stop: Stop, report: Report
+) -> SupportPlan:
+    """Route by the router of `choose`; the plan's first note says which and why."""
+    router, reason = choose(problem)
+    if router == "min-cost-flow":
+        plan = route_min_cost_flow(problem, stop=stop, report=report)
+    elif router == "push-relabel":
+        plan = route_push_relabel(problem, stop=stop, report=report)
+    elif router == "tree":
+        plan = route_tree(problem, params=TreeParams(), rng=rng, stop=stop, report=report)
+    else:
+        params = ShortestPathsParams()
+        plan = route_shortest_paths(problem, params=params, rng=rng, stop=stop, report=report)
+    return replace(plan, notes=(f"auto chose the router {router}: {reason}", *plan.notes))

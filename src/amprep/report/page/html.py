@@ -1,0 +1,78 @@
+"""The report for people: `job.report.html`, one file that opens offline, with a 3D view of each build."""
+
+import hashlib
+import json
+from base64 import b64encode
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from amprep.report.json_report import plain
+from amprep.report.page.tables import body_sections, header
+from amprep.report.page.view_model import view_model
+from amprep.report.record import RunRecord
+from amprep.threemf.package.write import replacing
+
+VIEWER = """\
+<section id="viewer" aria-label="3D view of the builds">
+<div id="stage">
+<canvas id="canvas" tabindex="0" title="Drag turns, scroll zooms, right drag moves, click names"></canvas>
+<div id="wait">Unpacking the geometry ...</div>
+<div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
+<div class="group" id="layers"></div></div>
+<div id="card" hidden></div>
+<div class="bar" id="bottom"><div class="group" id="views"></div>
+<div class="group">
+<label>Section <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
+<span id="section-value">off</span></div></div>
+</div>
+<div id="lists"></div>
+</section>
+"""
+
+
+def write_html(record: RunRecord, path: Path) -> None:
+    """Write the report as one HTML file without references to other files; it is whole or not there.
+
+    Every string that came from a file is escaped, and a content security policy allows no script but the
+    bundled one and no network at all.
+    """
+    with replacing(path) as temporary:
+        temporary.write_bytes(html_text(record).encode("utf-8", "replace"))
+
+
+def html_text(record: RunRecord) -> str:
+    """Return the whole page."""
+    script, style = _resource("viewer.bundle.js"), _resource("page.css")
+    model, geometry = view_model(record)
+    policy = (
+        f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(record.job)} - amprep report</title>\n<style>{style}</style>\n"
+        "</head>\n<body>\n<main>\n"
+        f"{header(record)}{VIEWER}{body_sections(record)}</main>\n"
+        f'<script type="application/json" id="model">{_json(model)}</script>\n'
+        f'<script type="text/plain" id="geometry">{geometry}</script>\n'
+        f"<script>{script}</script>\n</body>\n</html>\n"
+    )
+
+
+def _resource(name: str) -> str:
+    return files("amprep.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _digest(text: str) -> str:
+    """Return the hash by which the policy admits an inline script or style."""
+    return "sha256-" + b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
+
+
+def _json(model: dict[str, Any]) -> str:
+    """Return JSON that no string inside can end the element with."""
+    text = json.dumps(plain(model), separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

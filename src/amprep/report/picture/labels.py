@@ -1,0 +1,54 @@
+"""Words on a picture: what the build is, and a ruler in millimetres along the plate."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.measures.density import build_height
+from amprep.model import Build
+from amprep.report.picture.camera import Camera
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+INK, SOFT = (38, 46, 58), (112, 121, 134)
+
+
+def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
+    """Return the picture with its title and ruler; the camera is made for twice its size."""
+    from PIL import ImageDraw, ImageFont
+
+    draw = ImageDraw.Draw(image)
+    unit = image.width / 1600
+    draw.text((36 * unit, 28 * unit), build.settings.build_id, INK, ImageFont.load_default(30 * unit))
+    draw.text((36 * unit, 68 * unit), _subtitle(build), SOFT, ImageFont.load_default(20 * unit))
+    _ruler(draw, build.settings.space.size, camera, unit)
+    return image
+
+
+def _subtitle(build: Build) -> str:
+    x, y, z = build.settings.space.size.tolist()
+    box = f"{x:g} x {y:g} x {z:g} mm" if build.settings.space.shape == "box" else f"⌀ {x:g} x {z:g} mm"
+    words = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
+    count = sum(not region.minor for region in build.unsupported)
+    if count:
+        words.append(f"{count} region{'s' if count > 1 else ''} unsupported (red)")
+    return "   ·   ".join(word for word in words if word)
+
+
+def _ruler(draw: "ImageDraw", plate: Floats, camera: Camera, unit: float) -> None:
+    """Draw ticks each 10 mm and numbers each 50 mm along the two edges nearest to the viewer."""
+    from PIL import ImageFont
+
+    font = ImageFont.load_default(17 * unit)
+    for axis, side in ((0, 0.0), (1, float(plate[0]))):
+        outward = np.array([0.0, -1.0, 0.0]) if axis == 0 else np.array([1.0, 0.0, 0.0])
+        for mark in range(0, int(plate[axis]) + 1, 10):
+            at = np.array([mark, side, 0.0]) if axis == 0 else np.array([side, mark, 0.0])
+            length = 4.0 if mark % 50 == 0 else 2.0
+            here, there, beyond = camera.project(np.array([at, at + length * outward, at + 9.0 * outward]))
+            draw.line([*(here[:2] / 2), *(there[:2] / 2)], SOFT, max(1, round(1.5 * unit)))
+            if mark % 50 == 0:
+                draw.text(tuple(beyond[:2] / 2), str(mark), SOFT, font, anchor="mm")

@@ -1,0 +1,1 @@
+"""From overhangs to support bodies."""

@@ -1,0 +1,1 @@
+"""The voxel grid of a build and its red squares."""

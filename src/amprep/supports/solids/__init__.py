@@ -1,0 +1,1 @@
+"""Closed support bodies from routed edges."""

@@ -1,0 +1,191 @@
+"""From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+from amprep.arrays import CONTACT_TOLERANCE
+from amprep.cells.instances import Emitted, sort_out
+from amprep.errors import JobError
+from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
+from amprep.model.contacts import Base, Connector
+from amprep.supports.layout import SupportLayout
+from amprep.supports.solids.bases import make_bases, with_base
+from amprep.supports.solids.beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
+from amprep.supports.solids.connectors import Ways, find_ways, foot_boxes
+from amprep.supports.solids.drain_holes import drained
+from amprep.supports.solids.keep_out import Clearance, Obstacles
+from amprep.supports.solids.request import Emit, checked, make_request
+from amprep.supports.solids.unite_group import sheet_of, solid_of
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+DIRECT = Base()
+"""Supports stand on the plate as they are."""
+
+
+def build_supports(
+    layout: SupportLayout,
+    parts: tuple[PlacedPart, ...],
+    emit: Emit,
+    *,
+    overlap: float,
+    connector: Connector,
+    base: Base = DIRECT,
+    allow_surface: bool,
+    stop: Stop,
+    report: Report,
+    beams: bool | None = None,
+    gap: float = 0.0,
+    space: BuildVolume | None = None,
+) -> tuple[SupportBody, ...]:
+    """Turn a layout into supports: one closed solid per support group, or its walls without thickness.
+
+    Cells replace the edges (thesis 3.5); connectors run straight up from the red squares, exactly to the faces,
+    knife edges and tips they hold and `overlap` mm into them, never past another face.
+
+    Parameters
+    ----------
+    emit
+        Asks the chosen lattice cell.
+    overlap
+        mm; less than `amprep.model.CONTACT_TOLERANCE` counts as that.
+    connector
+        Its kind and measures; walls without thickness always extend.
+    base
+        What supports stand on at the plate.
+    allow_surface
+        Whether the target reads walls without thickness.
+    stop
+        Only asked between groups; what is not finished by then is left out.
+    beams
+        Whether struts become beams: None as the cell's parameters say, False never.
+    gap
+        mm that supports keep from walls of parts, sideways; walls without thickness only keep to white cubes.
+    space
+        What cuts beams off; without it all supports are meshes.
+
+    Raises
+    ------
+    PluginError
+        When the cell's answer does not fit the request.
+    JobError
+        When the cell cannot be made in this grid.
+    """
+    if not len(layout.red) or not layout.connected.any():
+        return ()
+    report(0.0, "emitting cells")
+    meshes = tuple(part.mesh for part in parts)
+
+    def ask(*, extend: bool, beams: bool | None) -> Emitted:
+        request = make_request(
+            layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=extend, beams=beams
+        )
+        return sort_out(request, checked(request, emit(request)))
+
+    emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
+    if emitted.sheet.any():
+        _require_no_feet(layout, base)
+    clearance = Clearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
+    ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts, clearance)
+    work = _Work(layout, parts, ways, obstacles, overlap, connector, gap)
+    solids, names = [], []
+    for group, held in enumerate(layout.group_parts):
+        if stop.cancelled.is_set():
+            break
+        names.append(", ".join(parts[part].label for part in held))
+        report(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
+        solids.append(work.drained_solid(group, emitted))
+    bodies: list[SupportBody] = []
+    bases = make_bases(solids, parts, base, space, gap)
+    for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
+        held = layout.group_parts[group]
+        whole = with_base(solid, stand)
+        sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
+        if whole is not None and len(whole.triangles):
+            lattice = None
+            if bare is not None and space is not None:
+                lattice = work.lattice(group, bare, whole, stand, space)
+            bodies.append(SupportBody(f"supports of {name}", whole, held, lattice=lattice))
+        if sheet is not None and len(sheet.triangles):
+            bodies.append(
+                SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
+            )
+    report(1.0, "supports finished")
+    return tuple(bodies)
+
+
+def _ask(ask: Callable[..., Emitted], *, extend: bool, beams: bool | None) -> tuple[Emitted, Emitted | None]:
+    """Return what the cell made without beams, and with beams if it makes any; walls run up to the part."""
+    emitted, bare = ask(extend=extend, beams=beams), None
+    if emitted.cells.beams is not None and len(emitted.cells.beams.struts):
+        if extend:
+            raise JobError(
+                "beams end at connectors that are solids: set cells.connector = 'full', 'teeth' or 'point', "
+                "or cells.lattice = 'mesh'"
+            )
+        bare, beams = emitted, False
+        emitted = ask(extend=False, beams=False)
+    if not extend and any(template.surface for template in emitted.cells.templates):
+        emitted = ask(extend=True, beams=beams)
+    return emitted, bare
+
+
+def _require_no_feet(layout: SupportLayout, base: Base) -> None:
+    """Refuse what walls without thickness cannot have."""
+    if len(layout.feet):
+        raise JobError(
+            "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
+        )
+    if base.kind != "direct":
+        raise JobError(
+            f"cells.base = {base.kind!r} needs a cell with thickness: walls without any have no feet to widen"
+        )
+
+
+class _Work(NamedTuple):
+    """What every support group is made from."""
+
+    layout: SupportLayout
+    parts: tuple[PlacedPart, ...]
+    ways: Ways
+    obstacles: Obstacles
+    overlap: float
+    connector: Connector
+    gap: float
+
+    def solid(self, group: int, emitted: Emitted, *, on_beams: bool = False) -> Mesh | None:
+        """Return the solid of a group, or with `on_beams` what of it beams carry."""
+        return solid_of(
+            group,
+            emitted,
+            self.layout,
+            self.ways,
+            self.obstacles,
+            overlap=self.overlap,
+            connector=self.connector,
+            on_beams=on_beams,
+        )
+
+    def drained_solid(self, group: int, emitted: Emitted) -> Mesh | None:
+        """Return the solid of a group, with ways out for powder where the cell promises them."""
+        solid, hole = self.solid(group, emitted), emitted.cells.hole
+        if solid is None or hole == 0.0:
+            return solid
+        held = [self.parts[part].mesh for part in self.layout.group_parts[group]]
+        return drained(
+            solid, held, hole, foot_boxes(self.layout, group, max(self.overlap, CONTACT_TOLERANCE))
+        )
+
+    def lattice(
+        self, group: int, bare: Emitted, whole: Mesh, stand: "Manifold | None", space: BuildVolume
+    ) -> Lattice | None:
+        """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
+        overlap, held = max(self.overlap, CONTACT_TOLERANCE), self.layout.group_parts[group]
+        mine = of_group(bare.cells, group)
+        beams = keep_out(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
+        coarse = None
+        if len(whole.triangles) > MOST_STOOD_IN:
+            coarse = with_base(self.solid(group, sort_out(bare.request, prisms(bare.request))), stand)
+        solids = with_base(self.solid(group, bare, on_beams=True), stand)
+        return lattice_of(beams, solids, whole, coarse, foot_boxes(self.layout, group, overlap), space)

@@ -1,0 +1,167 @@
+"""The cells, seats and connectors of one support group, united to one solid, or put together as sheets."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.cells.instances import Emitted, arrays, ends, on_red, squares, trunks
+from amprep.geometry.cells.tiling import Arrays, expand
+from amprep.geometry.connectors.columns import connect
+from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
+from amprep.geometry.merging.union import FILE_STEP, finish, union
+from amprep.geometry.meshes.repair import as_manifold
+from amprep.model import Mesh
+from amprep.model.contacts import Connector
+from amprep.supports.layout import SupportLayout
+from amprep.supports.solids.connectors import Ways, foot_boxes, make_feet
+from amprep.supports.solids.keep_out import Obstacles, standing_only
+from amprep.supports.solids.tips import Shaped, may_sink, shaped
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+SEAT = 0.2
+"""mm; connectors begin this far below their red square, inside what stands there (at most a quarter step)."""
+
+
+def solid_of(
+    group: int,
+    emitted: Emitted,
+    layout: SupportLayout,
+    ways: Ways,
+    obstacles: Obstacles,
+    *,
+    overlap: float,
+    connector: Connector,
+    on_beams: bool = False,
+) -> Mesh | None:
+    """Return the closed solid of a support group: cells, seats and connectors; None when it has none.
+
+    With `on_beams` what hangs in the air stays: beams may carry it.
+    """
+    mine, extend = emitted.of(group) & ~emitted.sheet, connector.kind == "extend"
+    if emitted.sheet.any() and not mine.any() and not on_beams:
+        solids = _extras(emitted, group)
+        return Mesh(*finish(solids)) if solids else None
+    red = layout.connected & (layout.red_group == group)
+    seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
+    sink = may_sink(layout, connector, most=SEAT if on_beams else np.inf)  # beams carry by their ends
+    connectors = _connectors(red, np.maximum(seat / 2, sink), layout, ways, overlap)
+    ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
+    if extend:
+        lids = [as_manifold(*mesh) for mesh in ends(emitted, mine & emitted.connector, seat, layout)]
+        ups = [union(ups) ^ union(lids)] if ups and lids else []
+    notch = union([])
+    if ups:
+        up = obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
+        contact = obstacles.contact(up, layout.group_parts[group]) if connector.is_shaped else None
+        if contact is not None:
+            up, notch = _shaped(up, contact, red, seat / 2, sink, ways, connector, overlap)
+        ups = [up]
+    ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
+    seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
+    stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
+    cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(emitted, group)]
+    cells = cells if notch.is_empty() else [union(cells) - notch]
+    solids = obstacles.trim(cells + ups)
+    if on_beams:
+        return Mesh(*finish(solids)) if solids else None
+    boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
+    return Mesh(*standing_only(*finish(solids), boxes)) if solids else None
+
+
+def _feet(layout: SupportLayout, group: int, obstacles: Obstacles, overlap: float) -> list["Manifold"]:
+    """Return the feet of a group that stands on parts, none where it does not."""
+    feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=min(SEAT, layout.frame.step / 4))
+    if not feet:
+        return []
+    stood = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
+    return [obstacles.carve(stood, layout.group_parts[group], overlap, down=True)]
+
+
+def _connectors(red: Bools, below: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
+    """Return connectors over red squares; they begin so many mm below them."""
+    held = ways.held.chosen(red[ways.held.owner[:, 0]])
+    base = ways.columns.lo[:, 2] - below
+    lid = ways.columns.hi[:, 2] + layout.frame.step
+    overlap = max(overlap, CONTACT_TOLERANCE)
+    return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
+
+
+def _shaped(
+    up: "Manifold",
+    contact: Floats,
+    red: Bools,
+    below: Floats,
+    sink: Floats,
+    ways: Ways,
+    connector: Connector,
+    overlap: float,
+) -> Shaped:
+    """Return connectors of the kind asked for, where that is another than whole squares."""
+    columns = ways.columns
+    columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
+    base = columns.lo[:, 2] - below[red]
+    return shaped(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
+
+
+def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
+    extras = [extra for extra in emitted.cells.extra if extra.group == group and not extra.surface]
+    return [as_manifold(*arrays(extra.mesh)) for extra in extras]
+
+
+def _stands_on_full_square(emitted: Emitted, layout: SupportLayout) -> Bools:
+    """Which red squares have a cell below them whose top is the whole square."""
+    whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in emitted.templates], np.bool_)
+    edge = emitted.cells.edge[emitted.tiles & whole[emitted.cells.template]]
+    request = emitted.request
+    full = squares(layout, request.plane[edge], request.y[edge], request.x[edge])
+    return np.isin(squares(layout, *layout.red.T), full)
+
+
+def _top_area(points: Floats, triangles: Ints) -> float:
+    """Area of a template's top, as a share of the square."""
+    corners = points[triangles[(points[triangles, 2] > 1.0 - 1e-9).all(axis=1)]]
+    sides = corners[:, 1:] - corners[:, :1]
+    return float(np.cross(sides[:, 0], sides[:, 1])[:, 2].sum() / 2)
+
+
+def sheet_of(
+    group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float
+) -> Mesh | None:
+    """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
+    mine = emitted.of(group) & emitted.sheet
+    cells, request = emitted.cells, emitted.request
+    sheets = [arrays(extra.mesh) for extra in cells.extra if extra.group == group and extra.surface]
+    trunk = mine & ~emitted.connector
+    if trunk.any():
+        sheets.append(
+            expand(emitted.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2]
+        )
+    red = np.flatnonzero(layout.connected & (layout.red_group == group))
+    tops = np.flatnonzero(mine & emitted.connector & on_red(emitted, layout, layout.connected))
+    columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]
+    square = squares(layout, *layout.red[red].T)
+    order = np.argsort(square, kind="stable")
+    for index in tops:
+        edge = cells.edge[index]
+        number = squares(layout, request.plane[edge : edge + 1] - 1, request.y[edge], request.x[edge])
+        plan = plan_segments(*emitted.templates[cells.template[index]])
+        matrix = cells.matrix[index]
+        begin, end = (int(np.searchsorted(square[order], number, side=side)[0]) for side in ("left", "right"))
+        for column in red[order[begin:end]]:
+            columns.append(np.full(len(plan), column))
+            segments.append(plan @ matrix[:2, :2].T + matrix[:2, 3])
+    if len(columns) > 1:
+        sheets.append(
+            raise_sheets(
+                ways.columns,
+                np.concatenate(columns),
+                np.concatenate(segments),
+                ways.held,
+                ways.surface,
+                overlap=max(overlap, CONTACT_TOLERANCE),
+            )
+        )
+    return Mesh(*join_sheets(sheets)) if sheets else None
