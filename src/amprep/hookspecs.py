@@ -24,7 +24,7 @@ import pluggy
 from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import CellRequest, Cells
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan, SupportProblem
@@ -74,7 +74,13 @@ class Pack(Protocol):
     """Places items; every item ends in exactly one build or in `unplaced`."""
 
     def __call__(
-        self, problem: PackingProblem, *, params: Any, rng: np.random.Generator, stop: Stop, report: Report
+        self,
+        problem: PackingProblem,
+        *,
+        params: Any,
+        rng: np.random.Generator,
+        stop: Stop,
+        progress: Progress,
     ) -> Packing: ...
 
 
@@ -82,14 +88,20 @@ class RouteSupports(Protocol):
     """Routes every red square that has a way to the plate; lists the others with a reason."""
 
     def __call__(
-        self, problem: SupportProblem, *, params: Any, rng: np.random.Generator, stop: Stop, report: Report
+        self,
+        problem: SupportProblem,
+        *,
+        params: Any,
+        rng: np.random.Generator,
+        stop: Stop,
+        progress: Progress,
     ) -> SupportPlan: ...
 
 
 class EmitCells(Protocol):
     """Replaces edges by geometry."""
 
-    def __call__(self, request: CellRequest, *, params: Any, stop: Stop, report: Report) -> Cells: ...
+    def __call__(self, request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells: ...
 
 
 @dataclass(frozen=True)

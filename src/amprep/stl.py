@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from amprep.files import replacing
 from amprep.model.mesh import Mesh
-from amprep.threemf.package.write import replacing
 
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER = b"amprep, binary STL, mm".ljust(80)

@@ -37,3 +37,7 @@ def require(holds: bool, rule: str, value: object) -> None:
     """Raise `ValueError` with the rule and the value that breaks it."""
     if not holds:
         raise ValueError(f"{rule}, got {value}")
+
+
+LARGEST_COUNT = 1_000_000
+"""Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""

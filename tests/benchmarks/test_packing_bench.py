@@ -42,7 +42,7 @@ def problem(sizes, side, **rules):
 
 def pack(task):
     rng = np.random.default_rng(0)
-    return pack_extreme_points(task, params=ExtremePointsParams(), rng=rng, stop=Stop(), report=silent)
+    return pack_extreme_points(task, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent)
 
 
 @pytest.mark.parametrize("kind", sorted(SIDE))

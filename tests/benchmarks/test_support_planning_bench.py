@@ -8,7 +8,8 @@ import time
 import numpy as np
 import trimesh
 
-from amprep.geometry.voxels.voxelise import Grid, met_cubes
+from amprep.geometry.voxels.grid import Grid
+from amprep.geometry.voxels.voxelise import met_voxels
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
 from amprep.model import Stop
@@ -25,7 +26,7 @@ def test_45_meshes_of_5120_triangles_on_a_1_mm_grid_within_4_seconds():
         for place in places:
             vertices = ball.vertices * (1, 1, 2) + place
             window = grid.window(vertices.min(axis=0), vertices.max(axis=0))
-            met += met_cubes(window, vertices, ball.faces).sum()
+            met += met_voxels(window, vertices, ball.faces).sum()
         seconds = time.perf_counter() - begun
     assert met > 45 * ball.volume * 2 * 0.99
     assert seconds < 4.0

@@ -7,7 +7,8 @@ from amprep.bench.routing.run import run_scene
 from amprep.bench.routing.scenes import SIDES, scene
 from amprep.checks.supports.plan import check_plan
 from amprep.geometry.overhangs.find import find_overhangs
-from amprep.geometry.voxels.voxelise import Grid, holding_cubes, met_cubes
+from amprep.geometry.voxels.grid import Grid
+from amprep.geometry.voxels.voxelise import holding_voxels, met_voxels
 from amprep.host import Host
 from amprep.model.control import Stop, silent
 
@@ -18,7 +19,7 @@ def route(router, task, **table):
     host = Host.load()
     listed, rng = host.choose("router", router), np.random.default_rng(1)
     params = host.params(listed, table)
-    return host.call(listed, task, params=params, rng=rng, stop=Stop(), report=silent)
+    return host.call(listed, task, params=params, rng=rng, stop=Stop(), progress=silent)
 
 
 @pytest.mark.parametrize("size", ["A", "C", "D", "E"])
@@ -64,7 +65,7 @@ def test_voxelise_a_bumpy_ball_of_200000_triangles(benchmark):
 
     def run():
         found = find_overhangs(vertices, triangles, angle_deg=45)
-        return met_cubes(window, vertices, triangles), holding_cubes(window, vertices, triangles, found)
+        return met_voxels(window, vertices, triangles), holding_voxels(window, vertices, triangles, found)
 
     black, _ = benchmark.pedantic(run, rounds=2, warmup_rounds=1)
     assert black.sum() == pytest.approx(4 / 3 * np.pi * 40**3, rel=0.08)

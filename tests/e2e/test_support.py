@@ -222,7 +222,7 @@ def test_a_lack_of_room_is_answered_by_the_advice_of_a_finer_grid(amprep, tmp_pa
     outcome = amprep("run", tmp_path / "slabs.stl", "--json", "--dry-run", "--set", "supports.pitch_mm=2")
     assert outcome.code == 1
     (region,) = outcome.json["builds"][0]["supports"]["unsupported"]
-    assert region["reason"] == "no white cube below"
+    assert region["reason"] == "no free voxel below"
     assert any("--set supports.pitch_mm=1" in words for words in outcome.json["warnings"])
 
 

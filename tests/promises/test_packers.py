@@ -77,7 +77,7 @@ def run(packer, problem, stop=None):
     listed = HOST.choose("packer", packer)
     rng = np.random.default_rng(1)
     return HOST.call(
-        listed, problem, params=HOST.params(listed, {}), rng=rng, stop=stop or Stop(), report=silent
+        listed, problem, params=HOST.params(listed, {}), rng=rng, stop=stop or Stop(), progress=silent
     )
 
 

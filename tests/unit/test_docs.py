@@ -8,13 +8,11 @@ import pytest
 
 from amprep.host import KINDS
 from amprep.job.loading import KEYS
-from amprep.job.settings.job import (
-    CellSettings,
-    PackingSettings,
-    PartSettings,
-    ReadingSettings,
-    SupportSettings,
-)
+from amprep.job.settings.cells import CellSettings
+from amprep.job.settings.job import ReadingSettings
+from amprep.job.settings.packing import PackingSettings
+from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.supports import SupportSettings
 from amprep.printers.catalogue import Profile
 
 ROOT = Path(__file__).parents[2]

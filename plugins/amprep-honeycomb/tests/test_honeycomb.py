@@ -9,7 +9,7 @@ import pytest
 from amprep.cells import read_cell
 from amprep.cells.emission import emit_declared
 from amprep.host import Host
-from amprep.model import CellRequest, GridFrame
+from amprep.model import CellRequest, Grid
 from amprep.pipeline.check_cell import check_cell
 from amprep.pipeline.choose_cell import cell_named
 from amprep.testing.conformance import try_offer
@@ -72,7 +72,7 @@ def mesh_of(path):
 
 def test_pins_grow_with_the_load():
     cell = read_cell(FOLDER / "honeycomb-frame.toml", mesh_of).cell
-    frame = GridFrame(np.zeros(3), 2.0, 2.0, (4, 9, 9))
+    frame = Grid(np.zeros(3), 2.0, 2.0, (4, 9, 9))
     zero = np.zeros(3, np.int32)
     request = CellRequest(frame, zero + 1, zero + 1, [1, 3, 5], zero, zero, [1, 6, 40], zero)
     cells = emit_declared(cell, request)

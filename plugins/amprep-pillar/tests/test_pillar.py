@@ -5,10 +5,10 @@ import pytest
 
 from amprep.errors import JobError
 from amprep.host import Host
-from amprep.model import CellRequest, GridFrame, Stop, silent
+from amprep.model import CellRequest, Grid, Stop, silent
 from amprep.testing.conformance import try_plugin
 
-FRAME = GridFrame(np.array([10.0, 20, 0]), pitch=2.0, step=3.0, shape=(4, 4, 4))
+FRAME = Grid(np.array([10.0, 20, 0]), pitch=2.0, step=3.0, shape=(4, 4, 4))
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def emitted(host, table, direction=(0, 1)):
     columns = {name: np.ones(count) for name in ("plane", "y", "x", "load")}
     request = CellRequest(FRAME, **columns, direction=direction, role=np.zeros(count), group=np.zeros(count))
     listed = host.choose("cell", "pillar")
-    return host.call(listed, request, params=host.params(listed, table), stop=Stop(), report=silent)
+    return host.call(listed, request, params=host.params(listed, table), stop=Stop(), progress=silent)
 
 
 def test_every_promise_holds_on_the_sample_problems():

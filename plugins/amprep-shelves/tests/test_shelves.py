@@ -24,7 +24,9 @@ def packed(host, sizes, values=None, order="height", **rules):
     problem = PackingProblem(items, rules.pop("space", HUNDRED), **rules)
     host.refuse_mismatch(listed, problem)
     params = host.params(listed, {"order": order})
-    return host.call(listed, problem, params=params, rng=np.random.default_rng(0), stop=Stop(), report=silent)
+    return host.call(
+        listed, problem, params=params, rng=np.random.default_rng(0), stop=Stop(), progress=silent
+    )
 
 
 def corners(build):

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from amprep.arrays import Floats, Ints
+from amprep.arrays import Floats, Ints, MeshArrays
 from amprep.bench.routing.run import peak_mb
-from amprep.geometry.cells.tiling import Arrays
 from amprep.geometry.merging.merge_cells import join_cells
 from amprep.geometry.merging.voxel_contents import Pieces
 from amprep.geometry.meshes.manifold import as_manifold
@@ -120,7 +119,7 @@ def random_layout(cells: int, oblique: float, seed: int) -> Layout:
     return Layout(square.astype(np.int64), shift.astype(np.int64))
 
 
-def barrel(sides: int = 6, rings: int = 17) -> Arrays:
+def barrel(sides: int = 6, rings: int = 17) -> MeshArrays:
     """Return a post with a belly in the unit cube: 200 triangles as it is."""
     height = np.linspace(0.0, 1.0, rings)
     radius = 0.2 + 0.08 * np.sin(np.pi * height) ** 2
@@ -162,7 +161,7 @@ def run_merging(cells: int, sample: int, *, oblique: float = 0.12, seed: int = 0
     )  # fmt: skip
 
 
-def _merged(cell: Arrays, layout: Layout) -> tuple[float, tuple[Floats, Ints]]:
+def _merged(cell: MeshArrays, layout: Layout) -> tuple[float, tuple[Floats, Ints]]:
     start = time.perf_counter()
     template = np.zeros(len(layout.square), np.int64)
     mesh = join_cells(Pieces([cell]), template, layout.square, layout.shift, np.zeros(3), SIZE)
@@ -171,7 +170,7 @@ def _merged(cell: Arrays, layout: Layout) -> tuple[float, tuple[Floats, Ints]]:
     return time.perf_counter() - start, mesh
 
 
-def _united(cell: Arrays, layout: Layout) -> tuple[float, "Manifold"]:
+def _united(cell: MeshArrays, layout: Layout) -> tuple[float, "Manifold"]:
     from manifold3d import Manifold, OpType
 
     points, triangles = cell

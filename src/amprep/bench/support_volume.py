@@ -16,22 +16,22 @@ from amprep.arrays import Bools, Bytes
 from amprep.host import Host
 from amprep.model import (
     BuildVolume,
-    Cube,
     Mesh,
     Part,
     PlacedPart,
-    Report,
+    Progress,
     Stop,
     SupportPlan,
     SupportProblem,
+    Voxel,
     silent,
 )
 from amprep.model.contacts import Connector
 from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.stl import write_stl
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.plan import Route, Wishes, plan_supports
 from amprep.supports.solids.build import build_supports
-from amprep.threemf import write_stl
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -142,10 +142,10 @@ def compare(
     )
 
 
-def straight_columns(problem: SupportProblem, stop: Stop, report: Report) -> SupportPlan:  # noqa: ARG001
+def straight_columns(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:  # noqa: ARG001
     """Route every red square straight down; each must have white cubes all the way."""
     top = int(problem.red[:, 0].max(initial=0))
-    flow = np.zeros((top + 1, *problem.cubes.shape[1:]), np.int32)
+    flow = np.zeros((top + 1, *problem.voxels.shape[1:]), np.int32)
     for plane, y, x in problem.red.tolist():
         flow[1 : plane + 1, y, x] += 1
     plane, y, x = (each.astype(np.int32) for each in flow.nonzero())
@@ -155,7 +155,7 @@ def straight_columns(problem: SupportProblem, stop: Stop, report: Report) -> Sup
 
 def free_below(cubes: Bytes, red: RedSquares) -> Bools:
     """Tell which red squares have white cubes all the way down."""
-    blocked = np.cumsum(cubes != Cube.WHITE, axis=0)
+    blocked = np.cumsum(cubes != Voxel.FREE, axis=0)
     plane, y, x = red.square.T
     return np.asarray((plane > 0) & (blocked[np.maximum(plane, 1) - 1, y, x] == 0))
 
@@ -164,9 +164,9 @@ def _router(host: Host, name: str) -> Route:
     router = host.choose("router", name)
     params = host.params(router, {})
 
-    def route(problem: SupportProblem, stop: Stop, report: Report) -> SupportPlan:
+    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
         rng = np.random.default_rng(0)
-        return host.call(router, problem, params=params, rng=rng, stop=stop, report=report)
+        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
 
     return route
 
@@ -185,17 +185,17 @@ def _volume(
         route=route,
         only=free_below,
         stop=stop,
-        report=silent,
+        progress=silent,
     )
     bodies = build_supports(
         layout,
         (part,),
-        lambda request: host.call(emitter, request, params=params, stop=stop, report=silent),
+        lambda request: host.call(emitter, request, params=params, stop=stop, progress=silent),
         overlap=0.1,
         connector=Connector(),
         allow_surface=False,
         stop=stop,
-        report=silent,
+        progress=silent,
     )
     return sum(abs(body.mesh.signed_volume) for body in bodies), int(layout.connected.sum())
 

@@ -5,15 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Ints
-from amprep.geometry.cells.tiling import Arrays, Tiles, expand, fills_unit_cube, tile
+from amprep.arrays import Bools, Ints, MeshArrays
+from amprep.geometry.cells.tiling import Tiles, expand, fills_unit_cube, tile
 from amprep.geometry.merging.merge_cells import join_cells
 from amprep.geometry.merging.prisms import join_prisms
 from amprep.geometry.merging.union import is_solid
 from amprep.geometry.merging.voxel_contents import Pieces
 from amprep.geometry.meshes.welding import kept
-from amprep.model import DIRECTIONS, CellRequest, Cells, GridFrame, Mesh, Role, Template
-from amprep.supports.layout import SupportLayout
+from amprep.model import DIRECTIONS, CellRequest, Cells, Grid, Mesh, Role, Template
 
 
 class Emitted(NamedTuple):
@@ -35,7 +34,7 @@ class Emitted(NamedTuple):
 
     request: CellRequest
     cells: Cells
-    templates: tuple[Arrays, ...]
+    templates: tuple[MeshArrays, ...]
     tiles: Bools
     sheet: Bools
     connector: Bools
@@ -67,12 +66,14 @@ def _is_tile(template: Template) -> bool:
     )
 
 
-def arrays(mesh: Mesh) -> Arrays:
+def arrays(mesh: Mesh) -> MeshArrays:
     """Return vertices and triangles as the geometry layer wants them."""
     return mesh.vertices, mesh.triangles.astype(np.int64)
 
 
-def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0) -> Iterator[Arrays]:
+def trunks(
+    emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: float = 0.0
+) -> Iterator[MeshArrays]:
     """Yield closed meshes of the chosen instances: one of all that tile, one for each other.
 
     Parameters
@@ -108,8 +109,8 @@ def trunks(emitted: Emitted, chosen: Bools, seats: Ints | None = None, seat: flo
 
 
 def _by_direction(
-    pieces: Pieces, template: Ints, square: Ints, shift: Ints, frame: GridFrame
-) -> Iterator[Arrays]:
+    pieces: Pieces, template: Ints, square: Ints, shift: Ints, frame: Grid
+) -> Iterator[MeshArrays]:
     """Yield closed meshes of cells that do not join on arrays: one or two a direction."""
     size = np.array([frame.pitch, frame.pitch, frame.step])
     for each in np.unique(shift, axis=0):
@@ -121,37 +122,3 @@ def _by_direction(
         # a run of cells of one direction is a column of tiles, sheared with them
         place = square[own] + np.outer(square[own, 2], (*each, 0))
         yield from tile(pieces.templates, Tiles(template[own], place, matrix))
-
-
-def ends(emitted: Emitted, chosen: Bools, seat: Floats, layout: SupportLayout) -> Iterator[Arrays]:
-    """Yield closed meshes of cells that run on above red squares, and of one more below each."""
-    yield from trunks(emitted, chosen)
-    lowest = np.flatnonzero(chosen & on_red(emitted, layout, seat > 0.0))
-    cells, request = emitted.cells, emitted.request
-    edge = cells.edge[lowest]
-    square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 2]).astype(np.int64)
-    square, first = np.unique(square, axis=0, return_index=True)
-    template = cells.template[lowest][first].astype(np.int64)
-    yield from tile(emitted.templates, _upright(template, square, request.frame))
-
-
-def _upright(template: Ints, cube: Ints, frame: GridFrame) -> Tiles:
-    """Return templates upright in the cubes ``(n, 3)`` x, y, layer."""
-    size = np.array([frame.pitch, frame.pitch, frame.step])
-    matrix = np.zeros((len(cube), 3, 4))
-    matrix[:, [0, 1, 2], [0, 1, 2]] = size
-    matrix[:, :, 3] = frame.origin + cube * size
-    return Tiles(template, cube, matrix)
-
-
-def squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
-    """Return the numbers of grid squares."""
-    _, ny, nx = layout.frame.shape
-    return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
-
-
-def on_red(emitted: Emitted, layout: SupportLayout, chosen: Bools) -> Bools:
-    """Which instances stand on one of the chosen red squares."""
-    request, edge = emitted.request, emitted.cells.edge
-    lower = squares(layout, request.plane - 1, request.y, request.x)[edge]
-    return np.isin(lower, squares(layout, *layout.red[chosen].T))

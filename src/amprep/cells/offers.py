@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from amprep.hookspecs import CellEmitter, NoParams
-from amprep.model import CellRequest, Cells, DeclaredCell, GraphCell, Report, Shape, Stop
+from amprep.model import CellRequest, Cells, DeclaredCell, GraphCell, Progress, Shape, Stop
 
 Declare = Callable[[float, float, Any], "Shape | DeclaredCell"]
 """Makes the cell for a grid, given pitch and step in mm and the checked parameters."""
@@ -49,7 +49,7 @@ def cell_offer(
     declare, usual = _declaration(cell)
     wanted = params or usual
 
-    def emit(request: CellRequest, *, params: Any, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
+    def emit(request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
         from amprep.cells.emission import emit_declared
 
         made = declare(request.frame.pitch, request.frame.step, params)

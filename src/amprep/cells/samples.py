@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from amprep.model import DIRECTIONS, CellRequest, GridFrame, Role
+from amprep.model import DIRECTIONS, CellRequest, Grid, Role
 
 LAYERS = 6
 """Layers of a column, and of a block: every second or third layer differs in it at least twice."""
@@ -15,7 +15,7 @@ def single_column(pitch: float, step: float, direction: int) -> CellRequest:
     dy, dx = DIRECTIONS[direction]
     plane = np.arange(2, LAYERS + 2)
     side = LAYERS + 4
-    frame = GridFrame(np.zeros(3), pitch, step, (LAYERS + 2, 2 * side, 2 * side))
+    frame = Grid(np.zeros(3), pitch, step, (LAYERS + 2, 2 * side, 2 * side))
     return _request(frame, plane, side - dy * plane, side - dx * plane, direction, Role.TRUNK)
 
 
@@ -26,13 +26,13 @@ def block(
     dy, dx = DIRECTIONS[direction]
     plane, y, x = np.array(list(product(range(1, layers + 1), range(width), range(width)))).T
     start = layers + 1
-    frame = GridFrame(np.zeros(3), pitch, step, (layers + 1, width + 2 * start, width + 2 * start))
+    frame = Grid(np.zeros(3), pitch, step, (layers + 1, width + 2 * start, width + 2 * start))
     role = np.where(plane == 1, Role.FOOT, Role.TRUNK)
     return _request(frame, plane, start + y - dy * plane, start + x - dx * plane, direction, role)
 
 
 def _request(
-    frame: GridFrame, plane: np.ndarray, y: np.ndarray, x: np.ndarray, direction: int, role: np.ndarray | int
+    frame: Grid, plane: np.ndarray, y: np.ndarray, x: np.ndarray, direction: int, role: np.ndarray | int
 ) -> CellRequest:
     zero = np.zeros(len(plane), np.int32)
     flags = np.zeros(len(plane), np.uint8)

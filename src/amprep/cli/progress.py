@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from amprep.model.control import Report
+from amprep.model.control import Progress
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -37,7 +37,7 @@ class Bars:
         self._progress.stop()
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[Report]:
+    def stage(self, name: str) -> Iterator[Progress]:
         """Show one stage; entered again, it goes on with the same bar."""
         from rich.markup import escape
         from rich.progress import TaskID
@@ -46,9 +46,9 @@ class Bars:
             self._tasks[name] = self._progress.add_task(name, total=1.0, words="")
         task = TaskID(self._tasks[name])
 
-        def report(share: float, words: str) -> None:
+        def progress(share: float, words: str) -> None:
             self._progress.update(task, completed=min(max(share, 0.0), 1.0), words=escape(words))
 
-        report(0.0, "")
-        yield report
-        report(1.0, "")
+        progress(0.0, "")
+        yield progress
+        progress(1.0, "")

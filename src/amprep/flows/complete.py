@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Int32s
 from amprep.flows.escalation import escalate
 from amprep.flows.maximum_flow import push
 from amprep.flows.network import Task, no_flows, plan_of, reasons_of, task_of
 from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import Ints
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 
 
 def complete(
-    problem: SupportProblem, edges: Ints, connected: Bools, *, stop: Stop, report: Report
+    problem: SupportProblem, edges: Int32s, connected: Bools, *, stop: Stop, progress: Progress
 ) -> SupportPlan:
     """Connect as many red squares as the capacities allow, or all when these may be raised.
 
@@ -30,14 +29,14 @@ def complete(
     task = task_of(problem)
     carried = _carried(task, edges)
     task = task._replace(room=_room(task, carried))
-    connected, stop_reason = push(task, carried, connected, stop=stop, report=report)
+    connected, stop_reason = push(task, carried, connected, stop=stop, progress=progress)
     if stop_reason == "finished":
-        task, connected, stop_reason = escalate(task, carried, connected, stop=stop, report=report)
+        task, connected, stop_reason = escalate(task, carried, connected, stop=stop, progress=progress)
     reasons = reasons_of(connected, task.open, stop_reason)
     return plan_of(problem, task.network, carried, reasons, stop_reason=stop_reason)
 
 
-def _carried(task: Task, edges: Ints) -> Carried:
+def _carried(task: Task, edges: Int32s) -> Carried:
     """Return the edges' flow as the kernels see it."""
     network = task.network
     plane, y, x, direction, flow = edges[:, :5].astype(np.int64).T

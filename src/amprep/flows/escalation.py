@@ -4,13 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Bytes, Int32s
 from amprep.flows.maximum_flow import push
 from amprep.flows.minimum_cut import Extender
 from amprep.flows.network import Task
 from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import Bytes, Ints
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 
 
 class Cut(NamedTuple):
@@ -24,12 +23,12 @@ class Cut(NamedTuple):
         ``(k,)`` the edges that are full, as numbers into `Room.edge`.
     """
 
-    squares: Ints
-    edges: Ints
+    squares: Int32s
+    edges: Int32s
 
 
 def escalate(
-    task: Task, carried: Carried, connected: Bools, *, stop: Stop, report: Report
+    task: Task, carried: Carried, connected: Bools, *, stop: Stop, progress: Progress
 ) -> tuple[Task, Bools, str]:
     """Connect the rest of the open red squares as `problem.escalation` says; return task, connected, reason.
 
@@ -52,7 +51,7 @@ def escalate(
         served, reached = extender.extend(task.room, task.start[left])
         connected = connected.copy()
         connected[left[served]] = True
-        report(1.0 - left.size / count, "raising capacities")
+        progress(1.0 - left.size / count, "raising capacities")
         if served.any():
             continue
         cut = _minimum_cut(task, np.sort(reached), extender.marks)
@@ -60,13 +59,13 @@ def escalate(
             _raise_smallest(task.room, cut, left.size)
             continue
         task = task._replace(room=_raised_all(task, cut, left.size))
-        connected, stop_reason = push(task, carried, connected, stop=stop, report=report)
+        connected, stop_reason = push(task, carried, connected, stop=stop, progress=progress)
         if stop_reason != "finished":
             return task, connected, stop_reason
     return task, connected, "finished"
 
 
-def _minimum_cut(task: Task, reached: Ints, marks: Bytes) -> Cut:
+def _minimum_cut(task: Task, reached: Int32s, marks: Bytes) -> Cut:
     """Return the arcs that lead out of the states `reached`; `marks` is a work array, 0 afterwards."""
     network = task.network
     marks[reached] = 1

@@ -4,10 +4,10 @@ from functools import cached_property
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Bytes, Int32s, Int64s
 from amprep.kernels.flow.minimum_cut import extend
 from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import Bytes, Ints, Longs, Network
+from amprep.kernels.flow.shortest_paths import Network
 
 
 class Extender:
@@ -19,11 +19,11 @@ class Extender:
         ``(stride,)`` how many more paths may end at each square of the plate.
     """
 
-    def __init__(self, network: Network, carried: Carried, ground: Ints) -> None:
+    def __init__(self, network: Network, carried: Carried, ground: Int32s) -> None:
         self.network, self.carried, self.ground = network, carried, ground
 
     @cached_property
-    def _work(self) -> tuple[Bytes, Ints, Bytes, Ints]:
+    def _work(self) -> tuple[Bytes, Int32s, Bytes, Int32s]:
         states = 2 * self.network.via.size
         stack, reached = np.empty(states, np.int32), np.empty(states, np.int32)
         return np.zeros(states, np.uint8), stack, np.empty(states, np.uint8), reached
@@ -33,7 +33,7 @@ class Extender:
         """A work array over all states, to be left at 0."""
         return self._work[0]
 
-    def extend(self, room: Room, starts: Longs) -> tuple[Bools, Ints]:
+    def extend(self, room: Room, starts: Int64s) -> tuple[Bools, Int32s]:
         """Send units from squares ``(n,)``; return which were served, and what can be reached when none was."""
         served = np.zeros(starts.size, np.uint8)
         count = extend(self.network, self.carried, room, self.ground, starts, served, *self._work)

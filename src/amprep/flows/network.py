@@ -6,30 +6,30 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Int32s, Int64s
 from amprep.errors import JobError
 from amprep.kernels.flow.residual import UNREACHED, Carried, Flowing, Room, measure
-from amprep.kernels.flow.shortest_paths import FAR, UNBOUNDED, Flows, Ints, Limits, Longs, Network
+from amprep.kernels.flow.shortest_paths import FAR, UNBOUNDED, Flows, Limits, Network
 from amprep.model.supports import (
     CAPACITY,
     DIRECTIONS,
     ENCLOSED,
     OUT_OF_TIME,
-    Cube,
     Status,
     SupportPlan,
     SupportProblem,
     Unconnected,
+    Voxel,
 )
 
 
-def network_of(problem: SupportProblem) -> tuple[Network, Longs]:
+def network_of(problem: SupportProblem) -> tuple[Network, Int64s]:
     """Return the network up to the highest red square, and the number of each red square in it."""
     _, ny, nx = problem.frame.shape
     width, stride = nx + 2, (nx + 2) * (ny + 2)
     top = int(problem.red[:, 0].max(initial=0))
     white = np.zeros((top + 1, ny + 2, width), np.uint8)
-    white[:top, 1:-1, 1:-1] = problem.cubes[:top] == Cube.WHITE
+    white[:top, 1:-1, 1:-1] = problem.voxels[:top] == Voxel.FREE
     via = white.copy()
     via[1:] &= white[:-1]
     offset = np.array([dy * width + dx for dy, dx in DIRECTIONS], np.int64)
@@ -38,7 +38,7 @@ def network_of(problem: SupportProblem) -> tuple[Network, Longs]:
     return Network(via.reshape(-1), offset, _boxes(problem, top), stride, width), start
 
 
-def _boxes(problem: SupportProblem, top: int) -> Longs:
+def _boxes(problem: SupportProblem, top: int) -> Int64s:
     """Return in each plane the rectangle that paths can reach, one square wider with every plane down."""
     _, ny, nx = problem.frame.shape
     box = np.full((top + 1, 4), (ny + 1, 0, nx + 1, 0), np.int64)
@@ -110,7 +110,7 @@ def plan_of(
     )
 
 
-def _raised(problem: SupportProblem, flow: Ints, through: Flowing) -> int:
+def _raised(problem: SupportProblem, flow: Int32s, through: Flowing) -> int:
     """Return by how much flow exceeds the capacities asked for, at most."""
     edge = int(flow.max(initial=0)) - problem.edge_capacity if problem.edge_capacity else 0
     node = int(through.max(initial=0)) - problem.node_capacity if problem.node_capacity else 0
@@ -134,8 +134,8 @@ class Task(NamedTuple):
 
     problem: SupportProblem
     network: Network
-    start: Longs
-    distance: Ints
+    start: Int64s
+    distance: Int32s
     open: Bools
     room: Room
 

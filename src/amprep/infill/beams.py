@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import arrays
 from amprep.errors import JobError
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.supports.beams import near_surface, sample
 from amprep.model import Beams, CellRequest, Lattice, Mesh
-from amprep.supports.solids.beams import MOST_STOOD_IN
-from amprep.supports.solids.request import Emit, checked
+from amprep.model.build import MOST_STOOD_IN
 
 
 def beams_of(request: CellRequest, emit: Emit) -> Beams | None:

@@ -6,8 +6,9 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.errors import JobError
-from amprep.geometry.voxels.voxelise import Grid, met_cubes
-from amprep.model import CellRequest, GridFrame, Mesh, Role
+from amprep.geometry.voxels.grid import Grid
+from amprep.geometry.voxels.voxelise import met_voxels
+from amprep.model import CellRequest, Mesh, Role
 
 MOST_CELLS = 500_000
 MOST_CUBES = 50_000_000
@@ -58,7 +59,7 @@ def block_over(region: Mesh, *, size: float, height: float, overlap: float, part
     shape = tuple(
         int(each.max(initial=0) - low + 1) for each, low in zip((layer, y, x), first[::-1], strict=True)
     )
-    frame = GridFrame(origin + first * cell, size, height, (shape[0], shape[1], shape[2]))
+    frame = Grid(origin + first * cell, size, height, (shape[0], shape[1], shape[2]))
     zero, flags = np.zeros(len(x), np.int32), np.zeros(len(x), np.uint8)
     return CellRequest(
         frame,
@@ -95,5 +96,5 @@ def _near(region: Mesh, grid: Grid, reach: float) -> np.ndarray:
     window = grid.window(*region.bounds, margin=reach + grid.pitch)
     met = np.zeros(grid.shape, np.bool_)
     for way in product((-reach, reach), repeat=3):
-        met[window.slices] |= met_cubes(window, region.vertices + np.array(way), region.triangles)
+        met[window.slices] |= met_voxels(window, region.vertices + np.array(way), region.triangles)
     return met

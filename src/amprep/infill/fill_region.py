@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import arrays, sort_out, trunks
 from amprep.errors import JobError, MeshError
 from amprep.geometry.merging.union import arrays_of, evaluated, finish, union
@@ -13,8 +14,7 @@ from amprep.geometry.meshes.islands import CRUMB, drop_islands, handles_of
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.infill.beams import beams_of, lattice_of
 from amprep.infill.block import block_over
-from amprep.model import CellRequest, Lattice, Mesh, Report, silent
-from amprep.supports.solids.request import Emit, checked
+from amprep.model import CellRequest, Lattice, Mesh, Progress, silent
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -69,7 +69,7 @@ def fill_region(
     height: float | None = None,
     overlap: float = 0.1,
     beams: bool | None = False,
-    report: Report = silent,
+    progress: Progress = silent,
 ) -> Filled:
     """Replace the part's material in the regions by cells: (part - regions) + (part ^ regions ^ cells).
 
@@ -96,19 +96,19 @@ def fill_region(
     PluginError
         When the cell's answer does not fit the request.
     """
-    report(0.0, "cutting the region out")
+    progress(0.0, "cutting the region out")
     solid, hole = _solid(part, "the part"), union([_solid(each, "a region") for each in regions])
     filled = evaluated(solid ^ hole)
     if filled.volume() <= CRUMB:
         raise JobError("the region lies outside the part: nothing of it can be filled with cells")
     region = Mesh(*arrays_of(filled))
     request = block_over(region, size=size, height=height or size, overlap=overlap, part=part)
-    report(0.1, f"emitting {len(request.plane)} cells")
+    progress(0.1, f"emitting {len(request.plane)} cells")
     bare = None if beams is False else beams_of(replace(request, beams=beams), emit)
     cells, count = _welded(request, emit)
-    report(0.4, "trimming the cells")
+    progress(0.4, "trimming the cells")
     points, triangles = finish([evaluated(solid - evaluated(hole - cells))])
-    report(0.8, "looking for loose pieces")
+    progress(0.8, "looking for loose pieces")
     parted = drop_islands(points, triangles, arrays_of(hole), arrays(part))
     mesh, islands = Mesh(*parted.kept), Mesh(*parted.islands)
     loose = abs(islands.signed_volume) if len(islands.triangles) else 0.0

@@ -3,15 +3,11 @@
 from amprep.job.loading import job_from_inputs, load_job, make_job
 from amprep.job.overrides import apply_sets, override
 from amprep.job.parts import apply_part_settings, names_part
-from amprep.job.settings.job import (
-    CellSettings,
-    InputSpec,
-    Job,
-    PackingSettings,
-    PartSettings,
-    ReadingSettings,
-    SupportSettings,
-)
+from amprep.job.settings.cells import CellSettings
+from amprep.job.settings.job import InputSpec, Job, ReadingSettings
+from amprep.job.settings.packing import PackingSettings
+from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.supports import SupportSettings
 from amprep.printers.catalogue import Printer, find_printer, list_printers
 
 __all__ = [

@@ -6,15 +6,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from amprep.errors import JobError, nearest_hint
-from amprep.job.settings.job import (
-    CellSettings,
-    InputSpec,
-    Job,
-    PackingSettings,
-    PartSettings,
-    ReadingSettings,
-    SupportSettings,
-)
+from amprep.job.settings.cells import CellSettings
+from amprep.job.settings.job import InputSpec, Job, ReadingSettings
+from amprep.job.settings.packing import PackingSettings
+from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.supports import SupportSettings
 from amprep.model.build import Target
 from amprep.printers.catalogue import DEFAULT_PRINTER, Printer, find_printer, printer_from_table
 from amprep.typed import convert, make

@@ -8,7 +8,8 @@ import numpy as np
 
 from amprep.arrays import Floats, frozen
 from amprep.errors import JobError, nearest_hint
-from amprep.job.settings.job import Job, PartSettings
+from amprep.job.settings.job import Job
+from amprep.job.settings.parts import PartSettings
 from amprep.model.part import Part
 
 

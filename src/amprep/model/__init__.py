@@ -1,6 +1,7 @@
 """Frozen records that flow between the stages. Millimetres and radians; arrays are read-only."""
 
 from amprep.arrays import CONTACT_TOLERANCE
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.build import (
     TARGETS,
@@ -15,11 +16,11 @@ from amprep.model.build import (
 from amprep.model.build_volume import BuildVolume
 from amprep.model.cell_shapes import DeclaredCell, GraphCell, ImplicitCell, MeshCell, Shape, Variant, When
 from amprep.model.cells import Beams, CellRequest, Cells, ExtraMesh, Role, Template
-from amprep.model.control import Report, Stop, silent
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.mesh import Mesh
 from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
-from amprep.model.supports import DIRECTIONS, Cube, GridFrame, SupportPlan, SupportProblem, Unconnected
+from amprep.model.supports import DIRECTIONS, SupportPlan, SupportProblem, Unconnected, Voxel
 
 __all__ = [
     "CONTACT_TOLERANCE",
@@ -35,11 +36,10 @@ __all__ = [
     "CellRequest",
     "Cells",
     "ConvexPieces",
-    "Cube",
     "DeclaredCell",
     "ExtraMesh",
     "GraphCell",
-    "GridFrame",
+    "Grid",
     "ImplicitCell",
     "Item",
     "Lattice",
@@ -53,8 +53,8 @@ __all__ = [
     "Part",
     "PlacedPart",
     "Placement",
+    "Progress",
     "Region",
-    "Report",
     "Role",
     "Shape",
     "Solid",
@@ -68,6 +68,7 @@ __all__ = [
     "Unplaced",
     "Unsupported",
     "Variant",
+    "Voxel",
     "When",
     "silent",
 ]

@@ -182,3 +182,7 @@ class Build:
     parts: tuple[PlacedPart, ...]
     supports: tuple[SupportBody, ...] = ()
     unsupported: tuple[Unsupported, ...] = ()
+
+
+MOST_STOOD_IN = 100_000
+"""Triangles of a body that its file shows to readers that know no beams; larger ones get a coarser mesh."""

@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from amprep.arrays import Bytes, Floats, Ints, frozen
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
-from amprep.model.supports import DIRECTIONS, GridFrame
+from amprep.model.supports import DIRECTIONS
 
 
 class Role(IntEnum):
@@ -46,7 +47,7 @@ class CellRequest:
         True: struts as beams where the cell can; False: no beams; None: as the cell's parameters say.
     """
 
-    frame: GridFrame
+    frame: Grid
     plane: Ints
     y: Ints
     x: Ints

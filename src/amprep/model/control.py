@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from threading import Event
 
-Report = Callable[[float, str], None]
+Progress = Callable[[float, str], None]
 """Called with the share done in [0, 1] and a few words; must be cheap."""
 
 

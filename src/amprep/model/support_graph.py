@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.model.supports import DIRECTIONS, Cube, SupportProblem
+from amprep.model.supports import DIRECTIONS, SupportProblem, Voxel
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -37,8 +37,8 @@ def support_graph(problem: SupportProblem, *, raised: int = 0) -> SupportGraph:
     Arcs lead from the source to every red square, through squares, down edges, and from green squares to the
     sink. Takes about 250 bytes a square.
     """
-    nz, ny, nx = problem.cubes.shape
-    white, plenty = problem.cubes == Cube.WHITE, len(problem.red) + 1
+    nz, ny, nx = problem.voxels.shape
+    white, plenty = problem.voxels == Voxel.FREE, len(problem.red) + 1
     number = np.arange((nz + 1) * ny * nx, dtype=np.int32).reshape(nz + 1, ny, nx)
     source, sink = 2 * number.size, 2 * number.size + 1
     edge = problem.edge_capacity + raised if problem.edge_capacity else plenty
@@ -69,7 +69,7 @@ def to_networkx(problem: SupportProblem) -> "nx.DiGraph":
     import networkx as nx
 
     graph = support_graph(problem)
-    _, height, width = problem.cubes.shape
+    _, height, width = problem.voxels.shape
     names = {graph.source: "source", graph.sink: "sink"}
 
     def name(node: int) -> object:

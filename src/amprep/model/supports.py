@@ -6,8 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.arrays import Bools, Bytes, Floats, Ints, frozen
+from amprep.arrays import Bools, Bytes, Ints, frozen
 from amprep.errors import JobError
+from amprep.geometry.voxels.grid import Grid
 
 Status = Literal["optimal", "feasible", "infeasible"]
 
@@ -15,7 +16,7 @@ Escalation = Literal["none", "cut", "uniform"]
 """What gives way when capacities leave out red squares that have a way to the plate: nothing; the smallest
 capacities of a minimum cut, by one at a time, vertical edges first; or all capacities alike (thesis 3.3)."""
 
-NO_WHITE_BELOW = "no white cube below"
+NO_FREE_VOXEL_BELOW = "no free voxel below"
 ENCLOSED = "enclosed"
 CAPACITY = "capacity"
 CONNECTOR_BLOCKED = "connector blocked"
@@ -26,11 +27,11 @@ LARGEST_COST = 10_000
 """Bound on the integer cost of an edge: sums over a path stay far inside 32 bits."""
 
 
-class Cube(IntEnum):
-    """State of a grid cube: white may carry supports."""
+class Voxel(IntEnum):
+    """State of a grid voxel: white may carry supports."""
 
-    WHITE = 0
-    BLACK = 1
+    FREE = 0
+    OCCUPIED = 1
     CLOSED = 2
 
 
@@ -39,45 +40,22 @@ DIRECTIONS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
 
 
 @dataclass(frozen=True, eq=False)
-class GridFrame:
-    """Where the grid lies. Cube (k, y, x) spans ``origin + (x, y, k) * (pitch, pitch, step)``, one size up.
-
-    Plane p is at height ``origin[2] + p * step``; square (p, y, x) is the bottom of cube (p, y, x).
-
-    Attributes
-    ----------
-    origin
-        ``(3,)`` mm; its z is 0, the plate.
-    shape
-        Numbers of cubes ``(nz, ny, nx)``.
-    """
-
-    origin: Floats
-    pitch: float
-    step: float
-    shape: tuple[int, int, int]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "origin", frozen(self.origin, np.float64))
-
-
-@dataclass(frozen=True, eq=False)
 class SupportProblem:
-    """Connect red squares to green ones over white cubes, downwards, at most one square sideways a layer.
+    """Connect red squares to green ones over free voxels, downwards, at most one square sideways a layer.
 
-    An edge leads from square (p, y, x) to (p - 1, y + dy, x + dx) and exists when the cubes
+    An edge leads from square (p, y, x) to (p - 1, y + dy, x + dx) and exists when the voxels
     (p - 1, y, x) and (p - 1, y + dy, x + dx) are both white.
 
     Attributes
     ----------
-    cubes
-        ``(nz, ny, nx)`` uint8, values of `Cube`.
+    voxels
+        ``(nz, ny, nx)`` uint8, values of `Voxel`.
     red
-        ``(m, 3)`` int32 plane, y, x, distinct, each with plane >= 1; the cube below is white.
+        ``(m, 3)`` int32 plane, y, x, distinct, each with plane >= 1; the voxel below is white.
     red_part, red_region
         ``(m,)`` int32: which placed part, which of its overhang regions.
     green
-        ``(ny, nx)`` bool: plate squares under a white cube.
+        ``(ny, nx)`` bool: plate squares under a free voxel.
     edge_capacity, node_capacity
         Paths that may share an edge, a square; 0 means unbounded. A red square's own supply is 1.
     escalation
@@ -88,8 +66,8 @@ class SupportProblem:
         Material of a vertical and of an oblique edge in the chosen cell, mm3.
     """
 
-    frame: GridFrame
-    cubes: Bytes
+    frame: Grid
+    voxels: Bytes
     red: Ints
     red_part: Ints
     red_region: Ints
@@ -101,7 +79,7 @@ class SupportProblem:
     escalation: Escalation = "none"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
+        object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
         object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
         object.__setattr__(self, "red_part", frozen(self.red_part, np.int32))
         object.__setattr__(self, "red_region", frozen(self.red_region, np.int32))

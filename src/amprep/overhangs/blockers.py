@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Ints
+from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.subdivision import refine
-from amprep.geometry.overhangs.find import Longs, Marks
+from amprep.geometry.overhangs.find import Marks
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
 
@@ -40,9 +40,9 @@ class _Paint(NamedTuple):
     """Pieces ``(k, 3, 3)`` painted on triangles ``(k,)`` of the part, in build coordinates; sorted by triangle."""
 
     pieces: Floats
-    owner: Longs
+    owner: Int64s
 
-    def holds(self, points: Floats, parent: Longs) -> Bools:
+    def holds(self, points: Floats, parent: Int64s) -> Bools:
         """Tell which of the points ``(n, 3)`` on triangles `parent` are painted."""
         point, piece = _pairs(parent, self.owner)
         found = np.zeros(len(points), np.bool_)
@@ -57,7 +57,7 @@ class _Regions(NamedTuple):
     paints: tuple[_Paint, ...]
     wholes: tuple[Ints, ...]
 
-    def mark(self, mesh: Mesh, parent: Longs) -> Bools:
+    def mark(self, mesh: Mesh, parent: Int64s) -> Bools:
         """Tell which triangles are marked: by their centres, or by the triangles they are pieces of."""
         centres = mesh.vertices[mesh.triangles].mean(axis=1)
         found = self.hold(centres)
@@ -86,7 +86,7 @@ def mark(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> Marked:
     if not any((*blockers, *enforcers)):
         return Marked(mesh, None)
 
-    def wish(corners: Floats, parent: Longs) -> Bools:
+    def wish(corners: Floats, parent: Int64s) -> Bools:
         size = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
         large = np.flatnonzero((size > FINEST) & (_looks(corners) < 0.0))
         wanted = np.zeros(len(corners), np.bool_)
@@ -135,7 +135,7 @@ def _cut_by(volume: _Volume, corners: Floats, size: Floats) -> Bools:
     return np.asarray(wanted)
 
 
-def _painted_in_part(paint: _Paint, corners: Floats, parent: Longs) -> Bools:
+def _painted_in_part(paint: _Paint, corners: Floats, parent: Int64s) -> Bools:
     """Tell which triangles are painted here and bare there."""
     wanted = np.zeros(len(corners), np.bool_)
     near = np.flatnonzero(np.isin(parent, paint.owner))
@@ -163,7 +163,7 @@ def _samples(corners: Floats) -> Floats:
     return np.concatenate([centre, centre + _INWARDS * (rim - centre)], axis=1)
 
 
-def _pairs(parent: Longs, owner: Longs) -> tuple[Longs, Longs]:
+def _pairs(parent: Int64s, owner: Int64s) -> tuple[Int64s, Int64s]:
     """Return the pairs (index into `parent`, index into the sorted `owner`) of equal value."""
     first, last = np.searchsorted(owner, parent, side="left"), np.searchsorted(owner, parent, side="right")
     count = last - first

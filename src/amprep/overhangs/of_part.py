@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.geometry.overhangs.find import Overhangs, find_overhangs
+from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.overhangs.regions import Overhangs
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
 from amprep.overhangs.blockers import Marked, mark

@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
 from amprep.geometry.meshes.sampling import Samples
-from amprep.geometry.overhangs.find import OverhangRegion
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import BuildSettings, Unsupported
 
 ReasonsOf = Callable[[Floats], Sequence[str]]

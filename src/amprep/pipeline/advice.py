@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from amprep.job import Job
 from amprep.model import Build
-from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_WHITE_BELOW, OUT_OF_TIME
+from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_FREE_VOXEL_BELOW, OUT_OF_TIME
 from amprep.supports.grid.sizing import estimated_megabytes, usual_pitch
 
 
@@ -18,7 +18,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
             f"{wishes.memory_mb}"
         )
     counts = Counter(each.reason for each in build.unsupported if not each.minor)
-    narrow = counts[NO_WHITE_BELOW] + counts[CONNECTOR_BLOCKED]
+    narrow = counts[NO_FREE_VOXEL_BELOW] + counts[CONNECTOR_BLOCKED]
     if narrow:
         yield (
             f"{_regions(narrow)} unsupported for want of room below in a grid of {pitch:g} mm; a finer one may reach "

@@ -102,7 +102,7 @@ def check_cell(
     found: list[Violation] = []
     answers = {}
     for where, request in requests.items():
-        cells = host.call(listed, request, params=params, stop=Stop(), report=silent)
+        cells = host.call(listed, request, params=params, stop=Stop(), progress=silent)
         answers[where] = cells
         broken = check_cells(request, cells)
         found += broken

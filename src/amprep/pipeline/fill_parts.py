@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from amprep import __version__
+from amprep.cells.answers import Emit
 from amprep.cells.instances import arrays
 from amprep.checks.infill import check_filled
 from amprep.errors import JobError
@@ -16,15 +17,15 @@ from amprep.infill.fill_region import Filled, fill_region, meets
 from amprep.infill.regions import KIND, chosen, positions, with_files, without
 from amprep.job import Job
 from amprep.measures.filled_part import mass, pockets_of
-from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Region, Report, Stop
+from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Progress, Region, Stop
 from amprep.pipeline.choose_cell import choose_cell
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.report.cutaway import draw_cut
 from amprep.report.infill import FilledRecord, LatticeRecord, write_json
-from amprep.supports.solids.request import Emit
-from amprep.threemf import write_parts, write_stl
+from amprep.stl import write_stl
+from amprep.threemf import write_parts
 
 
 @dataclass(frozen=True)
@@ -95,21 +96,21 @@ def fill_lattice(
     clock = Clock(watcher)
     cell = choose_cell(host, job)
     params = host.params(cell, job.cells.params)
-    with clock.stage("read") as report:
-        parts = _read(job, host, options, report)
-    with clock.stage("regions") as report:
-        work = _regions(parts, options, report)
+    with clock.stage("read") as progress:
+        parts = _read(job, host, options, progress)
+    with clock.stage("regions") as progress:
+        work = _regions(parts, options, progress)
     marked = [region.mesh for each in work for region in each.regions if region.mesh]
     size = options.size or usual_size(marked)
     height = options.height or size
     done = []
     for each in work:
-        with clock.stage("fill") as report:
+        with clock.stage("fill") as progress:
 
-            def emit(request: CellRequest, report: Report = report) -> Cells:
-                return host.call(cell, request, params=params, stop=stop, report=report)
+            def emit(request: CellRequest, progress: Progress = progress) -> Cells:
+                return host.call(cell, request, params=params, stop=stop, progress=progress)
 
-            done.append(_filled(each, emit, job, size, height, report))
+            done.append(_filled(each, emit, job, size, height, progress))
     records = []
     for each in done:
         if each.filled is not None:
@@ -139,7 +140,7 @@ def _check(options: LatticeOptions) -> None:
         raise JobError("--shell fills the whole inside; give it without --region and --region-name")
 
 
-def _read(job: Job, host: Host, options: LatticeOptions, report: Report) -> list[Part]:
+def _read(job: Job, host: Host, options: LatticeOptions, progress: Progress) -> list[Part]:
     def read(path: Path) -> list[Part]:
         reader = host.reader_for(path, job.reading.readers)
         return host.call(
@@ -147,13 +148,13 @@ def _read(job: Job, host: Host, options: LatticeOptions, report: Report) -> list
         )
 
     files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
-    return with_files(read_all(files, read, report=report), options.regions, read)
+    return with_files(read_all(files, read, progress=progress), options.regions, read)
 
 
-def _regions(parts: Sequence[Part], options: LatticeOptions, report: Report) -> list[_Work]:
+def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress) -> list[_Work]:
     """Return every part with the regions that meet it."""
     if options.shell is not None:
-        return [_Work(part, _inside(part, options.shell, report)) for part in parts]
+        return [_Work(part, _inside(part, options.shell, progress)) for part in parts]
     work = []
     for part, regions in zip(parts, chosen(parts, options.names), strict=True):
         met = tuple(each for each in regions if each.mesh and meets(part.mesh, each.mesh))
@@ -163,8 +164,8 @@ def _regions(parts: Sequence[Part], options: LatticeOptions, report: Report) -> 
     return work
 
 
-def _inside(part: Part, shell: float, report: Report) -> tuple[Region, ...]:
-    report(0.1, f"looking for the inside of {part.name}")
+def _inside(part: Part, shell: float, progress: Progress) -> tuple[Region, ...]:
+    progress(0.1, f"looking for the inside of {part.name}")
     points, triangles = inset(*arrays(part.mesh), shell, shell / 2.0)
     if not len(triangles):
         raise JobError(
@@ -173,7 +174,7 @@ def _inside(part: Part, shell: float, report: Report) -> tuple[Region, ...]:
     return (Region(KIND, f"inside of {part.name}", mesh=Mesh(points, triangles)),)
 
 
-def _filled(each: _Work, emit: Emit, job: Job, size: float, height: float, report: Report) -> _Work:
+def _filled(each: _Work, emit: Emit, job: Job, size: float, height: float, progress: Progress) -> _Work:
     if not each.regions:
         return each
     filled = fill_region(
@@ -184,7 +185,7 @@ def _filled(each: _Work, emit: Emit, job: Job, size: float, height: float, repor
         height=height,
         overlap=job.cells.overlap_mm,
         beams=_beams(job),
-        report=report,
+        progress=progress,
     )
     return replace(each, filled=filled)
 

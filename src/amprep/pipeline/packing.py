@@ -17,7 +17,7 @@ from amprep.model import (
     Part,
     PlacedPart,
     Placement,
-    Report,
+    Progress,
 )
 
 
@@ -56,12 +56,12 @@ def _places(part: Part) -> Floats:
 
 
 def make_volumes(
-    parts: Sequence[Part], make: Callable[[Part], BoundingVolume], report: Report
+    parts: Sequence[Part], make: Callable[[Part], BoundingVolume], progress: Progress
 ) -> list[BoundingVolume]:
     """Return one bounding volume per part; copies share it."""
     volumes = []
     for index, part in enumerate(parts):
-        report(index / len(parts), part.name)
+        progress(index / len(parts), part.name)
         volumes.append(make(part))
     return volumes
 

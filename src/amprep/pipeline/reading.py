@@ -9,7 +9,7 @@ import numpy as np
 from amprep.errors import InputError, JobError, MeshError
 from amprep.geometry.meshes.repair import Settled, find_defect, settle
 from amprep.job import Job, PartSettings, names_part
-from amprep.model.control import Report, silent
+from amprep.model.control import Progress, silent
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region, RegionKind
 
@@ -35,7 +35,7 @@ def read_all(
     read: Callable[[Path], list[Part]],
     *,
     allow_surface: bool = False,
-    report: Report = silent,
+    progress: Progress = silent,
 ) -> list[Part]:
     """Read and settle the files in order; a count multiplies the quantity of each part of its file.
 
@@ -53,11 +53,11 @@ def read_all(
     """
     parts: list[Part] = []
     for done, (path, count) in enumerate(files):
-        report(done / len(files), path.name)
+        progress(done / len(files), path.name)
         for part in read(path):
             settled = settle_part(part, allow_surface=allow_surface)
             parts.append(replace(settled, quantity=settled.quantity * (count or 1)))
-    report(1.0, f"{len(parts)} parts")
+    progress(1.0, f"{len(parts)} parts")
     return with_unique_names(parts)
 
 

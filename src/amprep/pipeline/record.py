@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 
 from amprep import __version__
-from amprep.geometry.overhangs.find import OverhangRegion
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.host import Host
 from amprep.job import Job
 from amprep.measures.density import build_density, build_height, support_volume

@@ -8,7 +8,7 @@ import numpy as np
 from amprep.hookspecs import Packer
 from amprep.host import Host, Listed
 from amprep.job import Job, apply_part_settings
-from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Report, Stop
+from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Progress, Stop
 from amprep.pipeline.choose_cell import choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
@@ -56,12 +56,12 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
     """
     clock, limit = Clock(watcher), stop.within(options.time_limit)
     check_choices(job, host)
-    with clock.stage("read") as report:
-        parts = read_job(job, host, options.allow_surface, report)
-    with clock.stage("bound") as report:
-        volumes = make_volumes(parts, lambda part: _volume(job, host, part, limit), report)
-    with clock.stage("pack") as report:
-        problem, packing = _pack(job, host, parts, volumes, limit, report)
+    with clock.stage("read") as progress:
+        parts = read_job(job, host, options.allow_surface, progress)
+    with clock.stage("bound") as progress:
+        volumes = make_volumes(parts, lambda part: _volume(job, host, part, limit), progress)
+    with clock.stage("pack") as progress:
+        problem, packing = _pack(job, host, parts, volumes, limit, progress)
     placed = placed_builds(parts, problem, packing)
     with OutputFolder(options.folder, job.name) as outputs:
         supported = [
@@ -99,7 +99,7 @@ def check_choices(job: Job, host: Host) -> None:
         host.params(listed, params)
 
 
-def read_job(job: Job, host: Host, allow_surface: bool, report: Report) -> list[Part]:
+def read_job(job: Job, host: Host, allow_surface: bool, progress: Progress) -> list[Part]:
     """Read everything the job names, and apply what it says of single parts."""
     files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
 
@@ -109,7 +109,7 @@ def read_job(job: Job, host: Host, allow_surface: bool, report: Report) -> list[
             listed, path, params=host.params(listed, job.reading.params.get(listed.offer.name, {}))
         )
 
-    parts = read_all(files, read, allow_surface=allow_surface, report=report)
+    parts = read_all(files, read, allow_surface=allow_surface, progress=progress)
     return with_region_files(apply_part_settings(parts, job), job, read)
 
 
@@ -121,7 +121,7 @@ def _volume(job: Job, host: Host, part: Part, stop: Stop) -> BoundingVolume:
 
 
 def _pack(
-    job: Job, host: Host, parts: list[Part], volumes: list[BoundingVolume], stop: Stop, report: Report
+    job: Job, host: Host, parts: list[Part], volumes: list[BoundingVolume], stop: Stop, progress: Progress
 ) -> tuple[PackingProblem, Packing]:
     listed: Listed[Packer] = host.choose("packer", job.packing.strategy)
     problem = packing_problem(
@@ -140,6 +140,6 @@ def _pack(
         params=host.params(listed, job.packing.params),
         rng=np.random.default_rng(job.seed),
         stop=stop.within(job.packing.time_limit_s),
-        report=report,
+        progress=progress,
     )
     return problem, packing

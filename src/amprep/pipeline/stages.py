@@ -5,14 +5,14 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Protocol
 
-from amprep.model import Report, silent
+from amprep.model import Progress, silent
 from amprep.report.record import StageTime
 
 
 class Watcher(Protocol):
     """Shows a person what is going on; the command line draws bars, tests watch nothing."""
 
-    def stage(self, name: str) -> AbstractContextManager[Report]:
+    def stage(self, name: str) -> AbstractContextManager[Progress]:
         """Enter a stage; the yielded function takes the share done and a few words."""
         ...
 
@@ -21,7 +21,7 @@ class Unwatched:
     """A watcher that shows nothing."""
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[Report]:  # noqa: ARG002 - as a `Watcher` is called
+    def stage(self, name: str) -> Iterator[Progress]:  # noqa: ARG002 - as a `Watcher` is called
         """Yield a report nobody reads."""
         yield silent
 
@@ -34,12 +34,12 @@ class Clock:
         self._seconds: dict[str, float] = {}
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[Report]:
+    def stage(self, name: str) -> Iterator[Progress]:
         """Time and show one stage."""
         began = time.perf_counter()
         try:
-            with self._watcher.stage(name) as report:
-                yield report
+            with self._watcher.stage(name) as progress:
+                yield progress
         finally:
             self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - began
 

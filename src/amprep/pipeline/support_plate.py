@@ -49,8 +49,8 @@ def support(
     )
     clock, limit = Clock(watcher), stop.within(options.time_limit)
     check_choices(job, host)
-    with clock.stage("read") as report:
-        parts = [_once_each(part) for part in read_job(job, host, options.allow_surface, report)]
+    with clock.stage("read") as progress:
+        parts = [_once_each(part) for part in read_job(job, host, options.allow_surface, progress)]
     placed = placed_as_they_lie(parts, job.printer.space, center=center)
     name = f"{job.name}.supported"
     with OutputFolder(options.folder, name, numbered=False) as outputs:

@@ -12,7 +12,7 @@ from amprep.model import (
     Build,
     BuildSettings,
     PlacedPart,
-    Report,
+    Progress,
     Stop,
     SupportPlan,
     SupportProblem,
@@ -55,15 +55,15 @@ def support_build(
         parts, job.printer.space, wishes.strut_angle_deg, wishes.memory_mb
     )
     settings = build_settings(job, build_id, pitch)
-    with clock.stage("route") as report:
-        layout = _plan(job, host, parts, number, pitch, stop, report)
-    with clock.stage("cells") as report:
+    with clock.stage("route") as progress:
+        layout = _plan(job, host, parts, number, pitch, stop, progress)
+    with clock.stage("cells") as progress:
         emitter = choose_cell(host, job)
         bodies = build_supports(
             layout,
             parts,
             lambda request: host.call(
-                emitter, request, params=host.params(emitter, job.cells.params), stop=stop, report=report
+                emitter, request, params=host.params(emitter, job.cells.params), stop=stop, progress=progress
             ),
             overlap=settings.overlap,
             connector=job.cells.ending,
@@ -73,7 +73,7 @@ def support_build(
             gap=settings.gap,
             space=job.printer.space,
             stop=stop,
-            report=report,
+            progress=progress,
         )
     with clock.stage("judge"):
         unsupported = find_unsupported(parts, bodies, settings, layout.reason_at)
@@ -113,21 +113,27 @@ def _beams(job: Job) -> bool | None:
 
 
 def _plan(
-    job: Job, host: Host, parts: tuple[PlacedPart, ...], number: int, pitch: float, stop: Stop, report: Report
+    job: Job,
+    host: Host,
+    parts: tuple[PlacedPart, ...],
+    number: int,
+    pitch: float,
+    stop: Stop,
+    progress: Progress,
 ) -> SupportLayout:
     wishes, angle = job.supports, job.supports.strut_angle_deg
     router, emitter = host.choose("router", wishes.strategy), choose_cell(host, job)
     params, stop = host.params(router, wishes.params), stop.within(wishes.time_limit_s)
     rng = np.random.default_rng([job.seed, number])
 
-    def route(problem: SupportProblem, stop: Stop, report: Report) -> SupportPlan:
-        return host.call(router, problem, params=params, rng=rng, stop=stop, report=report)
+    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
+        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
 
     material = host.material(
         emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)
     )
     return plan_supports(
-        parts, job.printer.space, _wishes(job, pitch, material), route=route, stop=stop, report=report
+        parts, job.printer.space, _wishes(job, pitch, material), route=route, stop=stop, progress=progress
     )
 
 

@@ -10,7 +10,7 @@ from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
 from amprep.checks.supports.gap import check_gap
 from amprep.checks.violation import Violation
-from amprep.model import Build, Report, Stop, silent
+from amprep.model import Build, Progress, Stop, silent
 
 PROMISES = (
     "inside build volume",
@@ -30,7 +30,9 @@ PROMISES = (
 """The names of all promises, in the order they are judged."""
 
 
-def verify_build(build: Build, *, stop: Stop | None = None, report: Report = silent) -> tuple[Violation, ...]:
+def verify_build(
+    build: Build, *, stop: Stop | None = None, progress: Progress = silent
+) -> tuple[Violation, ...]:
     """Return every broken promise of `build`, parts first, then supports, then what is left unsupported."""
     stop = stop or Stop()
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
@@ -40,13 +42,15 @@ def verify_build(build: Build, *, stop: Stop | None = None, report: Report = sil
     )
     violations: list[Violation] = []
     for index, (name, judge) in enumerate(judges):
-        report(index / len(judges), name)
+        progress(index / len(judges), name)
         violations += judge()
-    report(1.0, "judged")
+    progress(1.0, "judged")
     return tuple(violations)
 
 
-def verify_file(path: Path, *, stop: Stop | None = None, report: Report = silent) -> tuple[Violation, ...]:
+def verify_file(
+    path: Path, *, stop: Stop | None = None, progress: Progress = silent
+) -> tuple[Violation, ...]:
     """Read a written build back and judge it from the file alone.
 
     Raises
@@ -56,4 +60,4 @@ def verify_file(path: Path, *, stop: Stop | None = None, report: Report = silent
     """
     from amprep.threemf import read_build
 
-    return verify_build(read_build(path), stop=stop, report=report)
+    return verify_build(read_build(path), stop=stop, progress=progress)

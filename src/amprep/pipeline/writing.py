@@ -26,9 +26,9 @@ def finish_build(
     if not dry_run:
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)
-    with clock.stage("verify") as report:
+    with clock.stage("verify") as progress:
         judged = build if dry_run else _read_back(number, outputs)
-        return replace(record, verification=verify_build(judged, stop=stop, report=report))
+        return replace(record, verification=verify_build(judged, stop=stop, progress=progress))
 
 
 def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:
@@ -37,10 +37,10 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
     from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture
 
-    with clock.stage("report") as report:
+    with clock.stage("report") as progress:
         builds = []
         for number, each in enumerate(record.builds, start=1):
-            report((number - 1) / (len(record.builds) + 1), f"picture {number}")
+            progress((number - 1) / (len(record.builds) + 1), f"picture {number}")
             name = outputs.of_build(number, "png")
             write_picture(each.build, outputs.path(name))
             builds.append(replace(each, picture=outputs.name(name)))
@@ -68,7 +68,7 @@ def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool)
 
 def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, ...]:
     """Parts and supports in build coordinates, for machine software that reads nothing else."""
-    from amprep.threemf import write_stl
+    from amprep.stl import write_stl
 
     meshes = [(placed.label, placed.mesh) for placed in build.parts]
     meshes += [(body.name, body.mesh) for body in build.supports]

@@ -39,7 +39,7 @@ def draw_cell(
     for request in (block(pitch, step, width=3, layers=3), block(pitch, step, width=1, direction=1)):
         lowest = request.plane <= request.plane.min() + 2
         chosen = _only(request, lowest)
-        shown.append(_expanded(host.call(listed, chosen, params=params, stop=Stop(), report=silent)))
+        shown.append(_expanded(host.call(listed, chosen, params=params, stop=Stop(), progress=silent)))
     first, second = shown
     (low, high), (aside, _) = first.bounds, second.bounds
     shift = np.eye(4)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from amprep.checks.violation import Violation
+from amprep.files import replacing
 from amprep.geometry.powder.pockets import Pocket
 from amprep.report.json_report import NUMBERS, plain
 from amprep.report.record import StageTime
-from amprep.threemf.package.write import replacing
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from amprep.files import replacing
 from amprep.geometry.powder.pockets import Pocket
 from amprep.measures.density import part_volume
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord
-from amprep.threemf.package.write import replacing
 
 FORMAT = 1
 """Version of the layout; grows when a key changes its meaning or goes."""

@@ -4,10 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from amprep.arrays import Bools, Bytes, Floats, Ints, frozen
-from amprep.geometry.overhangs.find import Longs, Overhangs
+from amprep.arrays import Bools, Bytes, Floats, Int64s, Ints, frozen
+from amprep.geometry.overhangs.regions import Overhangs
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
-from amprep.model.supports import CONNECTOR_BLOCKED, NO_WHITE_BELOW, GridFrame
+from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.routes.edges import components
 
@@ -18,8 +19,8 @@ class SupportLayout:
 
     Attributes
     ----------
-    cubes
-        ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Cube`.
+    voxels
+        ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Voxel`.
     meshes
         One per placed part, in build coordinates: its own, or split finer where blockers and enforcers end.
     overhangs
@@ -30,8 +31,8 @@ class SupportLayout:
     red_part, red_region
         ``(m,)`` int32: placed part; region of its overhangs (the one of least label in the square's column).
     red_rise
-        ``(m,)`` int32: black cubes from the red square upwards that its connector may pass, the
-        contiguous run of cubes of the column that hold needed geometry of the part.
+        ``(m,)`` int32: occupied voxels from the red square upwards that its connector may pass, the
+        contiguous run of voxels of the column that hold needed geometry of the part.
     connected
         ``(m,)`` bool.
     reasons
@@ -55,8 +56,8 @@ class SupportLayout:
         Which parts share supports, one sentence for each group of more than one part.
     """
 
-    frame: GridFrame
-    cubes: Bytes
+    frame: Grid
+    voxels: Bytes
     meshes: tuple[Mesh, ...]
     overhangs: tuple[Overhangs, ...]
     red: Ints
@@ -86,7 +87,7 @@ class SupportLayout:
             object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
         object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
         object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
-        object.__setattr__(self, "cubes", frozen(self.cubes, np.uint8))
+        object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
         object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
 
@@ -95,23 +96,23 @@ class SupportLayout:
 
         The red square that counts is the highest of the part in the point's column that is not above the
         point. When the point is within its rise it gives its reason or, connected, the connector does not get
-        there; otherwise no cube below the point is white.
+        there; otherwise no voxel below the point is white.
         """
         reds = np.flatnonzero(self.red_part == part)
         key = self._heights(self.red[reds])
         order = np.argsort(key)
         size = (self.frame.pitch, self.frame.pitch, self.frame.step)
-        cube = np.floor((points - self.frame.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
-        below = np.searchsorted(key[order], self._heights(cube), side="right") - 1
-        reasons = [NO_WHITE_BELOW] * len(points)
+        voxel = np.floor((points - self.frame.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
+        below = np.searchsorted(key[order], self._heights(voxel), side="right") - 1
+        reasons = [NO_FREE_VOXEL_BELOW] * len(points)
         for i in np.flatnonzero(below >= 0):
             red = reds[order[below[i]]]
-            within = cube[i, 0] <= self.red[red, 0] + self.red_rise[red]
-            if within and (self.red[red, 1:] == cube[i, 1:]).all():
+            within = voxel[i, 0] <= self.red[red, 0] + self.red_rise[red]
+            if within and (self.red[red, 1:] == voxel[i, 1:]).all():
                 reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]
         return tuple(reasons)
 
-    def _heights(self, square: Ints | Longs) -> Longs:
+    def _heights(self, square: Ints | Int64s) -> Int64s:
         """Return the place of squares ``(n, 3)`` in the order of columns, upwards in each."""
         nz, _, nx = self.frame.shape
         plane, y, x = square.T.astype(np.int64)

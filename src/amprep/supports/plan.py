@@ -6,15 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Bytes, Ints
-from amprep.geometry.overhangs.find import Overhangs
+from amprep.geometry.overhangs.regions import Overhangs
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.mesh import Mesh
-from amprep.model.supports import GridFrame
 from amprep.overhangs.of_part import needs_of
 from amprep.supports.grid.red_squares import RedSquares, close_gap, red_squares
-from amprep.supports.grid.sizing import PartCubes, choose_pitch, coloured, cubes_of, frame_of
+from amprep.supports.grid.sizing import choose_pitch, frame_of
+from amprep.supports.grid.voxel_states import PartVoxels, coloured, voxels_of
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.routes.bracing import join_columns
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
@@ -26,7 +27,7 @@ from amprep.supports.rules import Wishes
 __all__ = ["Route", "SupportLayout", "Wishes", "choose_pitch", "plan_supports"]
 
 Only = Callable[[Bytes, RedSquares], Bools]
-"""Tells from the cubes which red squares to connect."""
+"""Tells from the voxels which red squares to connect."""
 
 
 class _Needs(NamedTuple):
@@ -37,12 +38,12 @@ class _Needs(NamedTuple):
 
 
 class _Laid(NamedTuple):
-    """The grid: its cubes, how many parts meet each, the cubes of each part, and the red squares."""
+    """The grid: its voxels, how many parts meet each, the voxels of each part, and the red squares."""
 
-    frame: GridFrame
-    cubes: Bytes
+    frame: Grid
+    voxels: Bytes
     meeting: Bytes
-    blocks: tuple[PartCubes, ...]
+    blocks: tuple[PartVoxels, ...]
     red: RedSquares
 
 
@@ -63,7 +64,7 @@ def plan_supports(
     route: Route,
     only: Only | None = None,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportLayout:
     """Find what needs support, lay the grid, and route every red square to the plate (thesis 3.1 and 3.2).
 
@@ -84,11 +85,11 @@ def plan_supports(
         When the router returns a plan that breaks its promise.
     """
     needs = _find_needs(parts, wishes)
-    report(0.05, "overhangs found")
+    progress(0.05, "overhangs found")
     laid = _lay_grid(parts, needs, space, wishes, only)
-    report(0.15, "grid laid")
-    network = Network(laid.frame, laid.cubes, laid.red, wishes.rules, route, stop)
-    routed = _route(network, wishes, report)
+    progress(0.15, "grid laid")
+    network = Network(laid.frame, laid.voxels, laid.red, wishes.rules, route, stop)
+    routed = _route(network, wishes, progress)
     told = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
     standing = _joined(laid, _grounded(laid, routed, wishes), wishes)
     return _layout(parts, needs, laid, standing, routed.reasons, told)
@@ -110,27 +111,27 @@ def _find_needs(parts: Sequence[PlacedPart], wishes: Wishes) -> _Needs:
 def _lay_grid(
     parts: Sequence[PlacedPart], needs: _Needs, space: BuildVolume, wishes: Wishes, only: Only | None
 ) -> _Laid:
-    """Lay the grid, colour its cubes, find the red squares, and close what is too near to parts."""
+    """Lay the grid, colour its voxels, find the red squares, and close what is too near to parts."""
     angle, memory, gap = wishes.strut_angle_deg, wishes.memory_mb, wishes.gap
     pitch = wishes.pitch or choose_pitch(parts, space, angle, memory)
     frame = frame_of(*needs, space, pitch=pitch, strut_angle_deg=angle, memory_mb=memory)
     blocks = tuple(
-        cubes_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
+        voxels_of(mesh, own, frame, gap=gap, solid=placed.part.is_solid)
         for placed, mesh, own in zip(parts, *needs, strict=True)
     )
-    cubes, meeting = coloured(frame, space, blocks)
-    red = red_squares(cubes, meeting, blocks)
+    voxels, meeting = coloured(frame, space, blocks)
+    red = red_squares(voxels, meeting, blocks)
     if only is not None:
-        keep = only(cubes, red)
+        keep = only(voxels, red)
         red = RedSquares(*(each[keep] for each in red))
     if gap > 0:
-        close_gap(cubes, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=wishes.overhang_angle_deg)
-    return _Laid(frame, cubes, meeting, blocks, red)
+        close_gap(voxels, blocks, red, gap=gap, step=frame.step, overhang_angle_deg=wishes.overhang_angle_deg)
+    return _Laid(frame, voxels, meeting, blocks, red)
 
 
-def _route(network: Network, wishes: Wishes, report: Report) -> Routed:
+def _route(network: Network, wishes: Wishes, progress: Progress) -> Routed:
     def routing(share: float, words: str) -> None:
-        report(0.15 + 0.85 * share, words)
+        progress(0.15 + 0.85 * share, words)
 
     if wishes.share_between_parts == "avoid":
         return route_apart(network, routing)
@@ -141,7 +142,7 @@ def _grounded(laid: _Laid, routed: Routed, wishes: Wishes) -> _Standing:
     """Stand what found no way to the plate on the part it belongs to, where that is allowed."""
     connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
     left = ~connected & (wishes.grounding == "anywhere")
-    grounded = stand_on_parts(laid.cubes, laid.meeting, laid.blocks, laid.red, left, routed.edges)
+    grounded = stand_on_parts(laid.voxels, laid.meeting, laid.blocks, laid.red, left, routed.edges)
     edges = merge_edges(np.concatenate([routed.edges, grounded.edges]))
     notes = (f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows",)
     return _Standing(edges, grounded.feet, connected | grounded.served, notes if len(grounded.feet) else ())
@@ -151,7 +152,7 @@ def _joined(laid: _Laid, standing: _Standing, wishes: Wishes) -> _Standing:
     """Brace slender columns, when asked to."""
     if wishes.slender is None:
         return standing
-    joined = join_columns(laid.frame, laid.cubes, standing.edges, wishes.slender)
+    joined = join_columns(laid.frame, laid.voxels, standing.edges, wishes.slender)
     note = f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
     edges = merge_edges(np.concatenate([standing.edges, joined.edges]))
     return standing._replace(edges=edges, notes=(*standing.notes, note))
@@ -171,7 +172,7 @@ def _layout(
     shared = [", ".join(parts[part].label for part in group) for group in group_parts if len(group) > 1]
     return SupportLayout(
         frame=laid.frame,
-        cubes=laid.cubes,
+        voxels=laid.voxels,
         meshes=needs.meshes,
         overhangs=needs.overhangs,
         red=red.square,

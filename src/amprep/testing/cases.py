@@ -17,7 +17,7 @@ from amprep.host import Host, Listed
 from amprep.host.mismatch import fits, volume_word
 from amprep.model import PackingProblem, Part, Stop, SupportProblem, silent
 from amprep.pipeline.reading import settle_part
-from amprep.testing.conformance import SEED, Case
+from amprep.testing.case import SEED, Case
 from amprep.testing.problems import packing_problems, sample_parts, support_problems, written_samples
 
 
@@ -42,7 +42,7 @@ def runner(host: Host, listed: Listed[Any], argument: Any, keywords: str) -> Cal
     params = host.params(listed, {})
 
     def run(stop: Stop) -> Any:
-        given = {"params": params, "rng": np.random.default_rng(SEED), "stop": stop, "report": silent}
+        given = {"params": params, "rng": np.random.default_rng(SEED), "stop": stop, "progress": silent}
         return host.call(listed, argument, **{name: given[name] for name in keywords.split()})
 
     return run
@@ -54,7 +54,7 @@ def _packer_cases(host: Host, listed: Listed[Packer]) -> Iterator[Case]:
 
     for name, problem in packing_problems():
         if not fits(listed.offer.accepts, problem):
-            yield Case(name, runner(host, listed, problem, "params rng stop report"), judge(problem))
+            yield Case(name, runner(host, listed, problem, "params rng stop progress"), judge(problem))
 
 
 def _router_cases(host: Host, listed: Listed[SupportRouter]) -> Iterator[Case]:
@@ -62,7 +62,7 @@ def _router_cases(host: Host, listed: Listed[SupportRouter]) -> Iterator[Case]:
         return lambda plan: check_plan(problem, plan)
 
     for name, problem in support_problems():
-        yield Case(name, runner(host, listed, problem, "params rng stop report"), judge(problem))
+        yield Case(name, runner(host, listed, problem, "params rng stop progress"), judge(problem))
 
 
 def _volume_cases(host: Host, listed: Listed[VolumeMaker]) -> Iterator[Case]:

@@ -26,10 +26,10 @@ from amprep.model import (
     silent,
 )
 from amprep.model.contacts import Connector
-from amprep.model.control import Report
+from amprep.model.control import Progress
 from amprep.supports.plan import SupportLayout, Wishes, plan_supports
 from amprep.supports.solids.build import build_supports
-from amprep.testing.conformance import SEED, Case
+from amprep.testing.case import SEED, Case
 from amprep.testing.problems import box_mesh
 
 PITCH = 2.0
@@ -47,7 +47,7 @@ def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
 
 def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
     params = host.params(listed, {})
-    return lambda request, stop: host.call(listed, request, params=params, stop=stop, report=silent)
+    return lambda request, stop: host.call(listed, request, params=params, stop=stop, progress=silent)
 
 
 def _building(
@@ -71,7 +71,7 @@ def _building(
             connector=connector,
             allow_surface=True,
             stop=stop,
-            report=silent,
+            progress=silent,
         )
         return emitted, bodies
 
@@ -94,11 +94,11 @@ def _layout(host: Host, part: PlacedPart) -> SupportLayout:
     router = host.choose("router", "shortest-paths")
     params = host.params(router, {})
 
-    def route(problem: SupportProblem, stop: Stop, report: Report) -> SupportPlan:
+    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
         rng = np.random.default_rng(SEED)
-        return host.call(router, problem, params=params, rng=rng, stop=stop, report=report)
+        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
 
-    return plan_supports((part,), _SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), report=silent)
+    return plan_supports((part,), _SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), progress=silent)
 
 
 def _slab(side: float, height: float) -> PlacedPart:

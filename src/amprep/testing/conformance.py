@@ -1,6 +1,6 @@
 """Tries a plugin's offers on tiny problems and judges the promises, as `amprep plugins check` shows them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,8 +13,7 @@ from amprep.errors import AmprepError
 from amprep.hookspecs import Offer
 from amprep.host import KINDS, Host, Kind, Listed
 from amprep.model import Stop
-
-SEED = 20
+from amprep.testing.case import Case
 
 
 @dataclass(frozen=True)
@@ -39,26 +38,6 @@ class Trial:
     def passed(self) -> bool:
         """Whether every promise holds."""
         return not self.violations
-
-
-@dataclass(frozen=True)
-class Case:
-    """One tiny problem for one offer.
-
-    Attributes
-    ----------
-    run
-        Calls the offer, given when to stop, and returns its answer.
-    judge
-        Returns the promises that the answer breaks.
-    timed
-        Whether it is also run with no time left, which must not break a promise either.
-    """
-
-    problem: str
-    run: Callable[[Stop], Any]
-    judge: Callable[[Any], Sequence[Violation]]
-    timed: bool = True
 
 
 def try_plugin(package: str, *, samples: Sequence[Path] = ()) -> tuple[Trial, ...]:

@@ -12,8 +12,7 @@ from amprep.model import (
     Boxes,
     BuildVolume,
     ConvexPieces,
-    Cube,
-    GridFrame,
+    Grid,
     Item,
     Mesh,
     Orientations,
@@ -22,6 +21,7 @@ from amprep.model import (
     Placement,
     Solid,
     SupportProblem,
+    Voxel,
 )
 from amprep.model.rotations import axis_rotations
 
@@ -69,23 +69,23 @@ def packing_problems() -> Iterator[tuple[str, PackingProblem]]:
 
 
 def support_problems() -> Iterator[tuple[str, SupportProblem]]:
-    """Yield named support problems on a grid of 6 x 9 x 9 cubes: a plate in the air, an obstacle below it."""
-    cubes = np.full((6, 9, 9), Cube.WHITE)
-    cubes[5, 1:8, 1:8] = Cube.BLACK
-    cubes[2, 3:6, 3:6] = Cube.BLACK
-    plain = _support_problem(cubes)
-    yield "nothing to support", _support_problem(np.full((3, 4, 4), Cube.WHITE))
+    """Yield named support problems on a grid of 6 x 9 x 9 voxels: a plate in the air, an obstacle below it."""
+    voxels = np.full((6, 9, 9), Voxel.FREE)
+    voxels[5, 1:8, 1:8] = Voxel.OCCUPIED
+    voxels[2, 3:6, 3:6] = Voxel.OCCUPIED
+    plain = _support_problem(voxels)
+    yield "nothing to support", _support_problem(np.full((3, 4, 4), Voxel.FREE))
     yield "a plate over an obstacle", plain
     yield "two paths an edge", replace(plain, edge_capacity=2)
     yield "three paths a square", replace(plain, node_capacity=3)
-    narrow = cubes.copy()
-    narrow[0] = Cube.CLOSED
-    narrow[0, 4, 0] = Cube.WHITE
+    narrow = voxels.copy()
+    narrow[0] = Voxel.CLOSED
+    narrow[0, 4, 0] = Voxel.FREE
     yield "a single way down, one path wide", replace(_support_problem(narrow), edge_capacity=1)
-    bowl = cubes.copy()
-    bowl[4, 1:8, 1:8] = Cube.BLACK
-    bowl[4, 3:6, 3:6] = Cube.WHITE
-    bowl[3, 2:7, 2:7] = Cube.BLACK
+    bowl = voxels.copy()
+    bowl[4, 1:8, 1:8] = Voxel.OCCUPIED
+    bowl[4, 3:6, 3:6] = Voxel.FREE
+    bowl[3, 2:7, 2:7] = Voxel.OCCUPIED
     yield "an enclosed hollow", _support_problem(bowl)
 
 
@@ -144,10 +144,10 @@ def _turned_about_z(angles: Floats) -> Floats:
     return np.stack(rows, axis=1).reshape(-1, 3, 3)
 
 
-def _support_problem(cubes: np.ndarray) -> SupportProblem:
-    """Return the problem with a red square under every black cube that stands on a white one."""
-    black, white = cubes == Cube.BLACK, cubes == Cube.WHITE
+def _support_problem(voxels: np.ndarray) -> SupportProblem:
+    """Return the problem with a red square under every occupied voxel that stands on a white one."""
+    black, white = voxels == Voxel.OCCUPIED, voxels == Voxel.FREE
     red = np.argwhere(black[1:] & white[:-1]) + np.array([1, 0, 0])
     zeros = np.zeros(len(red), np.int32)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, cubes.shape)
-    return SupportProblem(frame, cubes, red, zeros, zeros, white[0])
+    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    return SupportProblem(frame, voxels, red, zeros, zeros, white[0])

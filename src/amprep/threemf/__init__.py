@@ -58,13 +58,6 @@ def read_build(path: Path) -> Build:
     return run(path)
 
 
-def write_stl(mesh: Mesh, path: Path) -> None:
-    """Write a mesh as binary STL; see `amprep.stl.write_stl`."""
-    from amprep.stl import write_stl as run
-
-    run(mesh, path)
-
-
 __all__ = [
     "modifier_note",
     "read_beams",
@@ -72,5 +65,4 @@ __all__ = [
     "read_parts",
     "write_build",
     "write_parts",
-    "write_stl",
 ]

@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.errors import JobError
 from amprep.hookspecs import CellEmitter, hookimpl
-from amprep.model import CellRequest, Cells, Mesh, Report, Stop, Template
+from amprep.model import CellRequest, Cells, Mesh, Progress, Stop, Template
 
 amprep_api = 1
 SIDES = 8
@@ -36,7 +36,7 @@ def amprep_cell_emitters() -> Iterator[CellEmitter]:
     )
 
 
-def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, report: Report) -> Cells:
+def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, progress: Progress) -> Cells:
     """Put the pillar under the map of every edge.
 
     Pillars that stand on one another share their octagon, also where the way bends: the maps shear the unit

@@ -13,7 +13,7 @@ from amprep.model import (
     Packing,
     PackingProblem,
     Placement,
-    Report,
+    Progress,
     Stop,
     Unplaced,
 )
@@ -49,7 +49,7 @@ class Layer:
 
 
 def pack_shelves(
-    problem: PackingProblem, *, params: Any, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem, *, params: Any, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
     """Place the boxes one after the other, each where the first row has room (DOI 10.1137/0209062).
 
@@ -63,7 +63,7 @@ def pack_shelves(
     placements: list[list[Placement]] = []
     unplaced: list[Unplaced] = []
     for count, box in enumerate(boxes):
-        report(count / len(boxes), "packing")
+        progress(count / len(boxes), "packing")
         if stop():
             unplaced.append(Unplaced(box.item, "out of time"))
             continue

@@ -83,7 +83,12 @@ class Result:
 
 
 def run_instances(
-    instances: Sequence[Instance], packer: str, *, seconds: float, seed: int, report: Callable[[Result], None]
+    instances: Sequence[Instance],
+    packer: str,
+    *,
+    seconds: float,
+    seed: int,
+    progress: Callable[[Result], None],
 ) -> list[Result]:
     """Run a packer on each instance for at most `seconds`; a budget counted in work is lifted.
 
@@ -102,7 +107,7 @@ def run_instances(
     results = []
     for instance in instances:
         results.append(_run(host, listed, instance, {}, seconds=seconds, seed=seed))
-        report(results[-1])
+        progress(results[-1])
     return results
 
 
@@ -167,7 +172,7 @@ def _pack(
     lifted = {name: most for name, most in UNLIMITED.items() if name in known}
     params = host.params(listed, lifted | table)
     rng, stop = np.random.default_rng(seed), Stop.after(seconds)
-    return host.call(listed, problem, params=params, rng=rng, stop=stop, report=silent)
+    return host.call(listed, problem, params=params, rng=rng, stop=stop, progress=silent)
 
 
 def _result(instance: Instance, packing: Packing, seconds: float) -> Result:

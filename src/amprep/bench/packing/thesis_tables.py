@@ -69,7 +69,7 @@ _Asked = tuple[str, tuple[int, ...], dict[str, tuple[str, ...]], tuple[Row, ...]
 
 
 def thesis_tables(
-    packers: Sequence[str], most_boxes: int, *, seconds: float, seed: int, report: Callable[[str], None]
+    packers: Sequence[str], most_boxes: int, *, seconds: float, seed: int, progress: Callable[[str], None]
 ) -> list[Table]:
     """Run the packers on offer (of `packers`, all when empty) and return both tables.
 
@@ -94,7 +94,7 @@ def thesis_tables(
                 for n in columns:
                     instance = repeated_boxes(n, objective)
                     found.append(run_one(host, row.packer, instance, row.params, seconds=seconds, seed=seed))
-                    report(f"{row.label}: {found[-1].line}")
+                    progress(f"{row.label}: {found[-1].line}")
                 ours[row.label] = tuple(found)
         tables.append(
             Table(title, columns, {name: cells[: len(columns)] for name, cells in thesis.items()}, ours)

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.bench.routing.rivals import RIVALS, Rival
 from amprep.bench.routing.scenes import SIDES, count_graph, scene
 from amprep.checks.supports.plan import check_plan, check_raises
-from amprep.geometry.overhangs.find import Longs
 from amprep.host import Host
 from amprep.model import Stop, silent
 from amprep.model.supports import DIRECTIONS, Escalation, SupportPlan, SupportProblem
@@ -209,7 +209,7 @@ def _route(
     host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, table: dict[str, Any]
 ) -> SupportPlan:
     rng, params = np.random.default_rng(seed), host.params(listed, table)
-    return host.call(listed, problem, params=params, rng=rng, stop=Stop(), report=silent)
+    return host.call(listed, problem, params=params, rng=rng, stop=Stop(), progress=silent)
 
 
 def _cost(problem: SupportProblem, plan: SupportPlan) -> int:
@@ -235,9 +235,9 @@ def _most_in_a_square(problem: SupportProblem, plan: SupportPlan) -> int:
     return most
 
 
-def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Longs:
+def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Int64s:
     """Return the number of each edge's upper (0) or lower (1) square."""
-    _, ny, nx = problem.cubes.shape
+    _, ny, nx = problem.voxels.shape
     step = end * np.array(DIRECTIONS, np.int64)[plan.direction]
     plane = plan.plane.astype(np.int64) - end
     return np.asarray((plane * ny + plan.y + step[:, 0]) * nx + plan.x + step[:, 1])

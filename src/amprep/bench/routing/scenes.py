@@ -4,7 +4,8 @@ import numpy as np
 
 from amprep.arrays import Bools, Bytes
 from amprep.errors import InputError
-from amprep.model.supports import Cube, GridFrame, SupportProblem
+from amprep.geometry.voxels.grid import Grid
+from amprep.model.supports import SupportProblem, Voxel
 
 SIDES = {"A": 20, "B": 30, "C": 40, "D": 104, "E": 186}
 """Cubes along each side of the grid: its ``(n + 1) n^2`` squares are as many as the thesis's within 5 %."""
@@ -16,7 +17,7 @@ SCENES = (*BALLS, "plate")
 
 
 def scene(name: str, side: int, *, capacity: int = 0) -> SupportProblem:
-    """Return a scene on a cube of `side` cubes; red are the squares under what is flatter than 45 degrees.
+    """Return a scene on a voxel of `side` voxels; red are the squares under what is flatter than 45 degrees.
 
     ``ball`` hangs in the air, ``two-balls`` hang one above the other, ``plate`` is a slab over 40 balls.
 
@@ -27,17 +28,19 @@ def scene(name: str, side: int, *, capacity: int = 0) -> SupportProblem:
     """
     if name not in SCENES:
         raise InputError(f"expected one of the scenes {', '.join(SCENES)}, got {name!r}")
-    cubes, needy = np.zeros((side,) * 3, np.uint8), np.zeros((side,) * 3, np.bool_)
+    voxels, needy = np.zeros((side,) * 3, np.uint8), np.zeros((side,) * 3, np.bool_)
     for *centre, radius in BALLS.get(name, _crowd()):
-        _add_ball(cubes, needy, tuple(centre), radius)
+        _add_ball(voxels, needy, tuple(centre), radius)
     if name == "plate":
-        _add_slab(cubes, needy)
+        _add_slab(voxels, needy)
     needy[0] = False
-    needy[1:] &= cubes[:-1] == Cube.WHITE
+    needy[1:] &= voxels[:-1] == Voxel.FREE
     red = np.argwhere(needy).astype(np.int32)
     nothing = np.zeros(len(red), np.int32)
-    frame = GridFrame(np.zeros(3), 1.0, 1.0, (side, side, side))
-    return SupportProblem(frame, cubes, red, nothing, nothing, cubes[0] == Cube.WHITE, node_capacity=capacity)
+    frame = Grid(np.zeros(3), 1.0, 1.0, (side, side, side))
+    return SupportProblem(
+        frame, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, node_capacity=capacity
+    )
 
 
 def _crowd() -> list[tuple[float, ...]]:
@@ -50,25 +53,25 @@ def _crowd() -> list[tuple[float, ...]]:
     return balls
 
 
-def _add_ball(cubes: Bytes, needy: Bools, centre: tuple[float, ...], radius: float) -> None:
-    side = len(cubes)
+def _add_ball(voxels: Bytes, needy: Bools, centre: tuple[float, ...], radius: float) -> None:
+    side = len(voxels)
     x, y, z = ((np.arange(side, dtype=np.float32) + 0.5) / side - middle for middle in centre)
     across = y[:, None] ** 2 + x**2
     inside = z[:, None, None] ** 2 + across <= radius**2
-    cubes[inside] = Cube.BLACK
+    voxels[inside] = Voxel.OCCUPIED
     needy |= inside & (z < 0)[:, None, None] & (across <= 0.5 * radius**2)
 
 
-def _add_slab(cubes: Bytes, needy: Bools) -> None:
-    side = len(cubes)
+def _add_slab(voxels: Bytes, needy: Bools) -> None:
+    side = len(voxels)
     low, left, right = int(0.85 * side), int(0.1 * side), int(0.9 * side)
-    cubes[low : low + max(1, side // 20), left:right, left:right] = Cube.BLACK
+    voxels[low : low + max(1, side // 20), left:right, left:right] = Voxel.OCCUPIED
     needy[low, left:right, left:right] = True
 
 
 def count_graph(problem: SupportProblem) -> tuple[int, int]:
-    """Return the numbers of all squares and of all edges: pairs of white cubes, equal or side by side."""
-    nz, ny, nx = problem.cubes.shape
-    white = problem.cubes == Cube.WHITE
+    """Return the numbers of all squares and of all edges: pairs of free voxels, equal or side by side."""
+    nz, ny, nx = problem.voxels.shape
+    white = problem.voxels == Voxel.FREE
     sideways = (white[:, 1:] & white[:, :-1]).sum() + (white[:, :, 1:] & white[:, :, :-1]).sum()
     return (nz + 1) * ny * nx, int(white.sum() + 2 * sideways)

@@ -10,7 +10,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.sampling import Samples, sample_overhangs, sample_segments
-from amprep.geometry.overhangs.find import OverhangRegion
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.mesh import Mesh
 from amprep.overhangs.of_part import needs_of

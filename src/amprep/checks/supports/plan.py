@@ -10,9 +10,9 @@ from amprep.model.supports import (
     DIRECTIONS,
     ENCLOSED,
     OUT_OF_TIME,
-    Cube,
     SupportPlan,
     SupportProblem,
+    Voxel,
 )
 
 PROMISE = "support plan"
@@ -37,7 +37,7 @@ def check_plan(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
 
 
 def _check_edges(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
-    nz, ny, nx = problem.cubes.shape
+    nz, ny, nx = problem.voxels.shape
     lengths = {len(getattr(plan, name)) for name in ("plane", "y", "x", "direction", "flow", "capacity")}
     if len(lengths) != 1:
         return [_violation("plan", f"the edge arrays must be equally long, got lengths {sorted(lengths)}")]
@@ -52,8 +52,8 @@ def _check_edges(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
         return found
     white = np.ones(len(plane), np.bool_)
     for row, column in ends:
-        white &= problem.cubes[plane - 1, row, column] == Cube.WHITE
-    found = _first(~white, plan, "meets a cube that is not white")
+        white &= problem.voxels[plane - 1, row, column] == Voxel.FREE
+    found = _first(~white, plan, "meets a voxel that is not white")
     found += _first(plan.flow < 1, plan, "carries no flow")
     found += _first(plan.flow > plan.capacity, plan, "carries more than its reported capacity")
     if problem.edge_capacity > 0:
@@ -98,7 +98,7 @@ def _check_listing(problem: SupportProblem, plan: SupportPlan) -> list[Violation
 
 def _check_flow(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     """Judge conservation and node capacities over the squares that occur."""
-    _, ny, nx = problem.cubes.shape
+    _, ny, nx = problem.voxels.shape
     connected = np.ones(len(problem.red), np.bool_)
     connected[[each.red for each in plan.unconnected]] = False
     step = np.array(DIRECTIONS, np.int64)[plan.direction]
@@ -159,7 +159,7 @@ def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     nodes = graph.sink + 1
     matrix = csr_array((graph.capacity, (graph.tail, graph.head)), shape=(nodes, nodes))
     possible = maximum_flow(matrix, graph.source, graph.sink).flow_value
-    wanted = int(has_way(problem).sum())
+    wanted = int(_has_way(problem).sum())
     if possible < wanted:
         return []
     return [_violation("plan", f"raises capacities, though without that all {wanted} could be connected")]
@@ -168,7 +168,7 @@ def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
 def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     if not plan.unconnected:
         return []
-    way = has_way(problem)
+    way = _has_way(problem)
     found = []
     for each in plan.unconnected:
         if way[each.red] == (each.reason == ENCLOSED):
@@ -180,13 +180,13 @@ def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation
     return found
 
 
-def has_way(problem: SupportProblem) -> Bools:
+def _has_way(problem: SupportProblem) -> Bools:
     """Tell which red squares have any white way to the plate: one sweep up, independent of all routers."""
     top = int(problem.red[:, 0].max(initial=0))
     reached = problem.green.copy()
     way = np.zeros(len(problem.red), np.bool_)
     for plane in range(1, top + 1):
-        white = problem.cubes[plane - 1] == Cube.WHITE
+        white = problem.voxels[plane - 1] == Voxel.FREE
         below = reached & white
         reached = below.copy()
         reached[1:] |= below[:-1]

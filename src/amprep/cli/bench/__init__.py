@@ -48,7 +48,7 @@ def mpv(
     from amprep.bench.packing.run import run_instances
 
     instances = [mpv_instance(class_, n, index) for index in range(first, first + count)]
-    results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
+    results = run_instances(instances, packer, seconds=time_limit, seed=seed, progress=_tell(as_json))
     record = {"benchmark": "mpv", "class": class_, "n": n, "packer": packer, "time_limit_s": time_limit}
     _print(record, results, as_json=as_json)
 
@@ -71,7 +71,7 @@ def container_loading(
     if first > len(known):
         raise InputError(f"{file}: expected --first of at most {len(known)}, its instances; got {first}")
     instances = known[first - 1 : first - 1 + count if count else None]
-    results = run_instances(instances, packer, seconds=time_limit, seed=seed, report=_tell(as_json))
+    results = run_instances(instances, packer, seconds=time_limit, seed=seed, progress=_tell(as_json))
     record = {
         "benchmark": "container-loading",
         "file": file.name,
@@ -94,8 +94,8 @@ def packing(
     """Rerun the thesis's two packing tables on instances of the same shape, its columns beside ours."""
     from amprep.bench.packing.thesis_tables import thesis_tables
 
-    report = (lambda _: None) if as_json else (lambda line: typer.echo(line, err=True))
-    tables = thesis_tables(packers or [], most_boxes, seconds=time_limit, seed=seed, report=report)
+    progress = (lambda _: None) if as_json else (lambda line: typer.echo(line, err=True))
+    tables = thesis_tables(packers or [], most_boxes, seconds=time_limit, seed=seed, progress=progress)
     if as_json:
         typer.echo(json.dumps([_table_record(table) for table in tables], indent=2))
     else:

@@ -4,9 +4,8 @@ import itertools
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from amprep.arrays import Floats
 
 
 class Space(NamedTuple):
@@ -26,24 +25,24 @@ class Space(NamedTuple):
         mm by which walls and zones give.
     """
 
-    lo: Array
-    hi: Array
-    axis: Array
+    lo: Floats
+    hi: Floats
+    axis: Floats
     radius: float
-    zone_lo: Array
-    zone_hi: Array
+    zone_lo: Floats
+    zone_hi: Floats
     flat: bool
     slack: float
 
 
-def rotated_boxes(lo: Array, hi: Array, rotation: Array) -> tuple[Array, Array]:
+def rotated_boxes(lo: Floats, hi: Floats, rotation: Floats) -> tuple[Floats, Floats]:
     """Return ``(k, 3)`` corners of the axis-parallel boxes around boxes turned by `rotation` ``(3, 3)``."""
     centre, half = (lo + hi) / 2.0, (hi - lo) / 2.0
     centre, half = centre @ rotation.T, half @ np.abs(rotation).T
     return centre - half, centre + half
 
 
-def union_volume(lo: Array, hi: Array) -> float:
+def union_volume(lo: Floats, hi: Floats) -> float:
     """Return the volume (area) of the union of boxes ``(k, d)``; boxes turned inside out count nothing."""
     real = (hi > lo).all(axis=1)
     lo, hi = lo[real], hi[real]
@@ -59,7 +58,7 @@ def union_volume(lo: Array, hi: Array) -> float:
     return float(covered)
 
 
-def find_home(lo: Array, hi: Array, space: Space) -> Array | None:
+def find_home(lo: Floats, hi: Floats, space: Space) -> Floats | None:
     """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build; None if there is none.
 
     Exact: whenever a place exists, there is one among the crossings of the curves that bound the
@@ -86,32 +85,32 @@ def find_home(lo: Array, hi: Array, space: Space) -> Array | None:
     return None
 
 
-def _simple_places(lo: Array, hi: Array, space: Space) -> Array:
+def _simple_places(lo: Floats, hi: Floats, space: Space) -> Floats:
     """Return the corner of a box, the centre of a circle, as translations ``(1, 2)``."""
     least, most = lo.min(axis=0)[:2], hi.max(axis=0)[:2]
     return np.asarray(space.axis - (least + most) / 2.0 if space.radius else space.lo[:2] - least)[None]
 
 
-def _lines(lo: Array, hi: Array, space: Space, axis: int) -> Array:
+def _lines(lo: Floats, hi: Floats, space: Space, axis: int) -> Floats:
     """Return the translations along `axis` at which a box touches the lower wall or a side of a zone."""
     beyond = (space.zone_hi[:, axis, None] - lo[:, axis]).ravel()
     before = (space.zone_lo[:, axis, None] - hi[:, axis]).ravel()
     return np.unique(np.concatenate(([space.lo[axis] - lo[:, axis].min()], beyond, before)))
 
 
-def _line_places(lo: Array, hi: Array, space: Space) -> Array:
+def _line_places(lo: Floats, hi: Floats, space: Space) -> Floats:
     """Return the crossings of lines as translations ``(n, 2)``."""
     crossings = np.meshgrid(_lines(lo, hi, space, 0), _lines(lo, hi, space, 1), indexing="ij")
     return np.stack(crossings, axis=-1).reshape(-1, 2)
 
 
-def _centres(lo: Array, hi: Array, space: Space) -> Array:
+def _centres(lo: Floats, hi: Floats, space: Space) -> Floats:
     """Return, for each footprint corner, the centre of the circle of translations that keep it inside."""
     corners = [np.stack((a[:, 0], b[:, 1]), axis=1) for a, b in itertools.product((lo, hi), (lo, hi))]
     return np.asarray(space.axis - np.unique(np.concatenate(corners), axis=0))
 
 
-def _round_places(lo: Array, hi: Array, space: Space) -> Array:
+def _round_places(lo: Floats, hi: Floats, space: Space) -> Floats:
     """Return the crossings of the corners' circles with each other and with lines, and their extremes."""
     centres, radius = _centres(lo, hi, space), space.radius
     extremes = [centres + radius * np.array(way) for way in ((-1, 0), (1, 0), (0, -1), (0, 1))]
@@ -127,7 +126,7 @@ def _round_places(lo: Array, hi: Array, space: Space) -> Array:
     return np.concatenate(found)
 
 
-def _circle_circle(centres: Array, radius: float) -> list[Array]:
+def _circle_circle(centres: Floats, radius: float) -> list[Floats]:
     """Return the crossings of circles of one radius, pair by pair, as two arrays ``(pairs, 2)``."""
     first, second = np.triu_indices(len(centres), 1)
     middle, apart = (centres[first] + centres[second]) / 2.0, centres[second] - centres[first]
@@ -137,7 +136,7 @@ def _circle_circle(centres: Array, radius: float) -> list[Array]:
     return [middle + across, middle - across]
 
 
-def _first_allowed(places: Array, height: float, lo: Array, hi: Array, space: Space) -> Array | None:
+def _first_allowed(places: Floats, height: float, lo: Floats, hi: Floats, space: Space) -> Floats | None:
     """Return the first translation (places ``(n, 2)``, height) that keeps inside and out of the zones."""
     allowed = (places >= space.lo[:2] - lo.min(axis=0)[:2] - space.slack).all(axis=1)
     allowed &= (places <= space.hi[:2] - hi.max(axis=0)[:2] + space.slack).all(axis=1)

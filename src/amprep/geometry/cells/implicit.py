@@ -3,12 +3,10 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from amprep.geometry.cells.ports import Arrays, conform
+from amprep.arrays import Floats, MeshArrays
+from amprep.geometry.cells.ports import conform
 from amprep.geometry.meshes.decimation import thin_out
-
-Floats = NDArray[np.float64]
 
 _THINNED = 0.1
 """Of a step of the grid: how far the surface may move so that it has fewer triangles; the grid is no better."""
@@ -17,7 +15,7 @@ _ROUNDING = 1e-9
 """Of the greatest value: what rounding may make of the difference between a point and the same one next door."""
 
 
-def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> Arrays:
+def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> MeshArrays:
     """Return where the function is positive, cut to the unit cube; the function has to repeat with the cube.
 
     manifold3d's level set asks for one point at a time; so it is asked twice, first to learn its points, which

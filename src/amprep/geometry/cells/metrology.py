@@ -3,14 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from amprep.geometry.cells.ports import Arrays
+from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.meshes.containment import inside
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 _SHARE_THIN = 0.01
 """Of the cell's volume: so much may be thinner than its smallest feature."""
@@ -22,7 +17,9 @@ _CORNER = 1.75
 """A ball in the corner of a cube leaves points up to the root of three times its radius from its centre."""
 
 
-def feature(meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats, steps: int) -> float | None:
+def feature(
+    meshes: Sequence[MeshArrays], template: Int64s, place: Int64s, size: Floats, steps: int
+) -> float | None:
     """Return the smallest feature of a block, mm, to within a voxel; None when it is empty.
 
     Parameters
@@ -40,7 +37,7 @@ def feature(meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats,
 
 
 def way_out(
-    meshes: Sequence[Arrays], template: Ints, place: Ints, size: Floats, steps: int
+    meshes: Sequence[MeshArrays], template: Int64s, place: Int64s, size: Floats, steps: int
 ) -> tuple[float | None, float]:
     """Return the diameter of the largest ball that gets out sideways from most of the void, mm, and closed pockets.
 
@@ -50,7 +47,7 @@ def way_out(
     return _way_out(~_block(meshes, template, place, steps), size / steps)
 
 
-def _block(meshes: Sequence[Arrays], template: Ints, place: Ints, steps: int) -> Bools:
+def _block(meshes: Sequence[MeshArrays], template: Int64s, place: Int64s, steps: int) -> Bools:
     """Tell which voxels of the block are solid."""
     cubes = [_voxels(mesh, steps) for mesh in meshes]
     extent = place.max(axis=0) + 1
@@ -60,7 +57,7 @@ def _block(meshes: Sequence[Arrays], template: Ints, place: Ints, steps: int) ->
     return block
 
 
-def _voxels(mesh: Arrays, steps: int) -> Bools:
+def _voxels(mesh: MeshArrays, steps: int) -> Bools:
     """Tell which voxels have their centre in the mesh."""
     middles = (np.arange(steps) + 0.5) / steps
     centres = np.stack(np.meshgrid(middles, middles, middles, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -3,13 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.meshes.topology import compact, degenerate, first_of_equal_rows
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Arrays = tuple[Floats, Ints]
 
 SNAP = 1e-5
 """Share of the unit cube: files keep six digits, so what is this close is meant to be the same place."""
@@ -23,7 +19,7 @@ _MOST_ROUNDS = 32
 class Outlines(NamedTuple):
     """Closed outlines of a mesh on one side of the cube: vertex indices, the mesh to the left seen from outside."""
 
-    loops: list[Ints]
+    loops: list[Int64s]
     simple: bool
 
 
@@ -33,19 +29,19 @@ def snapped(points: Floats) -> Floats:
     return np.asarray(np.where(low, 0.0, np.where(high, 1.0, points)))
 
 
-def flush_sides(points: Floats, triangles: Ints) -> Ints:
+def flush_sides(points: Floats, triangles: Int64s) -> Int64s:
     """Tell which side of the cube each triangle lies on: 2 axis + (0 or 1), or -1."""
     corners = points[triangles]
     flush = np.stack([(corners == 0.0).all(axis=1), (corners == 1.0).all(axis=1)], axis=2).reshape(-1, 6)
     return np.where(flush.any(axis=1), flush.argmax(axis=1), -1)
 
 
-def outlines(points: Floats, triangles: Ints, side: int) -> Outlines:
+def outlines(points: Floats, triangles: Int64s, side: int) -> Outlines:
     """Return the outlines of what lies flush on a side; not simple where outlines touch in a point."""
     return _loops(_border(triangles[flush_sides(points, triangles) == side]))
 
 
-def conform(points: Floats, triangles: Ints) -> Arrays:
+def conform(points: Floats, triangles: Int64s) -> MeshArrays:
     """Cut opposite sides of a closed mesh into the same triangles, where their outlines are the same.
 
     Copies of the cell side by side then share the triangles of their common side, and weld on arrays. Vertices
@@ -68,7 +64,7 @@ def conform(points: Floats, triangles: Ints) -> Arrays:
     return compact(points, triangles)
 
 
-def _border(triangles: Ints) -> Ints:
+def _border(triangles: Int64s) -> Int64s:
     """Return the directed edges ``(e, 2)`` of triangles that have no opposite among them."""
     edges = np.concatenate([triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
     base = int(triangles.max(initial=0)) + 1
@@ -76,11 +72,11 @@ def _border(triangles: Ints) -> Ints:
     return np.asarray(edges[~np.isin(forth, back)])
 
 
-def _loops(border: Ints) -> Outlines:
+def _loops(border: Int64s) -> Outlines:
     """Chain directed edges into closed loops."""
     following = dict(border.tolist())
     simple = len(following) == len(border) == len(set(following.values()))
-    loops: list[Ints] = []
+    loops: list[Int64s] = []
     while simple and following:
         loop = [next(iter(following))]
         while (after := following.pop(loop[-1], None)) is not None and after != loop[0]:
@@ -91,7 +87,7 @@ def _loops(border: Ints) -> Outlines:
     return Outlines(loops, simple)
 
 
-def _share_corners(points: Floats, triangles: Ints) -> tuple[Floats, Ints, bool]:
+def _share_corners(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s, bool]:
     """Give the outlines of opposite sides the same vertices: move those close by, split edges for the rest."""
     changed = False
     for axis in (2, 0, 1):
@@ -118,7 +114,7 @@ def _share_corners(points: Floats, triangles: Ints) -> tuple[Floats, Ints, bool]
 
 
 def _on_edge(
-    points: Floats, border: Ints, places: Floats, plane: tuple[int, int]
+    points: Floats, border: Int64s, places: Floats, plane: tuple[int, int]
 ) -> tuple[int, tuple[int, int]] | None:
     """Return the first place ``(k, 3)`` that lies inside a border edge seen along the axis, and that edge."""
     start, end = points[border[:, 0]][:, plane], points[border[:, 1]][:, plane]
@@ -133,7 +129,7 @@ def _on_edge(
     return vertex, (int(border[edge, 0]), int(border[edge, 1]))
 
 
-def _split(points: Floats, triangles: Ints, edge: tuple[int, int], place: Floats) -> Arrays:
+def _split(points: Floats, triangles: Int64s, edge: tuple[int, int], place: Floats) -> MeshArrays:
     """Put a vertex on an edge: each triangle that has the edge becomes two."""
     middle = len(points)
     cut = np.isin(triangles, edge).sum(axis=1) == 2
@@ -143,7 +139,7 @@ def _split(points: Floats, triangles: Ints, edge: tuple[int, int], place: Floats
     return np.vstack([points, place]), np.concatenate(pieces)
 
 
-def _recut(points: Floats, triangles: Ints, axis: int) -> Ints:
+def _recut(points: Floats, triangles: Int64s, axis: int) -> Int64s:
     """Triangulate the high side anew, and the low one like it, if both have the same outlines."""
     from manifold3d import triangulate
 
@@ -170,10 +166,10 @@ def _recut(points: Floats, triangles: Ints, axis: int) -> Ints:
     return np.concatenate([triangles[side // 2 != axis], cut, below])
 
 
-def _from_least(loop: Ints, plan: Floats) -> Ints:
+def _from_least(loop: Int64s, plan: Floats) -> Int64s:
     """Turn a loop so that it begins at its least corner."""
     return np.roll(loop, -int(np.lexsort(plan[loop].T[::-1])[0]))
 
 
-def _sorted_rows(rows: Ints) -> Ints:
+def _sorted_rows(rows: Int64s) -> Int64s:
     return np.asarray(rows[np.lexsort(rows.T[::-1])])

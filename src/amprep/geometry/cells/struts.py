@@ -3,16 +3,14 @@
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from amprep.geometry.cells.ports import Arrays, conform
+from amprep.arrays import Floats, Int64s, MeshArrays
+from amprep.geometry.cells.ports import conform
 from amprep.geometry.meshes.topology import first_of_equal_rows
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SIDES = 8
 """Corners of a strut's cross-section; it has the area of the circle."""
@@ -29,13 +27,13 @@ class Graph(NamedTuple):
     """Points ``(n, 3)`` in the unit cube, struts ``(m, 2)``, radii ``(m, 2)`` mm, walls ``(k, 3)`` and their mm."""
 
     points: Floats
-    struts: Ints
+    struts: Int64s
     radii: Floats
-    faces: Ints
+    faces: Int64s
     thickness: float
 
 
-def graph_solid(graph: Graph, linear: Floats) -> Arrays:
+def graph_solid(graph: Graph, linear: Floats) -> MeshArrays:
     """Return struts, balls at their ends, and walls as one closed mesh in the unit cube.
 
     A ball at a port is as large as the widest cut of its struts by the side, so that a port looks the same
@@ -68,7 +66,7 @@ def graph_solid(graph: Graph, linear: Floats) -> Arrays:
     return conform(points, np.array(mesh.tri_verts, np.int64))
 
 
-def angles_deg(points: Floats, struts: Ints, linear: Floats) -> Floats:
+def angles_deg(points: Floats, struts: Int64s, linear: Floats) -> Floats:
     """Return the steepness of struts under the map, degrees ``(m,)``: 90 is upright."""
     along = (points[struts[:, 1]] - points[struts[:, 0]]) @ linear.T
     return np.degrees(np.arctan2(np.abs(along[:, 2]), np.hypot(along[:, 0], along[:, 1])))

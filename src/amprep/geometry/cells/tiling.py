@@ -4,15 +4,11 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
 from amprep.geometry.meshes.topology import compact
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Arrays = tuple[Floats, Ints]
 
 _FLUSH = 1e-9
 """Share of the unit cube: a corner this close to a side lies on it."""
@@ -32,8 +28,8 @@ class Tiles(NamedTuple):
         ``(n, 3, 4)`` unit cube to build coordinates.
     """
 
-    template: Ints
-    place: Ints
+    template: Int64s
+    place: Int64s
     matrix: Floats
 
 
@@ -42,7 +38,7 @@ def fills_unit_cube(points: Floats) -> bool:
     return bool((points > -_FLUSH).all() and (points < 1.0 + _FLUSH).all())
 
 
-def plate(thickness: float) -> Arrays:
+def plate(thickness: float) -> MeshArrays:
     """Return a plate under the top of the unit cube, as wide as the cube.
 
     Parameters
@@ -58,7 +54,9 @@ def plate(thickness: float) -> Arrays:
     return np.array(corners), np.array(triangles, np.int64)
 
 
-def expand(templates: Sequence[Arrays], template: Ints, matrix: Floats) -> tuple[Floats, Ints, Ints]:
+def expand(
+    templates: Sequence[MeshArrays], template: Int64s, matrix: Floats
+) -> tuple[Floats, Int64s, Int64s]:
     """Copy templates under their maps.
 
     Returns
@@ -81,7 +79,7 @@ def expand(templates: Sequence[Arrays], template: Ints, matrix: Floats) -> tuple
     return np.vstack(points), np.vstack(triangles), np.concatenate(source)
 
 
-def tile(templates: Sequence[Arrays], tiles: Tiles) -> Iterator[Arrays]:
+def tile(templates: Sequence[MeshArrays], tiles: Tiles) -> Iterator[MeshArrays]:
     """Yield closed meshes whose union is the cells: one when they conform, else two.
 
     Where neighbours do not share the triangles of a common side, every other cell goes into the second
@@ -102,7 +100,7 @@ def tile(templates: Sequence[Arrays], tiles: Tiles) -> Iterator[Arrays]:
             yield _weld(templates, Tiles(*(column[chosen] for column in tiles)))[0]
 
 
-def _weld(templates: Sequence[Arrays], tiles: Tiles) -> tuple[Arrays, bool]:
+def _weld(templates: Sequence[MeshArrays], tiles: Tiles) -> tuple[MeshArrays, bool]:
     """Weld all cells; tell whether neighbours left no triangles against one another."""
     points, triangles, source = expand(templates, tiles.template, tiles.matrix)
     merged, corners = merge_vertices(points, triangles)
@@ -112,7 +110,7 @@ def _weld(templates: Sequence[Arrays], tiles: Tiles) -> tuple[Arrays, bool]:
     return separate_edges(*compact(merged, corners[stays])), conform
 
 
-def _sides(templates: Sequence[Arrays], template: Ints) -> Ints:
+def _sides(templates: Sequence[MeshArrays], template: Int64s) -> Int64s:
     """Which side of its cube each expanded triangle lies on: 2 axis + (0 or 1), or -1."""
     sides = [np.empty(0, np.int64)]
     for index, (corners, faces) in enumerate(templates):
@@ -124,7 +122,7 @@ def _sides(templates: Sequence[Arrays], template: Ints) -> Ints:
     return np.concatenate(sides)
 
 
-def _facing(place: Ints, side: Ints) -> bool:
+def _facing(place: Int64s, side: Int64s) -> bool:
     """Whether triangles are left on both faces of a side between two cells."""
     flush = side >= 0
     axis, far = np.divmod(side[flush], 2)

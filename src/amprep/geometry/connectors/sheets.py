@@ -3,23 +3,20 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from amprep.geometry.connectors.columns import Columns, Patches, find_covered
+from amprep.arrays import Floats, Int64s, MeshArrays
+from amprep.geometry.connectors.columns import Columns, Patches
+from amprep.geometry.connectors.connect import find_covered
 from amprep.geometry.meshes.topology import compact
 from amprep.geometry.meshes.welding import merge_vertices
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Arrays = tuple[Floats, Ints]
 
 _SHORTEST = 1e-4
 """mm; pieces of sheet shorter than that are left out."""
 
 
 def raise_sheets(
-    columns: Columns, column: Ints, segments: Floats, held: Patches, surface: Patches, *, overlap: float
-) -> Arrays:
+    columns: Columns, column: Int64s, segments: Floats, held: Patches, surface: Patches, *, overlap: float
+) -> MeshArrays:
     """Return upright sheets over segments in plan, from the red square up to the held faces and into them.
 
     Parameters
@@ -27,7 +24,7 @@ def raise_sheets(
     column, segments
         ``(k,)`` and ``(k, 2, 2)`` mm: which column each segment belongs to, and its ends.
     held, surface, overlap
-        As for `amprep.geometry.connectors.columns.connect`.
+        As for `amprep.geometry.connectors.connect.connect`.
     """
     covered = find_covered(held, surface)[column]
     pieces = [_pieces(segments, column, held, np.flatnonzero(~covered))]
@@ -38,7 +35,7 @@ def raise_sheets(
     return _sheets(np.concatenate(pieces), columns.lo[column, 2], segments, overlap)
 
 
-def _pieces(segments: Floats, column: Ints, patches: Patches, chosen: Ints) -> Floats:
+def _pieces(segments: Floats, column: Int64s, patches: Patches, chosen: Int64s) -> Floats:
     """Cut segments by the outlines of the patches in their columns.
 
     Returns
@@ -106,7 +103,7 @@ def _height_at(piece: Floats, place: float) -> float:
     return float(piece[3] + share * (piece[4] - piece[3]))
 
 
-def _sheets(pieces: Floats, base: Floats, segments: Floats, overlap: float) -> Arrays:
+def _sheets(pieces: Floats, base: Floats, segments: Floats, overlap: float) -> MeshArrays:
     """Return two triangles for each piece."""
     index = pieces[:, 0].astype(np.int64)
     start, along = segments[index, 0], segments[index, 1] - segments[index, 0]
@@ -120,7 +117,7 @@ def _sheets(pieces: Floats, base: Floats, segments: Floats, overlap: float) -> A
     return points, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def plan_segments(points: Floats, triangles: Ints) -> Floats:
+def plan_segments(points: Floats, triangles: Int64s) -> Floats:
     """Return the sides of a template's triangles that lie in its lower square, in plan, ``(k, 2, 2)``."""
     level = np.abs(points[:, 2]) < 1e-9
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
@@ -128,7 +125,7 @@ def plan_segments(points: Floats, triangles: Ints) -> Floats:
     return np.asarray(points[sides][:, :, :2])
 
 
-def join_sheets(sheets: Sequence[Arrays]) -> Arrays:
+def join_sheets(sheets: Sequence[MeshArrays]) -> MeshArrays:
     """Put sheets together: vertices at the same place become one, triangles that are there twice are once."""
     counts = np.cumsum([0] + [len(points) for points, _ in sheets])
     points = np.vstack([points for points, _ in sheets])

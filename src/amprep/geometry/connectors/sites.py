@@ -3,13 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import Columns, Patches, clip_into
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 _LEAST = 1e-3
 """Share of a cell: less contact than that gets no site, unless its column has no more elsewhere."""
@@ -39,8 +35,8 @@ class Sites(NamedTuple):
         ``(s,)`` of the cell that the contact covers in plan.
     """
 
-    column: Ints
-    square: Ints
+    column: Int64s
+    square: Int64s
     lo: Floats
     hi: Floats
     spot: Floats
@@ -77,7 +73,7 @@ def find_sites(contact: Floats, columns: Columns, count: int, width: float) -> S
     return Sites(owner[chosen], square[chosen], lo, hi, spot, lowest, cells.highest[chosen], area[chosen])
 
 
-def _subdivided(columns: Columns, count: int) -> tuple[Columns, Ints, Ints]:
+def _subdivided(columns: Columns, count: int) -> tuple[Columns, Int64s, Int64s]:
     """Return the cells of all columns, the column of each, and its place in the finer grid."""
     owner = np.repeat(np.arange(len(columns.lo)), count * count)
     within = np.tile(np.argwhere(np.ones((count, count))), (len(columns.lo), 1))
@@ -132,7 +128,7 @@ def _turn(one: Floats, other: Floats) -> Floats:
     return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
 
 
-def _fans(patches: Patches) -> tuple[Ints, Ints, Ints]:
+def _fans(patches: Patches) -> tuple[Int64s, Int64s, Int64s]:
     """Return patch, second and third corner of the triangles that fan out from each patch's first corner."""
     patch = np.repeat(np.arange(len(patches.owner)), np.diff(patches.start))
     here = np.arange(len(patches.points))
@@ -183,7 +179,7 @@ def _contains(patches: Patches, spot: Floats) -> Bools:
     return found
 
 
-def _lowest_inside(patches: Patches, fine: Columns, cells: _Cells) -> tuple[Ints, Floats]:
+def _lowest_inside(patches: Patches, fine: Columns, cells: _Cells) -> tuple[Int64s, Floats]:
     """Return cells whose contact slopes down to a spot inside them, and that spot ``(n, 2)``."""
     cell = np.repeat(patches.owner[:, 0], np.diff(patches.start))
     plan, height = patches.points[:, :2], patches.points[:, 2]
@@ -197,7 +193,7 @@ def _lowest_inside(patches: Patches, fine: Columns, cells: _Cells) -> tuple[Ints
 
 
 def _lowest_around(
-    spot: Floats, width: float, contact: Floats, fine: Columns, chosen: Ints, otherwise: Floats
+    spot: Floats, width: float, contact: Floats, fine: Columns, chosen: Int64s, otherwise: Floats
 ) -> Floats:
     """Return the least height of the contact within `width` around spots, in their cells."""
     low, high = fine.lo[chosen].copy(), fine.hi[chosen].copy()

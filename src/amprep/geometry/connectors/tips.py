@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.sites import Sites, within
 from amprep.geometry.merging.union import union
 from amprep.geometry.meshes.repair import as_manifold
@@ -12,9 +12,6 @@ from amprep.geometry.meshes.repair import as_manifold
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 ROUND_SIDES = 12
 """Of the polygon that stands for a circle."""
@@ -74,7 +71,7 @@ def tips(sites: Sites, profile: Profile, level: Floats, base: Floats, overlap: f
     return union([prisms(*cells, base[tall] - _DIP, level[tall]), as_manifold(*_lofted(rings))])
 
 
-def prisms(square: Ints, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
+def prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
     """Return the union of upright prisms over cells of a grid, which may be of several heights.
 
     They reach a hair over their cells, because manifold3d joins and cuts solids whose walls lie in each other
@@ -136,7 +133,7 @@ def _ring(z: Floats, box: tuple[Floats, Floats], circle: Bools, *, sides: int) -
     return np.concatenate([plan, np.broadcast_to(z[:, None, None], (len(z), sides, 1))], axis=2)
 
 
-def _lofted(rings: Floats) -> tuple[Floats, Ints]:
+def _lofted(rings: Floats) -> tuple[Floats, Int64s]:
     """Return closed meshes through rings ``(s, r, n, 3)``, each one's from below upwards."""
     count, levels, sides, _ = rings.shape
     here = np.arange(sides)

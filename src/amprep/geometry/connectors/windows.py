@@ -4,16 +4,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s
 from amprep.geometry.connectors.columns import Columns
 from amprep.geometry.meshes.repair import as_manifold
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ROOF = float(np.tan(np.radians(55.0)))
 """Steepness of the sides of the diamonds."""
@@ -52,7 +50,7 @@ def windows(columns: Columns, room: Floats, width: float) -> "Iterator[Manifold]
         yield as_manifold(*_diamonds(*runs, columns.grid, width, axis))
 
 
-def _runs(along: Ints, across: Ints, middle: Floats) -> tuple[Ints, Ints, Ints, Floats]:
+def _runs(along: Int64s, across: Int64s, middle: Floats) -> tuple[Int64s, Int64s, Int64s, Floats]:
     """Join windows that line up: first and last square along, square across, height of the middle."""
     level = np.round(middle * 1e6).astype(np.int64)
     order = np.lexsort((along, across, level))
@@ -65,8 +63,8 @@ def _runs(along: Ints, across: Ints, middle: Floats) -> tuple[Ints, Ints, Ints, 
 
 
 def _diamonds(
-    first: Ints, last: Ints, across: Ints, middle: Floats, grid: Floats, width: float, axis: int
-) -> tuple[Floats, Ints]:
+    first: Int64s, last: Int64s, across: Int64s, middle: Floats, grid: Floats, width: float, axis: int
+) -> tuple[Floats, Int64s]:
     """Return closed prisms of diamond section along an axis."""
     side, half = grid[2], np.array([width, width * ROOF]) / 2.0
     begin = grid[axis] + first * side - _PAST

@@ -1,14 +1,11 @@
-"""Two outlines on the common side of two cubes: what of each side stays a surface, on one set of corners."""
+"""Two outlines on the common side of two voxels: what of each side stays a surface, on one set of corners."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Int64s
 from amprep.geometry.meshes.topology import degenerate
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 _NEAR = 3.0
 """Steps of the lattice: a corner this close to an edge lies on it, unless it is as close to its ends. Corners are
@@ -32,13 +29,13 @@ class Seam(NamedTuple):
         halves may be split again.
     """
 
-    points: Ints
-    ours: Ints
-    theirs: Ints
-    splits: Ints
+    points: Int64s
+    ours: Int64s
+    theirs: Int64s
+    splits: Int64s
 
 
-def seam(ours: Ints, theirs: Ints) -> Seam | None:
+def seam(ours: Int64s, theirs: Int64s) -> Seam | None:
     """Take two regions off one another; None where their outlines are too fine for the lattice.
 
     Edges of both are first split at each other's corners and crossings. An edge of the one then bounds what
@@ -64,7 +61,7 @@ def seam(ours: Ints, theirs: Ints) -> Seam | None:
     return Seam(points, triangles[0], triangles[1], np.array(splits, np.int64).reshape(-1, 3))
 
 
-def _split(points: Ints, edges: Ints) -> tuple[Ints, list[tuple[int, int, int]]] | None:
+def _split(points: Int64s, edges: Int64s) -> tuple[Int64s, list[tuple[int, int, int]]] | None:
     """Split edges until none passes through a point or across another; return all points, and each split."""
     splits: list[tuple[int, int, int]] = []
     for _ in range(_ROUNDS):
@@ -83,7 +80,7 @@ def _split(points: Ints, edges: Ints) -> tuple[Ints, list[tuple[int, int, int]]]
     return None
 
 
-def _passed(points: Ints, edges: Ints) -> tuple[Ints, Ints]:
+def _passed(points: Int64s, edges: Int64s) -> tuple[Int64s, Int64s]:
     """Return edges and the points they pass through, in pairs."""
     start = points[edges[:, 0]]
     along = points[edges[:, 1]] - start
@@ -97,7 +94,7 @@ def _passed(points: Ints, edges: Ints) -> tuple[Ints, Ints]:
     return edge, point
 
 
-def _crossings(points: Ints, edges: Ints) -> Ints:
+def _crossings(points: Int64s, edges: Int64s) -> Int64s:
     """Return where edges cross, well inside both, rounded to the lattice; no two on one edge."""
     start = points[edges[:, 0]]
     along = points[edges[:, 1]] - start
@@ -113,11 +110,11 @@ def _crossings(points: Ints, edges: Ints) -> Ints:
     return np.unique(np.round(place).astype(np.int64), axis=0)
 
 
-def _cross(a: Ints, b: Ints) -> Ints:
+def _cross(a: Int64s, b: Int64s) -> Int64s:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
-def _fine(edges: Ints, through: dict[tuple[int, int], int]) -> list[tuple[int, int]]:
+def _fine(edges: Int64s, through: dict[tuple[int, int], int]) -> list[tuple[int, int]]:
     """Return directed edges with all their splits carried out."""
     done, todo = [], [(a, b) for a, b in edges.tolist()]
     while todo:
@@ -139,7 +136,7 @@ def _net(edges: list[tuple[int, int]]) -> dict[tuple[int, int], int]:
     return {key: times for key, times in net.items() if times}
 
 
-def _left_over(points: Ints, own: dict[tuple[int, int], int], other: dict[tuple[int, int], int]) -> Ints:
+def _left_over(points: Int64s, own: dict[tuple[int, int], int], other: dict[tuple[int, int], int]) -> Int64s:
     """Return directed edges around what of a region lies outside the other."""
     kept = [(*key, sign) for key, sign in own.items() if other.get(key) == -sign]
     alone = [(*key, sign) for key, sign in own.items() if key not in other]
@@ -150,7 +147,7 @@ def _left_over(points: Ints, own: dict[tuple[int, int], int], other: dict[tuple[
     return np.where(edges[:, 2:] > 0, edges[:, :2], edges[:, 1::-1])
 
 
-def _inside(points: Ints, edges: list[tuple[int, int, int]], region: dict[tuple[int, int], int]) -> Bools:
+def _inside(points: Int64s, edges: list[tuple[int, int, int]], region: dict[tuple[int, int], int]) -> Bools:
     """Tell which edges have their middle inside a region: its outline winds around it."""
     if not edges or not region:
         return np.zeros(len(edges), np.bool_)
@@ -164,7 +161,7 @@ def _inside(points: Ints, edges: list[tuple[int, int, int]], region: dict[tuple[
     return np.asarray(((up.astype(np.int64) - down) * sign).sum(axis=1) > 0)
 
 
-def _triangles(points: Ints, edges: Ints) -> Ints | None:
+def _triangles(points: Int64s, edges: Int64s) -> Int64s | None:
     """Triangulate what lies to the left of closed directed edges; None when they are not closed."""
     from manifold3d import triangulate
 
@@ -178,7 +175,7 @@ def _triangles(points: Ints, edges: Ints) -> Ints | None:
     return np.asarray(triangles[~degenerate(triangles)])  # where a loop passes a point twice
 
 
-def _loops(points: Ints, edges: Ints) -> list[Ints] | None:
+def _loops(points: Int64s, edges: Int64s) -> list[Int64s] | None:
     """Chain directed edges to loops; where several go on from a point, the one that turns most to the left."""
     leaving: dict[int, list[int]] = {}
     for a, b in edges.tolist():
@@ -202,7 +199,7 @@ def _loops(points: Ints, edges: Ints) -> list[Ints] | None:
     return loops
 
 
-def _leftmost(points: Ints, back: int | None, at: int, following: list[int]) -> int:
+def _leftmost(points: Int64s, back: int | None, at: int, following: list[int]) -> int:
     """Return the first of the points that come next, clockwise from where the loop came from."""
     if back is None:
         return min(following)

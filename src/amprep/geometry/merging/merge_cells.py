@@ -1,4 +1,4 @@
-"""Unite cells of all directions on arrays: each pattern of cells that share a cube once, the cubes side to side."""
+"""Unite cells of all directions on arrays: each pattern of cells that share a voxel once, the voxels side to side."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -8,18 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.merging.nonmanifold_edges import crowded_ends, halved, part_at
 from amprep.geometry.merging.voxel_contents import LATTICE, SIDES, Piece, Pieces
 from amprep.geometry.meshes.topology import degenerate
 from amprep.geometry.meshes.welding import label_equal_rows
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
-
-class Cubes(NamedTuple):
-    """Cubes of the grid that hold something.
+class Voxels(NamedTuple):
+    """Voxels of the grid that hold something.
 
     Attributes
     ----------
@@ -29,45 +26,45 @@ class Cubes(NamedTuple):
         ``(n,)`` number of what each holds.
     """
 
-    place: Ints
-    piece: Ints
+    place: Int64s
+    piece: Int64s
 
 
 class _Facing(NamedTuple):
-    """Which of the six sides of each cube keep their surface ``(n, 6)``; what sides come to that differ.
+    """Which of the six sides of each voxel keep their surface ``(n, 6)``; what sides come to that differ.
 
     Attributes
     ----------
-    cube, axis, ours, theirs
-        ``(k,)`` a cube and the axis on whose far side the outlines `ours` and `theirs` (numbers) meet.
+    voxel, axis, ours, theirs
+        ``(k,)`` a voxel and the axis on whose far side the outlines `ours` and `theirs` (numbers) meet.
     """
 
     keep: Bools
-    cube: Ints
-    axis: Ints
-    ours: Ints
-    theirs: Ints
+    voxel: Int64s
+    axis: Int64s
+    ours: Int64s
+    theirs: Int64s
 
 
 class _Seams(NamedTuple):
     """Copies of what two sides come to: corners ``(s, 3)`` on the lattice, triangles, splits (see `Seam`)."""
 
-    corners: Ints
-    triangles: Ints
-    splits: Ints
+    corners: Int64s
+    triangles: Int64s
+    splits: Int64s
 
 
 class _Copies(NamedTuple):
-    """Where copies of a piece go: cubes ``(n,)`` by number; where their inner points and triangles begin."""
+    """Where copies of a piece go: voxels ``(n,)`` by number; where their inner points and triangles begin."""
 
     piece: Piece
-    cube: Ints
+    voxel: Int64s
     point: int
     triangle: int
 
 
 class _Soup(NamedTuple):
-    """Triangles at the sides of cubes; corners count the inner points first, then those that others may share.
+    """Triangles at the sides of voxels; corners count the inner points first, then those that others may share.
 
     Attributes
     ----------
@@ -79,32 +76,32 @@ class _Soup(NamedTuple):
         ``(r, 3)`` corners: edges and what they pass through.
     """
 
-    shared: Ints
-    near: Ints
-    rim: Ints
-    splits: Ints
+    shared: Int64s
+    near: Int64s
+    rim: Int64s
+    splits: Int64s
 
 
 def join_cells(
-    pieces: Pieces, template: Ints, square: Ints, shift: Ints, origin: Floats, size: Floats
-) -> tuple[Floats, Ints] | None:
+    pieces: Pieces, template: Int64s, square: Int64s, shift: Int64s, origin: Floats, size: Floats
+) -> tuple[Floats, Int64s] | None:
     """Return the union of cells as one closed mesh; None where it cannot be made on arrays.
 
-    Cells are cut where they pass from one cube of the grid into the next, what shares a cube is united, each
+    Cells are cut where they pass from one voxel of the grid into the next, what shares a voxel is united, each
     pattern of it once, and sides that face each other keep what the other does not cover.
 
     Parameters
     ----------
     template, square, shift
-        As for `fill_cubes`.
+        As for `fill_voxels`.
     origin, size
-        ``(3,)`` mm, of the grid and of its cubes.
+        ``(3,)`` mm, of the grid and of its voxels.
     """
-    return join_cubes(pieces, fill_cubes(pieces, template, square, shift), origin, size)
+    return join_voxels(pieces, fill_voxels(pieces, template, square, shift), origin, size)
 
 
-def fill_cubes(pieces: Pieces, template: Ints, square: Ints, shift: Ints) -> Cubes:
-    """Sort cells into the cubes they pass through.
+def fill_voxels(pieces: Pieces, template: Int64s, square: Int64s, shift: Int64s) -> Voxels:
+    """Sort cells into the voxels they pass through.
 
     Parameters
     ----------
@@ -125,45 +122,45 @@ def fill_cubes(pieces: Pieces, template: Ints, square: Ints, shift: Ints) -> Cub
     place = np.concatenate([square, lower])
     item = np.concatenate([items[kind, 0], items[kind[far], 1]])
     low, extent = place.min(axis=0), np.ptp(place, axis=0) + 1
-    cube = (place - low) @ np.array([1, extent[0], extent[0] * extent[1]])
+    voxel = (place - low) @ np.array([1, extent[0], extent[0] * extent[1]])
     count = len(pieces.items)
-    cube, item = np.divmod(np.unique(cube * count + item), count)
-    starts = np.flatnonzero(np.diff(cube, prepend=-1))
-    sizes = np.diff(np.append(starts, len(cube)))
+    voxel, item = np.divmod(np.unique(voxel * count + item), count)
+    starts = np.flatnonzero(np.diff(voxel, prepend=-1))
+    sizes = np.diff(np.append(starts, len(voxel)))
     piece = np.empty(len(starts), np.int64)
     alone = sizes == 1
     for each in np.unique(item[starts[alone]]):
         piece[alone & (item[starts] == each)] = pieces.piece(np.array([each]))
     for index in np.flatnonzero(~alone):
         piece[index] = pieces.piece(item[starts[index] : starts[index] + sizes[index]])
-    number = cube[starts]
+    number = voxel[starts]
     place = np.column_stack(
         [number % extent[0], number // extent[0] % extent[1], number // extent[0] // extent[1]]
     )
-    return Cubes(low + place, piece)
+    return Voxels(low + place, piece)
 
 
-def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tuple[Floats, Ints] | None:
-    """Return what cubes hold as one closed mesh; None where it cannot be joined on arrays.
+def join_voxels(pieces: Pieces, voxels: Voxels, origin: Floats, size: Floats) -> tuple[Floats, Int64s] | None:
+    """Return what voxels hold as one closed mesh; None where it cannot be joined on arrays.
 
     Parameters
     ----------
     origin, size
-        ``(3,)`` mm, of the grid and of its cubes.
+        ``(3,)`` mm, of the grid and of its voxels.
     """
-    facing = _face(pieces, cubes)
-    seams = _placed_seams(pieces, cubes, facing)
+    facing = _face(pieces, voxels)
+    seams = _placed_seams(pieces, voxels, facing)
     if seams is None:
         return None
-    copies = _copies(pieces, cubes)
+    copies = _copies(pieces, voxels)
     inner, closed = copies[-1].point, copies[-1].triangle
-    every = sum(len(each.cube) * sum(map(len, each.piece.parts)) for each in copies)
-    outer = sum(len(each.cube) * (len(each.piece.points) - each.piece.inner) for each in copies)
+    every = sum(len(each.voxel) * sum(map(len, each.piece.parts)) for each in copies)
+    outer = sum(len(each.voxel) * (len(each.piece.points) - each.piece.inner) for each in copies)
     points = np.empty((inner + outer + sum(len(seam.corners) for seam in seams), 3))
     triangles = np.empty((every + sum(len(seam.triangles) for seam in seams), 3), np.int32)
     with ThreadPoolExecutor(1) as pool:
-        filling = pool.submit(_fill, copies, cubes.place, origin, size, points, triangles)
-        shared, near, rim = _joined(_at_sides(copies, cubes, facing, seams), inner)
+        filling = pool.submit(_fill, copies, voxels.place, origin, size, points, triangles)
+        shared, near, rim = _joined(_at_sides(copies, voxels, facing, seams), inner)
         crowded = crowded_ends(rim, inner)
         filling.result()
     if crowded is None:
@@ -178,53 +175,53 @@ def join_cubes(pieces: Pieces, cubes: Cubes, origin: Floats, size: Floats) -> tu
     return _appended(points, inner, rest), _appended(triangles, closed, rim)
 
 
-def _copies(pieces: Pieces, cubes: Cubes) -> list[_Copies]:
-    """List which cubes hold each piece, and behind them where inner points and triangles end."""
-    used, which, count = np.unique(cubes.piece, return_inverse=True, return_counts=True)
+def _copies(pieces: Pieces, voxels: Voxels) -> list[_Copies]:
+    """List which voxels hold each piece, and behind them where inner points and triangles end."""
+    used, which, count = np.unique(voxels.piece, return_inverse=True, return_counts=True)
     order = np.split(np.argsort(which, kind="stable"), np.cumsum(count)[:-1])
     listed: list[_Copies] = []
     point = triangle = 0
-    for number, cube in zip(used.tolist(), order, strict=True):
+    for number, voxel in zip(used.tolist(), order, strict=True):
         piece = pieces.made[number]
-        listed.append(_Copies(piece, cube, point, triangle))
-        point += len(cube) * piece.inner
-        triangle += len(cube) * len(piece.parts[0])
+        listed.append(_Copies(piece, voxel, point, triangle))
+        point += len(voxel) * piece.inner
+        triangle += len(voxel) * len(piece.parts[0])
     return [*listed, _Copies(piece, order[0][:0], point, triangle)]
 
 
 def _fill(
     copies: list[_Copies],
-    place: Ints,
+    place: Int64s,
     origin: Floats,
     size: Floats,
     points: Floats,
     triangles: NDArray[np.int32],
 ) -> None:
     """Write inner points, and triangles of these alone; the bulk of the work, and done beside the rest."""
-    for (piece, cube, point, triangle), after in pairwise(copies):
-        into = points[point : after.point].reshape(len(cube), -1, 3)
-        moved = (origin + place[cube] * size)[:, None]
+    for (piece, voxel, point, triangle), after in pairwise(copies):
+        into = points[point : after.point].reshape(len(voxel), -1, 3)
+        moved = (origin + place[voxel] * size)[:, None]
         np.add((piece.points[: piece.inner] * (size / LATTICE))[None], moved, out=into)
-        starts = (point + piece.inner * np.arange(len(cube), dtype=np.int32))[:, None, None]
-        faces = triangles[triangle : after.triangle].reshape(len(cube), -1, 3)
+        starts = (point + piece.inner * np.arange(len(voxel), dtype=np.int32))[:, None, None]
+        faces = triangles[triangle : after.triangle].reshape(len(voxel), -1, 3)
         np.add(piece.parts[0][None].astype(np.int32), starts.astype(np.int32), out=faces)
 
 
-def _at_sides(copies: list[_Copies], cubes: Cubes, facing: _Facing, seams: list[_Seams]) -> _Soup:
-    """Copy what lies at the sides of cubes, and between them what differing sides come to."""
+def _at_sides(copies: list[_Copies], voxels: Voxels, facing: _Facing, seams: list[_Seams]) -> _Soup:
+    """Copy what lies at the sides of voxels, and between them what differing sides come to."""
     shared, near, rim = [], [], []
     first = copies[-1].point
-    for piece, cube, point, _ in copies[:-1]:
+    for piece, voxel, point, _ in copies[:-1]:
         sides = piece.points[piece.inner :]
-        shared.append((sides[None] + cubes.place[cube][:, None] * LATTICE).reshape(-1, 3))
-        number = np.arange(len(cube))
+        shared.append((sides[None] + voxels.place[voxel][:, None] * LATTICE).reshape(-1, 3))
+        number = np.arange(len(voxel))
         starts = np.column_stack([point + piece.inner * number, first - piece.inner + len(sides) * number])
         near.append(_copied(piece.parts[1], piece.inner, starts))
         rim.append(_copied(piece.parts[2], piece.inner, starts))
         rim += [
-            _copied(piece.parts[3 + side], piece.inner, starts[facing.keep[cube, side]]) for side in SIDES
+            _copied(piece.parts[3 + side], piece.inner, starts[facing.keep[voxel, side]]) for side in SIDES
         ]
-        first += len(sides) * len(cube)
+        first += len(sides) * len(voxel)
     return _Soup(
         np.concatenate([*shared, *(seam.corners for seam in seams)]),
         np.concatenate(near),
@@ -233,7 +230,7 @@ def _at_sides(copies: list[_Copies], cubes: Cubes, facing: _Facing, seams: list[
     )
 
 
-def _joined(soup: _Soup, inner: int) -> tuple[Ints, Ints, Ints]:
+def _joined(soup: _Soup, inner: int) -> tuple[Int64s, Int64s, Int64s]:
     """Make shared corners at the same place one, and split edges at the corners that lie on them.
 
     Returns
@@ -250,7 +247,7 @@ def _joined(soup: _Soup, inner: int) -> tuple[Ints, Ints, Ints]:
     return shared, soup.near, _at_lines(rim, shared, inner)
 
 
-def _renumber(triangles: Ints, first: int, number: Ints) -> None:
+def _renumber(triangles: Int64s, first: int, number: Int64s) -> None:
     """Give corners from `first` on their new numbers, in place."""
     flat = triangles.reshape(-1)
     outer = np.flatnonzero(flat >= first)
@@ -265,30 +262,30 @@ def _appended(room: NDArray[Any], count: int, rows: NDArray[Any]) -> NDArray[Any
     return room[: count + len(rows)]
 
 
-def _face(pieces: Pieces, cubes: Cubes) -> _Facing:
-    """Look at what each cube's far sides face."""
-    keep = np.ones((len(cubes.place), 6), np.bool_)
-    outlines = np.array([piece.outlines for piece in pieces.made], np.int64)[cubes.piece]
-    low = cubes.place.min(axis=0)
-    extent = cubes.place.max(axis=0) - low + 2
+def _face(pieces: Pieces, voxels: Voxels) -> _Facing:
+    """Look at what each voxel's far sides face."""
+    keep = np.ones((len(voxels.place), 6), np.bool_)
+    outlines = np.array([piece.outlines for piece in pieces.made], np.int64)[voxels.piece]
+    low = voxels.place.min(axis=0)
+    extent = voxels.place.max(axis=0) - low + 2
     step = np.array([1, extent[0], extent[0] * extent[1]])
-    key = (cubes.place - low) @ step
+    key = (voxels.place - low) @ step
     order = np.argsort(key)
     differing = []
     for axis in range(3):
         at = np.minimum(np.searchsorted(key[order], key + step[axis]), len(key) - 1)
-        cube = np.flatnonzero(key[order][at] == key + step[axis])
-        other = order[at[cube]]
-        ours, theirs = outlines[cube, 2 * axis + 1], outlines[other, 2 * axis]
+        voxel = np.flatnonzero(key[order][at] == key + step[axis])
+        other = order[at[voxel]]
+        ours, theirs = outlines[voxel, 2 * axis + 1], outlines[other, 2 * axis]
         meet = (ours > 0) & (theirs > 0)
-        keep[cube[meet], 2 * axis + 1] = keep[other[meet], 2 * axis] = False
+        keep[voxel[meet], 2 * axis + 1] = keep[other[meet], 2 * axis] = False
         differ = meet & (ours != theirs)
-        differing.append([cube[differ], np.full(int(differ.sum()), axis), ours[differ], theirs[differ]])
+        differing.append([voxel[differ], np.full(int(differ.sum()), axis), ours[differ], theirs[differ]])
     return _Facing(keep, *(np.concatenate(column) for column in zip(*differing, strict=True)))
 
 
-def _placed_seams(pieces: Pieces, cubes: Cubes, facing: _Facing) -> list[_Seams] | None:
-    """Put what differing sides come to between the cubes; None where some do not come to anything."""
+def _placed_seams(pieces: Pieces, voxels: Voxels, facing: _Facing) -> list[_Seams] | None:
+    """Put what differing sides come to between the voxels; None where some do not come to anything."""
     rows = np.column_stack([facing.axis, facing.ours, facing.theirs])
     kinds, kind = np.unique(rows, axis=0, return_inverse=True)
     placed: list[_Seams] = []
@@ -297,7 +294,7 @@ def _placed_seams(pieces: Pieces, cubes: Cubes, facing: _Facing) -> list[_Seams]
         found = pieces.seam(ours, theirs)
         if found is None:
             return None
-        place = cubes.place[facing.cube[kind.reshape(-1) == number]]
+        place = voxels.place[facing.voxel[kind.reshape(-1) == number]]
         corners = np.empty((len(found.points), 3), np.int64)
         corners[:, axis], corners[:, [(axis + 1) % 3, (axis + 2) % 3]] = LATTICE, found.points
         starts = (first + len(corners) * np.arange(len(place)))[:, None, None]
@@ -312,13 +309,13 @@ def _placed_seams(pieces: Pieces, cubes: Cubes, facing: _Facing) -> list[_Seams]
     return placed
 
 
-def _copied(triangles: Ints, inner: int, starts: Ints) -> Ints:
+def _copied(triangles: Int64s, inner: int, starts: Int64s) -> Int64s:
     """Copy triangles; their inner and outer corners count from different `starts` ``(n, 2)``."""
     outer = (triangles >= inner).astype(np.int64)
     return (triangles[None] + starts[:, outer]).reshape(-1, 3)
 
 
-def _at_splits(triangles: Ints, splits: Ints, count: int) -> Ints:
+def _at_splits(triangles: Int64s, splits: Int64s, count: int) -> Int64s:
     """Split triangles whose edges are known to pass through a point."""
     if not len(splits):
         return triangles
@@ -328,7 +325,7 @@ def _at_splits(triangles: Ints, splits: Ints, count: int) -> Ints:
     hot = np.zeros(count, np.bool_)
     hot[splits[:, :2]] = True
 
-    def middle(start: Ints, end: Ints) -> Ints:
+    def middle(start: Int64s, end: Int64s) -> Int64s:
         wanted = np.minimum(start, end) * count + np.maximum(start, end)
         at = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
         return np.where(key[at] == wanted, through[at], -1)
@@ -336,10 +333,10 @@ def _at_splits(triangles: Ints, splits: Ints, count: int) -> Ints:
     return _halved_until_none(triangles, hot, middle)
 
 
-def _at_lines(triangles: Ints, shared: Ints, first: int) -> Ints:
+def _at_lines(triangles: Int64s, shared: Int64s, first: int) -> Int64s:
     """Split triangles whose edges run along a line of the grid, at all corners there are on it.
 
-    Up to four cubes meet in such a line, and each two of them know of their own corners only.
+    Up to four voxels meet in such a line, and each two of them know of their own corners only.
     """
     used = np.zeros(len(shared), np.bool_)
     used[triangles[triangles >= first] - first] = True
@@ -355,7 +352,9 @@ def _at_lines(triangles: Ints, shared: Ints, first: int) -> Ints:
         new = (shared[order[1:]][:, others] != shared[order[:-1]][:, others]).any(axis=1)
         line[order] = np.cumsum(np.concatenate([[0], new]))
 
-        def middle(start: Ints, end: Ints, rank: Ints = rank, line: Ints = line, order: Ints = order) -> Ints:
+        def middle(
+            start: Int64s, end: Int64s, rank: Int64s = rank, line: Int64s = line, order: Int64s = order
+        ) -> Int64s:
             outer = np.minimum(start, end) >= first
             start, end = np.maximum(start - first, 0), np.maximum(end - first, 0)
             between = np.abs(rank[start] - rank[end]) > 1
@@ -368,7 +367,7 @@ def _at_lines(triangles: Ints, shared: Ints, first: int) -> Ints:
     return triangles
 
 
-def _halved_until_none(triangles: Ints, hot: Bools, middle: Callable[[Ints, Ints], Ints]) -> Ints:
+def _halved_until_none(triangles: Int64s, hot: Bools, middle: Callable[[Int64s, Int64s], Int64s]) -> Int64s:
     """Split triangles at the middles of their edges, and what comes of it, until no edge has any.
 
     Parameters

@@ -1,20 +1,16 @@
 """Part closed meshes along edges where solids merely touch, so that no edge has more than two triangles."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.topology import compact
 from amprep.geometry.meshes.welding import kept, label_equal_rows
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 _SAME_ANGLE = 1e-3
 """Radians; what rounding to a build file's precision turns the faces of an edge at most."""
 
 
-def separate_edges(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+def separate_edges(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     """Copy vertices so that no edge of a closed mesh has more than two triangles.
 
     Parameters
@@ -29,7 +25,7 @@ def separate_edges(points: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     return compact(np.concatenate([points, added]), triangles)
 
 
-def part_at(points: Floats, triangles: Ints, crowded: Ints) -> tuple[Floats, Ints]:
+def part_at(points: Floats, triangles: Int64s, crowded: Int64s) -> tuple[Floats, Int64s]:
     """Copy the vertices `crowded` so that no edge to them has more than two triangles.
 
     Of the triangles around an edge, each pairs with the next one across the solid. Where both ends of an
@@ -62,13 +58,13 @@ def part_at(points: Floats, triangles: Ints, crowded: Ints) -> tuple[Floats, Int
     return np.concatenate([added, middles]), np.concatenate([triangles[~around], near])
 
 
-def crowded_ends(triangles: Ints, first: int = 0) -> Ints | None:
+def crowded_ends(triangles: Int64s, first: int = 0) -> Int64s | None:
     """Return the vertices of edges with more than two triangles; None when some edge is not matched.
 
     Only edges between vertices from `first` on count.
     """
     base = int(triangles.max(initial=0)) + 1
-    ways: list[Ints] = []
+    ways: list[Int64s] = []
     for a, b in ((0, 1), (1, 2), (2, 0)):
         start, end = triangles[:, a], triangles[:, b]
         counted = (start >= first) & (end >= first)
@@ -81,7 +77,9 @@ def crowded_ends(triangles: Ints, first: int = 0) -> Ints | None:
     return np.unique(np.concatenate(np.divmod(twice, base)))
 
 
-def _paired(points: Floats, triangles: Ints, halves: Ints, ends: Ints, edge: Ints) -> tuple[Ints, Ints]:
+def _paired(
+    points: Floats, triangles: Int64s, halves: Int64s, ends: Int64s, edge: Int64s
+) -> tuple[Int64s, Int64s]:
     """Pair half-edges (3 triangle + corner) across the solid: each that runs back with the next one forth.
 
     Seen along the edge from its lower vertex, the solid lies clockwise of a triangle that runs forth and
@@ -105,7 +103,9 @@ def _paired(points: Floats, triangles: Ints, halves: Ints, ends: Ints, edge: Int
     return halves[order[begin + rank]], halves[order[begin + count + (rank + turn) % count]]
 
 
-def _split(count: int, triangles: Ints, touched: Bools, first: Ints, second: Ints) -> tuple[Ints, Ints]:
+def _split(
+    count: int, triangles: Int64s, touched: Bools, first: Int64s, second: Int64s
+) -> tuple[Int64s, Int64s]:
     """Give each fan of triangles around a touched vertex its own copy of it, from vertex `count` on.
 
     Returns
@@ -133,8 +133,8 @@ def _split(count: int, triangles: Ints, touched: Bools, first: Ints, second: Int
 
 
 def _halve_doubled(
-    points: Floats, added: Floats, triangles: Ints, first: Ints, second: Ints
-) -> tuple[Floats, Ints]:
+    points: Floats, added: Floats, triangles: Int64s, first: Int64s, second: Int64s
+) -> tuple[Floats, Int64s]:
     """Put a vertex of its own, after those added, into each pair's edge where two pairs share both vertices."""
     corner = triangles.ravel()
     start, end = corner[first], corner[_following(first)]
@@ -148,7 +148,7 @@ def _halve_doubled(
     return kept((low + high) / 2), halved(triangles, middle.reshape(-1, 3))
 
 
-def halved(triangles: Ints, middle: Ints) -> Ints:
+def halved(triangles: Int64s, middle: Int64s) -> Int64s:
     """Split triangles at the vertices `middle` ``(m, 3)`` on their sides (-1 for none), a side at a time."""
     done = [triangles[(middle < 0).all(axis=1)]]
     open_ = (middle >= 0).any(axis=1)
@@ -166,6 +166,6 @@ def halved(triangles: Ints, middle: Ints) -> Ints:
     return np.concatenate(done)
 
 
-def _following(half: Ints) -> Ints:
+def _following(half: Int64s) -> Int64s:
     """Return the next half-edge of the same triangle."""
     return half - half % 3 + (half + 1) % 3

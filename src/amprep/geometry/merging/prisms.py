@@ -1,4 +1,4 @@
-"""Join whole prisms without any boolean: the planes of their sides cut each cube into the same fourteen pieces."""
+"""Join whole prisms without any boolean: the planes of their sides cut each voxel into the same fourteen pieces."""
 
 from functools import cache
 from itertools import combinations, product
@@ -6,13 +6,11 @@ from itertools import combinations, product
 import numpy as np
 from numpy.typing import NDArray
 
-from amprep.geometry.cells.tiling import Arrays, expand
+from amprep.arrays import Floats, Int64s, MeshArrays
+from amprep.geometry.cells.tiling import expand
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
 from amprep.geometry.meshes.topology import compact
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _QUARTERS = ("bottom", "top", "left", "right")
 """Of the square across one horizontal axis u and height w, cut along both diagonals: below, above, left, right."""
@@ -21,14 +19,14 @@ _PIECES = [each for each in product(_QUARTERS, _QUARTERS) if set(each) != {"bott
 """Quarter along x and along y; `bottom` and `top` have no height in common."""
 
 _WHOLE = len(_PIECES)
-"""Number of the piece that is a whole cube, its upright sides cut in quarters like those of the others."""
+"""Number of the piece that is a whole voxel, its upright sides cut in quarters like those of the others."""
 
 _REACHES = {0: (), 1: ("top", "right"), -1: ("top", "left")}
 _ARRIVES = {1: ("bottom", "left"), -1: ("bottom", "right")}
-"""Quarters that a prism fills in the cube below its upper square, and in the one above its lower square."""
+"""Quarters that a prism fills in the voxel below its upper square, and in the one above its lower square."""
 
 
-def join_prisms(square: Ints, shift: Ints, origin: Floats, size: Floats) -> Arrays:
+def join_prisms(square: Int64s, shift: Int64s, origin: Floats, size: Floats) -> MeshArrays:
     """Return the union of prisms as one closed mesh, as a build file keeps it.
 
     Parameters
@@ -38,7 +36,7 @@ def join_prisms(square: Ints, shift: Ints, origin: Floats, size: Floats) -> Arra
     shift
         ``(n, 2)`` dx, dy to its lower square: at most one step, in x or in y.
     origin, size
-        ``(3,)`` mm, of the grid and of its cubes.
+        ``(3,)`` mm, of the grid and of its voxels.
     """
     upright = (shift == 0).all(axis=1)
     whole = np.unique(square[upright], axis=0)
@@ -55,27 +53,27 @@ def join_prisms(square: Ints, shift: Ints, origin: Floats, size: Floats) -> Arra
     return separate_edges(*compact(merged, corners[cancel_opposite(corners)]))
 
 
-def _packed(cube: Ints, extent: Ints) -> Ints:
-    return np.asarray(((cube[:, 2] + 1) * extent[1] + cube[:, 1] + 1) * extent[0] + cube[:, 0] + 1)
+def _packed(voxel: Int64s, extent: Int64s) -> Int64s:
+    return np.asarray(((voxel[:, 2] + 1) * extent[1] + voxel[:, 1] + 1) * extent[0] + voxel[:, 0] + 1)
 
 
-def _sheared(square: Ints, shift: Ints) -> list[Ints]:
+def _sheared(square: Int64s, shift: Int64s) -> list[Int64s]:
     """List the pieces ``(k, 4)`` x, y, layer, piece of all prisms that are not upright."""
     found = []
     for axis, step in product((0, 1), (1, -1)):
         upper = square[shift[:, axis] == step]
         lower = upper.copy()
         lower[:, axis] += step
-        for cubes, quarters in ((upper, _REACHES[step]), (lower, _ARRIVES[step])):
+        for voxels, quarters in ((upper, _REACHES[step]), (lower, _ARRIVES[step])):
             for number, piece in enumerate(_PIECES):
                 if piece[axis] in quarters:
-                    found.append(np.column_stack([cubes, np.full(len(cubes), number)]))
+                    found.append(np.column_stack([voxels, np.full(len(voxels), number)]))
     return found
 
 
 @cache
-def _templates() -> tuple[Arrays, ...]:
-    """Return the pieces and the whole cube as closed meshes."""
+def _templates() -> tuple[MeshArrays, ...]:
+    """Return the pieces and the whole voxel as closed meshes."""
     corners = [tuple(float(each) for each in point) for point in product((0, 1), repeat=3)]
     sides = [(0.0, 0.5, 0.5), (1.0, 0.5, 0.5), (0.5, 0.0, 0.5), (0.5, 1.0, 0.5)]
     points = np.array([*corners, *sides, (0.5, 0.5, 0.5)])
@@ -96,7 +94,7 @@ def _in_quarter(points: Floats, axis: int, quarter: str) -> NDArray[np.bool_]:
     return np.asarray(parts[quarter])
 
 
-def _hull(points: Floats) -> Arrays:
+def _hull(points: Floats) -> MeshArrays:
     """Return the convex hull of a few points: triangles, and level squares cut along one diagonal."""
     centre = points.mean(axis=0)
     triangles = []

@@ -4,16 +4,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s
 from amprep.geometry.meshes.repair import as_manifold
 from amprep.geometry.meshes.welding import kept
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FILE_STEP = 3e-5
 """mm; what rounding to float32 moves a vertex at most, up to 500 mm from the origin."""
@@ -41,13 +39,13 @@ def evaluated(solid: "Manifold") -> "Manifold":
     return solid
 
 
-def arrays_of(solid: "Manifold") -> tuple[Floats, Ints]:
+def arrays_of(solid: "Manifold") -> tuple[Floats, Int64s]:
     """Return points ``(n, 3)`` and triangles ``(m, 3)`` of a solid."""
     mesh = solid.to_mesh64()
     return np.array(mesh.vert_properties[:, :3], np.float64), np.array(mesh.tri_verts, np.int64)
 
 
-def is_solid(points: Floats, triangles: Ints) -> bool:
+def is_solid(points: Floats, triangles: Int64s) -> bool:
     """Whether manifold3d accepts a mesh as a solid with positive volume."""
     from manifold3d import Error
 
@@ -55,7 +53,7 @@ def is_solid(points: Floats, triangles: Ints) -> bool:
     return bool(solid.status() == Error.NoError and solid.volume() > 0.0)
 
 
-def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Ints]:
+def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Int64s]:
     """Unite solids to the arrays that a build file keeps: closed, no triangle without area."""
     whole = union(solids)
     points, triangles = arrays_of(whole)

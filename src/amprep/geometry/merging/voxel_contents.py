@@ -1,4 +1,4 @@
-"""What cubes of the grid hold: cells cut where they pass from one cube to the next, united once for each pattern."""
+"""What voxels of the grid hold: cells cut where they pass from one voxel to the next, united once for each pattern."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -6,8 +6,8 @@ from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.cells.tiling import plate
 from amprep.geometry.merging.interfaces import Seam, seam
 from amprep.geometry.merging.nonmanifold_edges import crowded_ends
@@ -19,23 +19,19 @@ from amprep.geometry.meshes.welding import cancel_opposite, label_equal_rows
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Arrays = tuple[Floats, Ints]
 
 LATTICE = 1 << 24
-"""Steps along the side of a cube: all corners lie on this lattice, so copies in neighbouring cubes agree exactly."""
+"""Steps along the side of a voxel: all corners lie on this lattice, so copies in neighbouring voxels agree exactly."""
 
 _NEAR = 8
-"""Steps: corners on sides of cubes that are this close are the same."""
+"""Steps: corners on sides of voxels that are this close are the same."""
 
 SIDES = range(6)
-"""Of a cube: 2 axis, and 1 more for the far one."""
+"""Of a voxel: 2 axis, and 1 more for the far one."""
 
 
 class Piece(NamedTuple):
-    """What one cube holds, as a closed mesh.
+    """What one voxel holds, as a closed mesh.
 
     Attributes
     ----------
@@ -51,9 +47,9 @@ class Piece(NamedTuple):
         means that the same is there.
     """
 
-    points: Ints
+    points: Int64s
     inner: int
-    parts: tuple[Ints, ...]
+    parts: tuple[Int64s, ...]
     outlines: tuple[int, ...]
 
 
@@ -68,22 +64,22 @@ class Pieces:
     Attributes
     ----------
     items
-        What cells fill of single cubes, as meshes.
+        What cells fill of single voxels, as meshes.
     made
         All pieces there are yet.
     """
 
-    def __init__(self, templates: Sequence[Arrays]) -> None:
+    def __init__(self, templates: Sequence[MeshArrays]) -> None:
         self.templates = list(templates)
         self._plates: dict[float, int] = {}
         self._corners: dict[tuple[int, int, int], tuple[int, int, int]] = {}
         self._buckets: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
         self._items: dict[tuple[int, ...], int] = {}
-        self.items: list[Arrays] = []
+        self.items: list[MeshArrays] = []
         self._united = cache(self._unite)
         self._number: dict[bytes, int] = {}
         self._outline_number: dict[bytes, int] = {b"": 0}
-        self._outlines: list[Ints] = [np.empty((0, 2, 2), np.int64)]
+        self._outlines: list[Int64s] = [np.empty((0, 2, 2), np.int64)]
         self._seams: dict[tuple[int, int], Seam | None] = {}
         self.made: list[Piece] = []
 
@@ -95,7 +91,7 @@ class Pieces:
         return self._plates[thickness]
 
     def item(self, template: int, shift: tuple[int, int]) -> tuple[int, int]:
-        """Number what a cell fills of the cube of its upper square, and of that of its lower one (or -1)."""
+        """Number what a cell fills of the voxel of its upper square, and of that of its lower one (or -1)."""
         key = (template, *shift)
         if (*key, 0) not in self._items:
             for far, mesh in enumerate(self._halves(template, shift)):
@@ -103,8 +99,8 @@ class Pieces:
                 self.items.append(mesh)
         return self._items[(*key, 0)], self._items.get((*key, 1), -1)
 
-    def _halves(self, template: int, shift: tuple[int, int]) -> list[Arrays]:
-        """Cut a sheared template where it passes into the next cube."""
+    def _halves(self, template: int, shift: tuple[int, int]) -> list[MeshArrays]:
+        """Cut a sheared template where it passes into the next voxel."""
         points, triangles = self.templates[template]
         points = np.round(points * LATTICE)
         if shift == (0, 0):
@@ -148,7 +144,7 @@ class Pieces:
         self._corners[x, y, z] = found
         return found
 
-    def piece(self, items: Ints) -> int:
+    def piece(self, items: Int64s) -> int:
         """Number the piece that is the union of ascending items."""
         key = items.tobytes()
         if key not in self._number:
@@ -165,7 +161,7 @@ class Pieces:
             return as_manifold(*self.items[items[0]])
         return evaluated(self._united(items[:-1]) + self._united(items[-1:]))
 
-    def _sorted_out(self, points: Floats, triangles: Ints) -> Piece:
+    def _sorted_out(self, points: Floats, triangles: Int64s) -> Piece:
         settled = self._settled(points).astype(np.int64)
         label, count = label_equal_rows(settled)
         merged = np.empty((count, 3), np.int64)
@@ -189,7 +185,7 @@ class Pieces:
         outlines = tuple(self._outlined(merged, parts[3 + each], each) for each in SIDES)
         return Piece(merged, inner, parts, outlines)
 
-    def _outlined(self, points: Ints, triangles: Ints, side: int) -> int:
+    def _outlined(self, points: Int64s, triangles: Int64s, side: int) -> int:
         """Number the outline of triangles in a side, seen against its axis."""
         if not len(triangles):
             return 0
@@ -212,8 +208,8 @@ class Pieces:
         return self._seams[ours, theirs]
 
 
-def _sides(corners: Ints) -> Ints:
-    """Return which side of the cube each triangle ``(m, 3, 3)`` lies in, or -1."""
+def _sides(corners: Int64s) -> Int64s:
+    """Return which side of the voxel each triangle ``(m, 3, 3)`` lies in, or -1."""
     flush = np.stack([(corners == 0).all(axis=1), (corners == LATTICE).all(axis=1)], axis=2)
     flush = flush.reshape(len(corners), 6)
     return np.where(flush.any(axis=1), flush.argmax(axis=1), -1)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from amprep.geometry.overhangs.find import Bools, Floats, Ints
+from amprep.arrays import Bools, Floats, Int32s
 
 
-def inside(points: Floats, vertices: Floats, triangles: Ints) -> Bools:
+def inside(points: Floats, vertices: Floats, triangles: Int32s) -> Bools:
     """Tell which of `points` ``(n, 3)`` have a winding number above 0 with respect to the mesh.
 
     Points on the surface may count either way. Time grows with points and triangles that share a square of

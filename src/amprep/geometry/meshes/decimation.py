@@ -3,12 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s
 from amprep.geometry.meshes.topology import compact
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Point = tuple[float, float, float]
 
 _ROUNDS = 8
@@ -26,7 +24,7 @@ class _Surface(NamedTuple):
     users: list[set[int]]
 
 
-def thin_out(points: Floats, triangles: Ints, tolerance: float, planes: Ints) -> tuple[Floats, Ints]:
+def thin_out(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s) -> tuple[Floats, Int64s]:
     """Collapse edges of a closed mesh where the surface moves by at most `tolerance` each time.
 
     In each of a few rounds, vertices go in the order of their shortest edges; what lies around one that went stays

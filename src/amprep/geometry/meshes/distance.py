@@ -3,15 +3,14 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from amprep.arrays import Floats
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Array = NDArray[np.float64]
 
-
-def near_pairs(lo: Array, hi: Array, distance: float) -> list[tuple[int, int]]:
+def near_pairs(lo: Floats, hi: Floats, distance: float) -> list[tuple[int, int]]:
     """Return the pairs i < j of boxes ``(n, 3)`` whose gap along every axis is less than `distance`.
 
     With `distance` 0 these are the pairs that overlap; a negative one leaves out shallow overlaps.
@@ -23,7 +22,7 @@ def near_pairs(lo: Array, hi: Array, distance: float) -> list[tuple[int, int]]:
     return pairs
 
 
-def box_gap(lo: Array, hi: Array, other_lo: Array, other_hi: Array) -> float:
+def box_gap(lo: Floats, hi: Floats, other_lo: Floats, other_hi: Floats) -> float:
     """Return the distance of two sets of boxes ``(k, 3)``, ``(m, 3)``; when they overlap, less the depth.
 
     The depth of an overlap is the shortest way along an axis that ends it.
@@ -33,14 +32,14 @@ def box_gap(lo: Array, hi: Array, other_lo: Array, other_hi: Array) -> float:
     return float(np.where(outside > 0.0, outside, gap.max(axis=2)).min())
 
 
-def convex_solid(points: Array) -> "Manifold":
+def convex_solid(points: Floats) -> "Manifold":
     """Return the convex hull of points ``(n, 3)``."""
     from manifold3d import Manifold
 
     return Manifold.hull_points(np.ascontiguousarray(points))
 
 
-def box_solids(lo: Array, hi: Array) -> "Manifold":
+def box_solids(lo: Floats, hi: Floats) -> "Manifold":
     """Return the union of boxes ``(k, 3)``."""
     from manifold3d import Manifold, OpType
 
@@ -69,7 +68,7 @@ def solid_gap(solid: "Manifold", other: "Manifold", limit: float) -> float:
     return float(solid.min_gap(other, limit))
 
 
-def triangle_gap(corners: Array, other: Array, limit: float) -> float:
+def triangle_gap(corners: Floats, other: Floats, limit: float) -> float:
     """Return the distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; if crossing, less depth.
 
     The depth of a crossing is how far the edge would have to be drawn back, or the pierced triangle trimmed.

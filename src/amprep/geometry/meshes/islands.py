@@ -4,11 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.shells import Shells, measure_shells
-from amprep.geometry.meshes.topology import Bools, Floats, Ints, compact
-
-Arrays = tuple[Floats, Ints]
+from amprep.geometry.meshes.topology import compact
 
 CRUMB = 1e-4
 """mm3; what booleans on rounded coordinates may leave behind, and nobody misses."""
@@ -20,12 +19,12 @@ _INWARD = 1e-3
 class Parted(NamedTuple):
     """What stays of a solid, what is let go of it, and how many pieces that is, crumbs aside."""
 
-    kept: Arrays
-    islands: Arrays
+    kept: MeshArrays
+    islands: MeshArrays
     number: int
 
 
-def drop_islands(points: Floats, triangles: Ints, region: Arrays, whole: Arrays) -> Parted:
+def drop_islands(points: Floats, triangles: Int64s, region: MeshArrays, whole: MeshArrays) -> Parted:
     """Let go of the pieces that lie wholly in the region.
 
     Where a piece of the `whole` lay wholly in the region itself, the largest that is left of it stays.
@@ -54,12 +53,12 @@ def drop_islands(points: Floats, triangles: Ints, region: Arrays, whole: Arrays)
     return Parted(compact(points, triangles[~gone]), compact(points, triangles[gone]), count)
 
 
-def pieces_of(points: Floats, triangles: Ints) -> int:
+def pieces_of(points: Floats, triangles: Int64s) -> int:
     """Return how many pieces a closed solid has, crumbs and voids aside."""
     return int((measure_shells(points, triangles).volume > CRUMB).sum()) if len(triangles) else 0
 
 
-def handles_of(points: Floats, triangles: Ints) -> int:
+def handles_of(points: Floats, triangles: Int64s) -> int:
     """Return how many handles all surfaces of a closed mesh have, each vertex of which is used by one of them."""
     shells = len(measure_shells(points, triangles).volume)
     used = len(np.unique(triangles))
@@ -67,7 +66,7 @@ def handles_of(points: Floats, triangles: Ints) -> int:
     return shells - euler // 2
 
 
-def _reaching_out(corners: Floats, label: Ints, count: int, region: Arrays) -> Bools:
+def _reaching_out(corners: Floats, label: Int64s, count: int, region: MeshArrays) -> Bools:
     """Tell which shells have solid outside the region just below their surface, ``(count,)``."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
@@ -78,8 +77,8 @@ def _reaching_out(corners: Floats, label: Ints, count: int, region: Arrays) -> B
 
 
 def _largest_each(
-    points: Floats, triangles: Ints, shells: Shells, loose: Bools, region: Arrays, whole: Arrays
-) -> Ints:
+    points: Floats, triangles: Int64s, shells: Shells, loose: Bools, region: MeshArrays, whole: MeshArrays
+) -> Int64s:
     """Return the largest loose shell in each piece of the whole that lies in the region altogether."""
     if not loose.any():
         return np.empty(0, np.int64)
@@ -104,5 +103,5 @@ def _below(corners: Floats) -> Floats:
     return np.asarray(corners.mean(axis=1) - _INWARD * normal)
 
 
-def _within(points: Floats, solid: Arrays) -> Bools:
+def _within(points: Floats, solid: MeshArrays) -> Bools:
     return inside(points, solid[0], solid[1].astype(np.int32))

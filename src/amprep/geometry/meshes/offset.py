@@ -1,14 +1,11 @@
 """The inside of a solid that lies deeper than a given distance below its surface."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import as_manifold
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MOST_POINTS = 800_000
 """Of the grid; manifold3d asks for one at a time."""
@@ -22,7 +19,7 @@ _CLOSE = 6.0
 """Samples of the surface lie that many times closer than the depth, if there are not too many of them."""
 
 
-def inset(points: Floats, triangles: Ints, depth: float, step: float) -> tuple[Floats, Ints]:
+def inset(points: Floats, triangles: Int64s, depth: float, step: float) -> tuple[Floats, Int64s]:
     """Return a closed mesh of what lies at least `depth` mm below the surface of a solid.
 
     A level set of the distance to points sampled on the surface, on a grid of about `step` mm. It errs to the
@@ -51,7 +48,7 @@ def inset(points: Floats, triangles: Ints, depth: float, step: float) -> tuple[F
     return arrays_of((found ^ as_manifold(points, triangles)).simplify(depth / _SMOOTH))
 
 
-def _excess(places: Floats, points: Floats, triangles: Ints, depth: float, most: float) -> Floats:
+def _excess(places: Floats, points: Floats, triangles: Int64s, depth: float, most: float) -> Floats:
     """Return how much deeper than `depth` places lie, at most `most`; outside the solid, minus the depth."""
     from scipy.spatial import cKDTree
 
@@ -66,7 +63,7 @@ def _excess(places: Floats, points: Floats, triangles: Ints, depth: float, most:
     return result
 
 
-def _samples(points: Floats, triangles: Ints, spacing: float) -> tuple[Floats, float]:
+def _samples(points: Floats, triangles: Int64s, spacing: float) -> tuple[Floats, float]:
     """Return points on triangles, and within which distance of one every point of a triangle lies.
 
     They stand in rows along the longest side of each triangle.

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.geometry.meshes.shells import MOST_UNITED, find_inside_out, measure_shells, solid_volume
 from amprep.geometry.meshes.topology import (
-    Bools,
-    Floats,
-    Ints,
     compact,
     count_edges,
     degenerate,
@@ -56,14 +54,14 @@ class Settled(NamedTuple):
     volume: float
     notes: tuple[str, ...]
     problem: str
-    kept: Ints
+    kept: Int64s
     turned: Bools
 
 
 class _Candidate(NamedTuple):
     vertices: Floats
-    triangles: Ints
-    kept: Ints
+    triangles: Int64s
+    kept: Int64s
     notes: tuple[str, ...]
 
 
@@ -112,7 +110,7 @@ def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
     return (solids or found or [_refused(_tidied(points, corners))])[0]
 
 
-def _candidates(vertices: Floats, triangles: Ints) -> Iterator[_Candidate]:
+def _candidates(vertices: Floats, triangles: Int64s) -> Iterator[_Candidate]:
     """Yield ways to read the mesh: tidied, as it came, and last with its seams sewn."""
     merged = _tidied(vertices, triangles)
     unique = _without(merged, repeated(merged.triangles), "repeated triangle")
@@ -131,7 +129,7 @@ def _same_solid(one: _Candidate, other: _Candidate) -> bool:
     return bool(np.isclose(_oriented(one).volume, _oriented(other).volume, rtol=1e-9))
 
 
-def _tidied(vertices: Floats, triangles: Ints) -> _Candidate:
+def _tidied(vertices: Floats, triangles: Int64s) -> _Candidate:
     """Merge equal vertices and drop degenerate triangles."""
     first = first_of_equal_rows(vertices)
     used = np.zeros(len(vertices), np.bool_)

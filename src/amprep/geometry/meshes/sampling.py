@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.geometry.overhangs.find import Bools, Floats, Ints, Longs, Overhangs
+from amprep.arrays import Bools, Floats, Int32s, Int64s
+from amprep.geometry.overhangs.regions import Overhangs
 
 
 class Samples(NamedTuple):
@@ -14,11 +15,11 @@ class Samples(NamedTuple):
     """
 
     points: Floats
-    region: Longs
+    region: Int64s
     inner: Bools
 
 
-def sample_overhangs(vertices: Floats, triangles: Ints, overhangs: Overhangs, spacing: float) -> Samples:
+def sample_overhangs(vertices: Floats, triangles: Int32s, overhangs: Overhangs, spacing: float) -> Samples:
     """Return points on everything that needs support: lattices on faces, their rims, edges, tips.
 
     Every point of a face lies within ``spacing / sqrt(2)`` of a sample in plan, every point of a rim or an
@@ -40,7 +41,7 @@ def sample_overhangs(vertices: Floats, triangles: Ints, overhangs: Overhangs, sp
     return Samples(points, np.concatenate(region).astype(np.int64), np.arange(len(points)) < len(inner))
 
 
-def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Longs]:
+def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Int64s]:
     """Return points along segments, both ends included, and the segment of each."""
     length = np.linalg.norm(end - start, axis=1)
     pieces = np.maximum(np.ceil(length / spacing), 1).astype(np.int64)
@@ -67,7 +68,7 @@ def sample_triangles(corners: Floats, spacing: float) -> Floats:
     return sample_segments(start, end, spacing)[0]
 
 
-def _lattice(vertices: Floats, faces: Longs, spacing: float) -> tuple[Floats, Longs]:
+def _lattice(vertices: Floats, faces: Int64s, spacing: float) -> tuple[Floats, Int64s]:
     from amprep.kernels.meshes.sampling import lattice_points
 
     corners = np.ascontiguousarray(vertices, np.float64)
@@ -77,7 +78,7 @@ def _lattice(vertices: Floats, faces: Longs, spacing: float) -> tuple[Floats, Lo
     return points, owner
 
 
-def _rim(faces: Longs) -> tuple[Longs, Longs]:
+def _rim(faces: Int64s) -> tuple[Int64s, Int64s]:
     """Return the edges ``(n, 2)`` that only one of `faces` has, and that face."""
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
     key = ends[:, 0] * (int(ends.max(initial=0)) + 1) + ends[:, 1]

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.meshes.topology import Bools, Floats, Ints
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -32,14 +32,14 @@ class Shells(NamedTuple):
         ``(k,)`` whether a shell may overlap another, or itself, so that volumes do not just add up.
     """
 
-    label: Ints
+    label: Int64s
     volume: Floats
     lo: Floats
     hi: Floats
     crowded: Bools
 
 
-def label_shells(triangles: Ints, vertex_count: int) -> tuple[int, Ints]:
+def label_shells(triangles: Int64s, vertex_count: int) -> tuple[int, Int64s]:
     """Return how many pieces (triangles joined by vertices) there are, and each triangle's, ``(m,)``."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -51,7 +51,7 @@ def label_shells(triangles: Ints, vertex_count: int) -> tuple[int, Ints]:
     return len(shells), of_triangle.astype(np.int64)
 
 
-def measure_shells(vertices: Floats, triangles: Ints) -> Shells:
+def measure_shells(vertices: Floats, triangles: Int64s) -> Shells:
     """Find and measure the shells of a mesh whose edges match."""
     count, label, simple = _join_by_edges(triangles)
     corners = vertices[triangles]
@@ -79,7 +79,7 @@ def find_inside_out(shells: Shells) -> tuple[Bools, int]:
     return turn, int((turn & (outer == np.arange(len(outer)))).sum())
 
 
-def solid_volume(vertices: Floats, triangles: Ints, shells: Shells) -> float:
+def solid_volume(vertices: Floats, triangles: Int64s, shells: Shells) -> float:
     """Volume where the winding number is positive: shells that overlap count once, cavities are hollow.
 
     Of one self-intersecting shell the volume is the signed one.
@@ -102,12 +102,12 @@ def solid_volume(vertices: Floats, triangles: Ints, shells: Shells) -> float:
     return alone + _volume_with_cavities(outward, cavities)
 
 
-def _manifold_of(vertices: Floats, triangles: Ints) -> "Manifold":
+def _manifold_of(vertices: Floats, triangles: Int64s) -> "Manifold":
     used, corners = np.unique(triangles, return_inverse=True)
     return as_manifold(vertices[used], corners.reshape(-1, 3))
 
 
-def _join_by_edges(triangles: Ints) -> tuple[int, Ints, Bools]:
+def _join_by_edges(triangles: Int64s) -> tuple[int, Int64s, Bools]:
     """Return the number of shells, each triangle's, and which have two triangles at every edge."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -125,7 +125,7 @@ def _join_by_edges(triangles: Ints) -> tuple[int, Ints, Bools]:
     return count, label.astype(np.int64), simple
 
 
-def _split(triangles: Ints, label: Ints) -> list[Ints]:
+def _split(triangles: Int64s, label: Int64s) -> list[Int64s]:
     """Return the triangles of each label, ascending."""
     order = np.argsort(label, kind="stable")
     return np.split(triangles[order], np.flatnonzero(np.diff(label[order])) + 1)
@@ -149,7 +149,7 @@ def _overlapping(lo: Floats, hi: Floats) -> Bools:
     return result
 
 
-def _sweep(lo: Floats, hi: Floats, axis: int) -> tuple[Ints, Ints]:
+def _sweep(lo: Floats, hi: Floats, axis: int) -> tuple[Int64s, Int64s]:
     """Order boxes along an axis; return the order, and for each place the end of the boxes it reaches."""
     order = np.argsort(lo[:, axis], kind="stable")
     return order, np.searchsorted(lo[order, axis], hi[order, axis], side="right")
@@ -198,7 +198,7 @@ def _turned(solid: "Manifold") -> "Manifold":
     return as_manifold(mesh.vert_properties[:, :3], mesh.tri_verts[:, ::-1])
 
 
-def _volumes(corners: Floats, shell: Ints, count: int) -> Floats:
+def _volumes(corners: Floats, shell: Int64s, count: int) -> Floats:
     """Signed volume of each shell, measured from the shell's own corner; rounding counts as zero."""
     first = np.unique(shell, return_index=True)[1]
     local = corners - corners[first, 0][shell][:, None]
@@ -208,7 +208,7 @@ def _volumes(corners: Floats, shell: Ints, count: int) -> Floats:
     return volume
 
 
-def _boxes(corners: Floats, shell: Ints, count: int) -> tuple[Floats, Floats]:
+def _boxes(corners: Floats, shell: Int64s, count: int) -> tuple[Floats, Floats]:
     """Least and greatest corner of each shell, ``(count, 3)``."""
     lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(lo, shell, corners.min(axis=1))
@@ -216,7 +216,7 @@ def _boxes(corners: Floats, shell: Ints, count: int) -> tuple[Floats, Floats]:
     return lo, hi
 
 
-def _outermost(lo: Floats, hi: Floats) -> Ints:
+def _outermost(lo: Floats, hi: Floats) -> Int64s:
     """Return for each box the largest box that holds it, itself if there is none."""
     owner = np.full(len(lo), -1, np.int64)
     for box in np.argsort(-np.prod(hi - lo, axis=1), kind="stable"):

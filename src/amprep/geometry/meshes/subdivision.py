@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.geometry.overhangs.find import Bools, Floats, Ints, Longs
+from amprep.arrays import Bools, Floats, Int32s, Int64s
 
 MOST_TRIANGLES = 2_000_000
 
-Wish = Callable[[Floats, Longs], Bools]
+Wish = Callable[[Floats, Int64s], Bools]
 """Called with corners ``(m, 3, 3)`` and the original triangle of each ``(m,)``; says which are to be split."""
 
 
@@ -17,11 +17,11 @@ class Refined(NamedTuple):
     """A finer mesh of the same surface; `parent` ``(m,)`` is the original triangle of each."""
 
     vertices: Floats
-    triangles: Ints
-    parent: Longs
+    triangles: Int32s
+    parent: Int64s
 
 
-def refine(vertices: Floats, triangles: Ints, wish: Wish) -> Refined:
+def refine(vertices: Floats, triangles: Int32s, wish: Wish) -> Refined:
     """Halve the longest edges of triangles until none is wanted finer, or there are 2 million.
 
     A triangle next to a halved edge is split with it, its own longest edge first, so the mesh keeps neither
@@ -56,7 +56,7 @@ def _halved(mesh: Refined, wanted: Bools) -> Refined:
     return Refined(points, pieces.astype(np.int32), parent)
 
 
-def _longest_first(mesh: Refined) -> Ints:
+def _longest_first(mesh: Refined) -> Int32s:
     """Return the corners of each triangle, turned so that its longest edge leads from the first to the second."""
     points = mesh.vertices[mesh.triangles]
     length = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=2)
@@ -64,7 +64,7 @@ def _longest_first(mesh: Refined) -> Ints:
     return np.take_along_axis(mesh.triangles, turn, axis=1)
 
 
-def _pieces(corners: Ints, middle: Ints, parent: Longs) -> tuple[Ints, Longs]:
+def _pieces(corners: Int32s, middle: Int32s, parent: Int64s) -> tuple[Int32s, Int64s]:
     """Return the triangles after splitting; `middle` ``(m, 3)`` is each edge's new vertex, or -1."""
     a, b, c = corners.T
     m, right, left = middle.T

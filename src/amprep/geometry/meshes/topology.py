@@ -3,12 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from amprep.arrays import Bools, Floats, Int64s
 
 
-def first_of_equal_rows(rows: NDArray[np.generic]) -> Ints:
+def first_of_equal_rows(rows: NDArray[np.generic]) -> Int64s:
     """Return for each row of `rows` ``(n, k)`` the index of the first row equal to it, ``(n,)``."""
     if len(rows) == 0:
         return np.empty(0, np.int64)
@@ -20,7 +18,7 @@ def first_of_equal_rows(rows: NDArray[np.generic]) -> Ints:
     return first
 
 
-def merge_equal(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+def merge_equal(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     """Make vertices at equal places one, and forget those no triangle uses; the order stays.
 
     Parameters
@@ -36,27 +34,27 @@ def merge_equal(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     return compact(vertices, first_of_equal_rows(vertices)[triangles])
 
 
-def compact(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+def compact(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     """Forget vertices that no triangle uses; the order stays."""
     used = np.zeros(len(vertices), np.bool_)
     used[triangles] = True
     return vertices[used], (np.cumsum(used) - 1)[triangles]
 
 
-def degenerate(triangles: Ints) -> Bools:
+def degenerate(triangles: Int64s) -> Bools:
     """Tell which triangles name a vertex twice, ``(m,)``."""
     following = np.roll(triangles, -1, axis=1)
     return np.asarray((triangles == following).any(axis=1))
 
 
-def repeated(triangles: Ints) -> Bools:
+def repeated(triangles: Int64s) -> Bools:
     """Tell which triangles repeat an earlier one, same corners turning the same way, ``(m,)``."""
     lowest = triangles.argmin(axis=1)[:, None]
     turned = np.take_along_axis(triangles, (lowest + np.arange(3)) % 3, axis=1)
     return np.asarray(first_of_equal_rows(turned) != np.arange(len(triangles)))
 
 
-def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
+def count_edges(triangles: Int64s) -> tuple[Int64s, Int64s, Int64s]:
     """Count the triangles at each edge.
 
     Returns
@@ -77,7 +75,7 @@ def count_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
     return np.stack(np.divmod(keys, base), axis=1), np.bincount(which), balance.astype(np.int64)
 
 
-def edges_match(triangles: Ints) -> bool:
+def edges_match(triangles: Int64s) -> bool:
     """Tell whether every edge is run along as often one way as the other."""
     triangles = triangles.astype(np.int64, copy=False)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
@@ -87,13 +85,13 @@ def edges_match(triangles: Ints) -> bool:
     return len(forward) == len(backward) and bool((np.sort(forward) == np.sort(backward)).all())
 
 
-def open_vertices(triangles: Ints) -> Ints:
+def open_vertices(triangles: Int64s) -> Int64s:
     """Return the vertices of edges whose triangles do not match, ``(k,)`` ascending."""
     edges, _, balance = count_edges(triangles)
     return np.unique(edges[balance != 0])
 
 
-def join_near(vertices: Floats, chosen: Ints, tolerance: float) -> Ints:
+def join_near(vertices: Floats, chosen: Int64s, tolerance: float) -> Int64s:
     """Join the `chosen` vertices that lie within `tolerance` mm, chains of them too.
 
     Returns

@@ -3,12 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.topology import compact
 from amprep.kernels.meshes import clip_columns as kernels
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 WELD_LATTICE = 1e-4
 """mm; cells that conform agree to about 1e-12 mm, a build file to 3e-5 mm, the finest wall is far thicker."""
@@ -19,7 +16,7 @@ def kept(points: Floats) -> Floats:
     return np.asarray(np.round(points, 6).astype(np.float32) + np.float32(0.0), np.float64)
 
 
-def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Ints, int]:
+def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Int64s, int]:
     """Number equal rows of `rows` ``(n, 3)`` in order of first appearance: labels ``(n,)`` and their count."""
     table = np.full(1 << (2 * len(rows) + 1).bit_length(), -1, np.int64)
     label = np.empty(len(rows), np.int64)
@@ -27,7 +24,9 @@ def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Ints, int]:
     return label, int(count)
 
 
-def merge_vertices(points: Floats, triangles: Ints, *, lattice: float = WELD_LATTICE) -> tuple[Floats, Ints]:
+def merge_vertices(
+    points: Floats, triangles: Int64s, *, lattice: float = WELD_LATTICE
+) -> tuple[Floats, Int64s]:
     """Make vertices on the same lattice point one, at the place a build file keeps.
 
     Parameters
@@ -50,7 +49,7 @@ def merge_vertices(points: Floats, triangles: Ints, *, lattice: float = WELD_LAT
     return merged, label[triangles]
 
 
-def cancel_opposite(triangles: Ints) -> Bools:
+def cancel_opposite(triangles: Int64s) -> Bools:
     """Tell which triangles stay, ``(m,)``, once those with the same corners turning opposite ways cancel.
 
     Of equal triangles that are left over only the first stays: what is there twice is there once. Triangles
@@ -71,7 +70,7 @@ def cancel_opposite(triangles: Ints) -> Bools:
     return stays
 
 
-def weld(points: Floats, triangles: Ints, *, lattice: float = WELD_LATTICE) -> tuple[Floats, Ints]:
+def weld(points: Floats, triangles: Int64s, *, lattice: float = WELD_LATTICE) -> tuple[Floats, Int64s]:
     """Merge vertices and cancel opposite triangles; vertices nothing uses any more are dropped.
 
     Closed meshes give a closed mesh, and where faces coincide they vanish: the union of solids that touch

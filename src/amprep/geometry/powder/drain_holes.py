@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.geometry.powder.pockets import Arrays, Floats, Ints, Runs, Void, flood, free_runs_of
+from amprep.arrays import Floats, Int64s, MeshArrays
+from amprep.geometry.powder.pockets import Runs, Void, flood, free_runs_of
 
 MOST_DRAINS = 2000
 """Ways that are sought in one support at most, for the largest pockets."""
@@ -23,12 +24,12 @@ _WIDE = 1.05
 class _Ways(NamedTuple):
     """Of which pocket each way is ``(n,)``, and its two ends ``(n, 3)`` mm."""
 
-    pocket: Ints
+    pocket: Int64s
     start: Floats
     end: Floats
 
 
-def find_drains(support: Arrays, parts: Sequence[Arrays], hole: float) -> list[tuple[Floats, Floats]]:
+def find_drains(support: MeshArrays, parts: Sequence[MeshArrays], hole: float) -> list[tuple[Floats, Floats]]:
     """Return boxes (least and greatest corner, mm) which, cut out of a support, let powder out.
 
     Each leads from a pocket straight down, or straight aside along an axis, to where a ball of diameter `hole`
@@ -48,7 +49,7 @@ def find_drains(support: Arrays, parts: Sequence[Arrays], hole: float) -> list[t
     return list(zip(np.minimum(start, end) - beyond, np.maximum(start, end) + beyond, strict=True))
 
 
-def _longest(void: Void) -> Ints:
+def _longest(void: Void) -> Int64s:
     """Return the longest runs of each pocket, of those pockets that have the longest."""
     length = void.roomy.high - void.roomy.low
     chosen = np.flatnonzero(void.pocket)
@@ -62,7 +63,7 @@ def _longest(void: Void) -> Ints:
     return np.asarray(chosen[kept])
 
 
-def _ways(void: Void, around: Runs | None, run: Ints) -> _Ways:
+def _ways(void: Void, around: Runs | None, run: Int64s) -> _Ways:
     """Return straight ways from runs of pockets to the outside: downwards, or aside at half their height."""
     lines, roomy, outside = void.lines, void.roomy, void.pocket == 0
     ny, nx = lines.shape
@@ -70,7 +71,7 @@ def _ways(void: Void, around: Runs | None, run: Ints) -> _Ways:
     low = roomy.low[run].astype(np.float64)
     middle = (low + roomy.high[run]) / 2.0
 
-    def place(at: Ints, z: Floats) -> Floats:
+    def place(at: Int64s, z: Floats) -> Floats:
         plan = lines.origin + (np.column_stack([at % nx, at // nx]) + 0.5) * lines.spacing
         return np.column_stack([plan, z])
 

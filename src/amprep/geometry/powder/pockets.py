@@ -4,12 +4,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Heights = NDArray[np.float32]
-Ints = NDArray[np.int64]
-Arrays = tuple[Floats, NDArray[np.integer]]
+from amprep.arrays import Float32s, Floats, Int64s, MeshArrays
 
 MOST_LINES = 12_000_000
 """Lines through one group of solids; beyond that they stand further apart than asked."""
@@ -54,11 +50,11 @@ class Lines(NamedTuple):
 class Runs(NamedTuple):
     """Free intervals of lines: those of line i are ``start[i] .. start[i + 1]``."""
 
-    start: Ints
-    low: Heights
-    high: Heights
+    start: Int64s
+    low: Float32s
+    high: Float32s
 
-    def at(self, line: Ints, height: Floats) -> Ints:
+    def at(self, line: Int64s, height: Floats) -> Int64s:
         """Return the run at each height ``(k,)`` of a line ``(k,)``, or -1."""
         index, end = self.start[line], self.start[line + 1]
         last = end.copy()
@@ -84,7 +80,7 @@ class Void(NamedTuple):
     lines: Lines
     free: Runs
     roomy: Runs
-    pocket: Ints
+    pocket: Int64s
 
 
 def spacing_for(hole: float, size: Floats) -> float:
@@ -93,7 +89,7 @@ def spacing_for(hole: float, size: Floats) -> float:
     return max(hole / 2.0, float(np.sqrt(area / MOST_LINES)))
 
 
-def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: float) -> list[Pocket]:
+def find_pockets(supports: Sequence[MeshArrays], parts: Sequence[MeshArrays], hole: float) -> list[Pocket]:
     """Return the pockets that a ball of diameter `hole` cannot leave, the largest first.
 
     The plate, z = 0, closes the space below; above and sideways it is open. Upright lines half of the hole
@@ -122,7 +118,7 @@ def find_pockets(supports: Sequence[Arrays], parts: Sequence[Arrays], hole: floa
     return _unless_own(found, void.lines, own, hole / 2.0)
 
 
-def flood(solids: Sequence[Arrays], hole: float) -> Void:
+def flood(solids: Sequence[MeshArrays], hole: float) -> Void:
     """Find where a ball of diameter `hole` mm may be between solids, and from where it does not get out."""
     lines = _lines(solids, hole)
     free = free_runs_of(lines, solids)
@@ -130,7 +126,7 @@ def flood(solids: Sequence[Arrays], hole: float) -> Void:
     return Void(lines, free, roomy, _with_room(lines, free, roomy, _pockets(lines, roomy, hole / 2.0)))
 
 
-def _lines(solids: Sequence[Arrays], hole: float) -> Lines:
+def _lines(solids: Sequence[MeshArrays], hole: float) -> Lines:
     """Stand lines over all solids and at least two beside them on each side."""
     low = np.min([points.min(axis=0) for points, _ in solids], axis=0)
     high = np.max([points.max(axis=0) for points, _ in solids], axis=0)
@@ -139,7 +135,7 @@ def _lines(solids: Sequence[Arrays], hole: float) -> Lines:
     return Lines(low[:2] - (2.5 + _OFF) * spacing, spacing, (ny, nx))
 
 
-def free_runs_of(lines: Lines, solids: Sequence[Arrays]) -> Runs:
+def free_runs_of(lines: Lines, solids: Sequence[MeshArrays]) -> Runs:
     """Return where lines are free of solids, above the plate."""
     from amprep.kernels.voxels.powder import cross_lines, free_runs
 
@@ -173,7 +169,7 @@ def _roomy_runs(lines: Lines, free: Runs, radius: float) -> Runs:
     return Runs(start, low[:total], high[:total])
 
 
-def _pockets(lines: Lines, runs: Runs, radius: float) -> Ints:
+def _pockets(lines: Lines, runs: Runs, radius: float) -> Int64s:
     """Return the number of each run's pocket, 0 for the outside."""
     from amprep.kernels.voxels.powder import join_runs
 
@@ -182,7 +178,7 @@ def _pockets(lines: Lines, runs: Runs, radius: float) -> Ints:
     return parent[1:].astype(np.int64)
 
 
-def _with_room(lines: Lines, free: Runs, roomy: Runs, pocket: Ints) -> Ints:
+def _with_room(lines: Lines, free: Runs, roomy: Runs, pocket: Int64s) -> Int64s:
     """Return the pockets, but for those nowhere as wide as the square around the ball: they count as outside."""
     from amprep.kernels.voxels.powder import find_wide
 
@@ -194,7 +190,7 @@ def _with_room(lines: Lines, free: Runs, roomy: Runs, pocket: Ints) -> Ints:
     return np.where(np.isin(pocket, pocket[chosen[wide]]), pocket, 0)
 
 
-def _listed(lines: Lines, free: Runs, roomy: Runs, pocket: Ints, radius: float) -> list[Pocket]:
+def _listed(lines: Lines, free: Runs, roomy: Runs, pocket: Int64s, radius: float) -> list[Pocket]:
     """Describe the pockets of roomy runs: whole cavities if they are closed, else what the ball can reach."""
     around = _pockets(lines, free, 0.0)
     chosen = np.flatnonzero(pocket)
@@ -226,8 +222,8 @@ def _listed(lines: Lines, free: Runs, roomy: Runs, pocket: Ints, radius: float) 
 
 
 def _swept(
-    lines: Lines, line: Ints, low: Floats, high: Floats, label: Ints, radius: float
-) -> tuple[Ints, Floats, Floats, Ints]:
+    lines: Lines, line: Int64s, low: Floats, high: Floats, label: Int64s, radius: float
+) -> tuple[Int64s, Floats, Floats, Int64s]:
     """Return the runs that balls cover whose centres are on the given ones: those and the lines beside them."""
     nx = lines.shape[1]
     sides = np.array([0, -1, 1, -nx, nx])
@@ -248,10 +244,10 @@ def _swept(
 
 def _pocket(
     lines: Lines,
-    line: Ints,
+    line: Int64s,
     low: Floats,
     high: Floats,
-    label: Ints,
+    label: Int64s,
     number: int,
     at: int,
     z: float,

@@ -1,17 +1,13 @@
 """Round beams with balls at their ends as arrays: points on them, what carries what, and where they may not be."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Floats, Ints
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.shells import label_shells
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.signedinteger[Any]]
-Bools = NDArray[np.bool_]
 
 _AXES = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 DIRECTIONS: Floats = _AXES[np.abs(_AXES).any(axis=1)] / np.linalg.norm(

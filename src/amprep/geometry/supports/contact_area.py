@@ -5,14 +5,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.arrays import MeshArrays
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
 from amprep.geometry.meshes.topology import merge_equal
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-
-Arrays = tuple[NDArray[np.float64], NDArray[np.integer]]
 
 
 class Contact(NamedTuple):
@@ -22,7 +21,7 @@ class Contact(NamedTuple):
     patches: int
 
 
-def measure_contact(support: Arrays, part: Arrays) -> Contact:
+def measure_contact(support: MeshArrays, part: MeshArrays) -> Contact:
     """Return the contact of a closed support with a closed part.
 
     manifold3d says of each triangle of the intersection which of the two it comes from, so the area is exact.

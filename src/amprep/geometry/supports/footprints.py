@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from amprep.arrays import Floats
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
-Floats = NDArray[np.float64]
 
 SOLE = 0.01
 """mm above the plate at which the feet of a support are measured."""

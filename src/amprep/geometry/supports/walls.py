@@ -5,14 +5,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from amprep.geometry.overhangs.find import Overhangs
+from amprep.arrays import Bools, Floats, Ints
+from amprep.geometry.overhangs.regions import Overhangs
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.integer]
 
 _LEVEL = 1e-6
 """Horizontal share of a unit normal below which a face counts as level: it has no side."""

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from amprep.kernels.boxes.places import Array, Indices, helper
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.places import helper
 
 GRID = -1
 """How a block is made: as a grid of one box; else along 0, 1, 2 two blocks side by side in x, y, z."""
@@ -37,12 +38,12 @@ class Making(NamedTuple):
         ``(t,)`` uint64 hash table of the blocks known, t a power of 2.
     """
 
-    size: Indices
-    made: Indices
-    kind: Indices
-    number: Indices
-    full: Array
-    value: Array
+    size: Int64s
+    made: Int64s
+    kind: Int64s
+    number: Int64s
+    full: Floats
+    value: Floats
     table: np.ndarray
 
 

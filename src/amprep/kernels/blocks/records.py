@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.kernels.boxes.places import Array, Indices
+from amprep.arrays import Floats, Int64s
 
 MOST_SMALL = 32
 """Small boxes kept for telling which spaces are of no use."""
@@ -27,12 +27,12 @@ class Blocks(NamedTuple):
         ``(s,)`` int64 which blocks are single boxes, least volume first.
     """
 
-    size: Indices
-    kind: Indices
-    number: Indices
-    value: Array
-    base: Array
-    single: Indices
+    size: Int64s
+    kind: Int64s
+    number: Int64s
+    value: Floats
+    base: Floats
+    single: Int64s
 
 
 class Room(NamedTuple):
@@ -54,10 +54,10 @@ class Room(NamedTuple):
         Value at which the search ends.
     """
 
-    box: Indices
-    sides: Indices
-    starts: Indices
-    margin: Indices
+    box: Int64s
+    sides: Int64s
+    starts: Int64s
+    margin: Int64s
     power: int
     shift: int
     flat: bool
@@ -87,14 +87,14 @@ class States(NamedTuple):
         ``(w,)``.
     """
 
-    spaces: Indices
-    placed: Indices
-    stock: Indices
-    reach: Indices
+    spaces: Int64s
+    placed: Int64s
+    stock: Int64s
+    reach: Int64s
     alive: np.ndarray
-    small: Indices
-    counts: Indices
-    value: Array
+    small: Int64s
+    counts: Int64s
+    value: Floats
 
 
 class Scratch(NamedTuple):
@@ -111,14 +111,14 @@ class Scratch(NamedTuple):
         ``(w * m,)`` the successors: row, block, space, and value when completed.
     """
 
-    fresh: Indices
-    touching: Indices
-    near: Indices
-    box: Indices
+    fresh: Int64s
+    touching: Int64s
+    near: Int64s
+    box: Int64s
     words: np.ndarray
-    block: Indices
-    merit: Array
-    parent: Indices
-    child: Indices
-    space: Indices
-    worth: Array
+    block: Int64s
+    merit: Floats
+    parent: Int64s
+    child: Int64s
+    space: Int64s
+    worth: Floats

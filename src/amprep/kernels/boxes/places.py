@@ -7,10 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from amprep.arrays import Floats, Int64s
 
 helper = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """Of functions that only kernels call: they compile faster without wrappers, and are cached inside `pack`."""
@@ -63,11 +61,11 @@ class Shapes(NamedTuple):
         ``(boxes, 6)`` corners relative to the enclosing box's least corner, clearance added to the upper one.
     """
 
-    kind: Indices
-    first_variant: Indices
-    first_box: Indices
-    variants: Array
-    boxes: Array
+    kind: Int64s
+    first_variant: Int64s
+    first_box: Int64s
+    variants: Floats
+    boxes: Floats
 
 
 class Scratch(NamedTuple):
@@ -87,13 +85,13 @@ class Scratch(NamedTuple):
         ``(kinds,)`` the last build in which a kind found no place.
     """
 
-    placed: Array
-    points: Array
-    lines: Array
-    candidates: Array
-    failed: Indices
-    cursor: Indices
-    best: Array
+    placed: Floats
+    points: Floats
+    lines: Floats
+    candidates: Floats
+    failed: Int64s
+    cursor: Int64s
+    best: Floats
 
 
 class Answer(NamedTuple):
@@ -102,10 +100,10 @@ class Answer(NamedTuple):
     The looks ``(n + 1, 2)`` are the build's height and the area of the rectangle around its boxes.
     """
 
-    build: Indices
-    variant: Indices
-    place: Array
-    looks: Array
+    build: Int64s
+    variant: Int64s
+    place: Floats
+    looks: Floats
 
 
 @helper

@@ -11,7 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from amprep.kernels.boxes.places import Array, Indices, helper
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.places import helper
 from amprep.kernels.boxes.relations import IMPOSSIBLE, fit_together
 
 EXACT, CUT_OFF = 0, 1
@@ -40,10 +41,10 @@ class Sets(NamedTuple):
         ``(k,)`` uint64 random; a set's key in the memory is the sum of its boxes'.
     """
 
-    demand: Indices
-    size: Array
-    room: Array
-    load: Array
+    demand: Int64s
+    size: Floats
+    room: Floats
+    load: Floats
     conflict: NDArray[np.bool_]
     code: NDArray[np.uint64]
 
@@ -58,12 +59,12 @@ class Memory(NamedTuple):
 class PricingScratch(NamedTuple):
     """Work arrays: chosen kinds and keys of the sets so far, counts, conflicts, room left on each scale."""
 
-    chosen: Indices
+    chosen: Int64s
     keys: NDArray[np.uint64]
-    held: Indices
-    blocked: Indices
-    left: Array
-    sizes: Array
+    held: Int64s
+    blocked: Int64s
+    left: Floats
+    sizes: Floats
 
 
 @helper

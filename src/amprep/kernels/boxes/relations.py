@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from amprep.kernels.boxes.places import Array, Indices, helper
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.places import helper
 
 IMPOSSIBLE, POSSIBLE, UNKNOWN = 0, 1, 2
 """Verdicts of `fit_together`: no packing; there is one; not settled within the limit."""
@@ -34,10 +35,10 @@ class RelationScratch(NamedTuple):
         ``(m (m - 1) / 2 + 1, 4)`` decisions.
     """
 
-    head: Array
-    tail: Array
-    axis: Indices
-    trail: Indices
+    head: Floats
+    tail: Floats
+    axis: Int64s
+    trail: Int64s
 
 
 def relation_scratch(most: int) -> RelationScratch:

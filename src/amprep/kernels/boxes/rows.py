@@ -3,23 +3,23 @@
 import numpy as np
 from numba import njit
 
-from amprep.kernels.boxes.places import Array, Indices
+from amprep.arrays import Floats, Int64s
 
 ROUNDING = 1e-9
 
 
 @njit(cache=True)
 def fill_rows(
-    order: Indices,
-    size: Array,
-    room: Array,
+    order: Int64s,
+    size: Floats,
+    room: Floats,
     flat: bool,
     builds: int,
-    build: Indices,
-    place: Array,
-    rows: Array,
-    layers: Array,
-    left: Array,
+    build: Int64s,
+    place: Floats,
+    rows: Floats,
+    layers: Floats,
+    left: Floats,
 ) -> None:
     """Put each box first fit into a row, else a row into a layer, else a layer into a build.
 

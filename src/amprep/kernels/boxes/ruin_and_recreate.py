@@ -12,8 +12,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes.extreme_points import pack
-from amprep.kernels.boxes.places import LEFT, WORK, Array, Indices, helper
+from amprep.kernels.boxes.places import LEFT, WORK, helper
 
 SOLVED, PAUSED = 0, 1
 """What `search` returns: no item is loose; work used up, call again."""
@@ -44,20 +45,20 @@ class Seen(NamedTuple):
 
     code: NDArray[np.uint64]
     key: NDArray[np.uint64]
-    row: Indices
-    start: Indices
-    item: Indices
-    variant: Indices
-    place: Array
-    noted: Indices
+    row: Int64s
+    start: Int64s
+    item: Int64s
+    variant: Int64s
+    place: Floats
+    noted: Int64s
 
 
 class Bins(NamedTuple):
     """The moving state: build (-1: loose), variant and place of each item, as in `box_places.Answer`."""
 
-    build: Indices
-    variant: Indices
-    place: Array
+    build: Int64s
+    variant: Int64s
+    place: Floats
 
 
 @njit(cache=True)

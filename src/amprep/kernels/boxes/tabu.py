@@ -10,17 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from amprep.kernels.boxes.places import (
-    FINISHED,
-    FLAT,
-    PAIR_SLACK,
-    PAUSED,
-    SLACK,
-    Array,
-    Indices,
-    settle,
-    touching,
-)
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.places import FINISHED, FLAT, PAIR_SLACK, PAUSED, SLACK, settle, touching
 
 EVEN, FEWER = 3, 4
 """What `explore` returns besides PAUSED and FINISHED: the builds take the item in, or a build is saved."""
@@ -38,16 +29,16 @@ PENALTY = 0
 class Trial(NamedTuple):
     """Where items were put: build (-1: not asked), variant, place, each by item."""
 
-    build: Indices
-    variant: Indices
-    place: Array
+    build: Int64s
+    variant: Int64s
+    place: Floats
 
 
 class Bins(NamedTuple):
     """Work arrays of the sub-heuristic: boxes ``(builds, boxes, 6)`` and how many of them are used."""
 
-    placed: Array
-    filled: Indices
+    placed: Floats
+    filled: Int64s
 
 
 @njit(cache=True)

@@ -14,9 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.boxes.places import helper
 from amprep.kernels.flow.residual import Carried, Room, shift
-from amprep.kernels.flow.shortest_paths import Bytes, Ints, Longs, Network
+from amprep.kernels.flow.shortest_paths import Network
 
 Potentials = NDArray[np.int16] | NDArray[np.int32]
 
@@ -80,12 +81,12 @@ class Search(NamedTuple):
     """
 
     seen: Potentials
-    stack: Ints
+    stack: Int32s
     arc: Bytes
-    done: Ints
-    heads: Ints
-    entry: Ints
-    below: Ints
+    done: Int32s
+    heads: Int32s
+    entry: Int32s
+    below: Int32s
 
 
 @njit(cache=True)
@@ -96,8 +97,8 @@ def augment(
     prices: Prices,
     potential: Potentials,
     exits: Exits,
-    starts: Longs,
-    ends: Longs,
+    starts: Int64s,
+    ends: Int64s,
     work: Search,
     number: int,
 ) -> int:
@@ -194,7 +195,7 @@ def _take_back_to(network: Network, carried: Carried, state: int, arc: int) -> i
 
 
 @helper
-def _raise_potentials(potential: Potentials, seen: Potentials, states: Ints, to: int, highest: int) -> bool:
+def _raise_potentials(potential: Potentials, seen: Potentials, states: Int32s, to: int, highest: int) -> bool:
     """Raise the potential of each state by what it was seen before `to`; return False if one came too high."""
     for s in states:
         if potential[s] + to - seen[s] > highest:
@@ -214,7 +215,7 @@ def search(
     prices: Prices,
     potential: Potentials,
     exits: Exits,
-    starts: Longs,
+    starts: Int64s,
     lift: int,
     highest_potential: int,
     work: Search,

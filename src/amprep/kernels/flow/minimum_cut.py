@@ -2,9 +2,10 @@
 
 from numba import njit
 
+from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.boxes.places import helper
 from amprep.kernels.flow.residual import Carried, Room, shift
-from amprep.kernels.flow.shortest_paths import Bytes, Ints, Longs, Network
+from amprep.kernels.flow.shortest_paths import Network
 
 UNSEEN, OPEN, CLOSED = 0, 1, 2
 """A state that no search has come to; that is on a way that was found; that a search has left in vain."""
@@ -32,13 +33,13 @@ def extend(
     network: Network,
     carried: Carried,
     room: Room,
-    ground: Ints,
-    starts: Longs,
+    ground: Int32s,
+    starts: Int64s,
     served: Bytes,
     seen: Bytes,
-    stack: Ints,
+    stack: Int32s,
     arcs: Bytes,
-    reached: Ints,
+    reached: Int32s,
 ) -> int:
     """Send a unit to the plate from each of `starts` that finds a way, depth first; list what was looked at.
 

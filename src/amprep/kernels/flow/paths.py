@@ -2,12 +2,13 @@
 
 from numba import njit
 
-from amprep.kernels.flow.shortest_paths import Bytes, Flows, Longs, Network, load, relieve, use
+from amprep.arrays import Bytes, Int64s
+from amprep.kernels.flow.shortest_paths import Flows, Network, load, relieve, use
 
 
 @njit(cache=True)
 def erase(
-    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
+    network: Network, flows: Flows, start: Int64s, chosen: Int64s, first: Int64s, ways: Bytes, drawn: Bytes
 ) -> None:
     """Take the paths of the chosen red squares back."""
     for r in chosen:
@@ -24,7 +25,7 @@ def erase(
 
 @njit(cache=True)
 def redo(
-    network: Network, flows: Flows, start: Longs, chosen: Longs, first: Longs, ways: Bytes, drawn: Bytes
+    network: Network, flows: Flows, start: Int64s, chosen: Int64s, first: Int64s, ways: Bytes, drawn: Bytes
 ) -> None:
     """Put paths back where `ways` says, for the chosen red squares without one."""
     for r in chosen:
@@ -40,7 +41,7 @@ def redo(
 
 
 @njit(cache=True)
-def untangle(network: Network, flows: Flows, start: Longs, first: Longs, ways: Bytes, drawn: Bytes) -> None:
+def untangle(network: Network, flows: Flows, start: Int64s, first: Int64s, ways: Bytes, drawn: Bytes) -> None:
     """Find one path for each drawn red square in the flow; the flow is the same afterwards."""
     for r in range(start.size):
         u = start[r]

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from numba import njit
 
+from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import Bytes, Ints, Longs, Network
+from amprep.kernels.flow.shortest_paths import Network
 
 CUT_OFF = 1 << 29
 """Level of a state from which the plate is out of reach."""
@@ -25,51 +26,51 @@ class Preflow(NamedTuple):
     counts
         Number of states at each level from 1 to the number of states.
     raised
-        The states at these levels, the first `Progress.raised` entries.
+        The states at these levels, the first `Discharging.raised` entries.
     heads, below
         Active states in stacks by level: the top of each stack and what is below each state, 0 for none.
     """
 
-    excess: Ints
-    level: Ints
+    excess: Int32s
+    level: Int32s
     arc: Bytes
-    counts: Ints
-    raised: Ints
-    heads: Ints
-    below: Ints
+    counts: Int32s
+    raised: Int32s
+    heads: Int32s
+    below: Int32s
 
 
-class Progress(NamedTuple):
+class Discharging(NamedTuple):
     """Numbers that move along, each ``(1,)``: range of the stacks in use, length of the list of `raised`."""
 
-    lowest: Longs
-    highest: Longs
-    raised: Longs
+    lowest: Int64s
+    highest: Int64s
+    raised: Int64s
 
 
 @njit(cache=True)
-def _activate(preflow: Preflow, progress: Progress, state: int) -> None:
+def _activate(preflow: Preflow, discharging: Discharging, state: int) -> None:
     """Put a state on the stack of its level."""
     level = preflow.level[state]
     preflow.below[state] = preflow.heads[level]
     preflow.heads[level] = state
-    progress.lowest[0] = min(progress.lowest[0], level)
-    progress.highest[0] = max(progress.highest[0], level)
+    discharging.lowest[0] = min(discharging.lowest[0], level)
+    discharging.highest[0] = max(discharging.highest[0], level)
 
 
 @njit(cache=True)
-def activate_all(preflow: Preflow, progress: Progress, starts: Longs) -> None:
+def activate_all(preflow: Preflow, discharging: Discharging, starts: Int64s) -> None:
     """Give each start a unit to push."""
     for u in starts:
         preflow.excess[2 * u] = 1
-        _activate(preflow, progress, 2 * u)
+        _activate(preflow, discharging, 2 * u)
 
 
 @njit(cache=True)
-def _cut_off(preflow: Preflow, progress: Progress, gap: int) -> None:
+def _cut_off(preflow: Preflow, discharging: Discharging, gap: int) -> None:
     """Cut off all states above an empty level, and keep the others in the list of raised ones."""
     kept = 0
-    for i in range(progress.raised[0]):
+    for i in range(discharging.raised[0]):
         s = preflow.raised[i]
         if preflow.level[s] <= gap:
             preflow.raised[kept] = s
@@ -77,12 +78,12 @@ def _cut_off(preflow: Preflow, progress: Progress, gap: int) -> None:
         elif preflow.level[s] < CUT_OFF:
             preflow.counts[preflow.level[s]] -= 1
             preflow.level[s] = CUT_OFF
-    progress.raised[0] = kept
+    discharging.raised[0] = kept
 
 
 @njit(cache=True)
 def discharge(
-    network: Network, carried: Carried, room: Room, preflow: Preflow, progress: Progress, effort: int
+    network: Network, carried: Carried, room: Room, preflow: Preflow, discharging: Discharging, effort: int
 ) -> bool:
     """Push excess on until no active state is left or the effort is used up; return whether none is left.
 
@@ -95,7 +96,7 @@ def discharge(
     heads, waiting = preflow.heads, preflow.below
     counts, raised, flow, through = preflow.counts, preflow.raised, carried.flow, carried.through
     square_room, edge_room, each, via, offset = room.square, room.edge, room.each, network.via, network.offset
-    stride, top, lowest, highest = network.stride, via.size, progress.lowest[0], progress.highest[0]
+    stride, top, lowest, highest = network.stride, via.size, discharging.lowest[0], discharging.highest[0]
     while lowest <= highest and effort > 0:
         s = heads[lowest]
         if s == 0:
@@ -125,12 +126,12 @@ def discharge(
                 if least < CUT_OFF:
                     counts[least] += 1
                     if here == 0:
-                        raised[progress.raised[0]] = s
-                        progress.raised[0] += 1
+                        raised[discharging.raised[0]] = s
+                        discharging.raised[0] += 1
                 if here > 0:
                     counts[here] -= 1
                     if counts[here] == 0:
-                        _cut_off(preflow, progress, here)
+                        _cut_off(preflow, discharging, here)
                 k, here = 0, level[s]
                 effort -= 12
                 continue
@@ -173,13 +174,13 @@ def discharge(
                 lowest, highest = min(lowest, here - up), max(highest, here - up)
             excess[t] += amount
         arcs[s] = k
-    progress.lowest[0], progress.highest[0] = lowest, highest
-    return bool(progress.lowest[0] > progress.highest[0])
+    discharging.lowest[0], discharging.highest[0] = lowest, highest
+    return bool(discharging.lowest[0] > discharging.highest[0])
 
 
 @njit(cache=True)
 def _find_free(
-    network: Network, carried: Carried, room: Room, preflow: Preflow, now: Ints, waiting: Ints
+    network: Network, carried: Carried, room: Room, preflow: Preflow, now: Int32s, waiting: Int32s
 ) -> tuple[int, int]:
     """Set the level of all states to 0 where a way down is free, and cut off all others for now.
 
@@ -232,21 +233,21 @@ def relabel_all(
     carried: Carried,
     room: Room,
     preflow: Preflow,
-    progress: Progress,
-    now: Ints,
-    later: Ints,
-    waiting: Ints,
+    discharging: Discharging,
+    now: Int32s,
+    later: Int32s,
+    waiting: Int32s,
 ) -> None:
     """Set all levels to what they are at least (global relabelling), and stack the active states anew."""
     level, raised, flow, through = preflow.level, preflow.raised, carried.flow, carried.through
     via, offset, stride, top = network.via, network.offset, network.stride, network.via.size
     counts = preflow.counts
     square_room, edge_room, each = room.square, room.edge, room.each
-    for i in range(progress.raised[0]):
+    for i in range(discharging.raised[0]):
         if level[raised[i]] < CUT_OFF:
             preflow.counts[level[raised[i]]] = 0
-    preflow.heads[: progress.highest[0] + 1] = 0
-    progress.lowest[0] = progress.highest[0] = progress.raised[0] = 0
+    preflow.heads[: discharging.highest[0] + 1] = 0
+    discharging.lowest[0] = discharging.highest[0] = discharging.raised[0] = 0
     length, active = _find_free(network, carried, room, preflow, now, waiting)
     depth, count = 0, 0
     while length > 0:
@@ -288,10 +289,10 @@ def relabel_all(
             if level[later[i]] == depth:
                 now[length] = later[i]
                 length += 1
-    progress.raised[0] = count
+    discharging.raised[0] = count
     for i in range(active):
         if level[waiting[i]] < CUT_OFF:
-            _activate(preflow, progress, waiting[i])
+            _activate(preflow, discharging, waiting[i])
 
 
 @njit(cache=True)

@@ -13,7 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from amprep.kernels.flow.shortest_paths import Ints, Network
+from amprep.arrays import Int32s
+from amprep.kernels.flow.shortest_paths import Network
 
 Flowing = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.int32]
 
@@ -39,8 +40,8 @@ class Room(NamedTuple):
         0 when there is one number for all, else 1: what indices are multiplied by.
     """
 
-    square: Ints
-    edge: Ints
+    square: Int32s
+    edge: Int32s
     each: int
 
 
@@ -61,7 +62,7 @@ def shift(network: Network, carried: Carried, state: int, arc: int, amount: int)
 
 
 @njit(cache=True)
-def measure(network: Network, straight: int, oblique: int, distance: Ints) -> None:
+def measure(network: Network, straight: int, oblique: int, distance: Int32s) -> None:
     """Set the least cost of a way to the plate for all squares in reach, plane by plane from the plate up.
 
     It holds for paths that come in from above; squares that let none through are `UNREACHED`, and squares

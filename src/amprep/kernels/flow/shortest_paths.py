@@ -12,11 +12,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float32]
-Bytes = NDArray[np.uint8]
+from amprep.arrays import Bytes, Float32s, Int32s, Int64s
+
 Counts = NDArray[np.uint16] | NDArray[np.int32]
-Ints = NDArray[np.int32]
-Longs = NDArray[np.int64]
 
 FAR = np.float32(1e30)
 """Distance of a square without a way to the plate."""
@@ -39,8 +37,8 @@ class Network(NamedTuple):
     """
 
     via: Bytes
-    offset: Longs
-    box: Longs
+    offset: Int64s
+    box: Int64s
     stride: int
     width: int
 
@@ -70,9 +68,9 @@ class Flows(NamedTuple):
     through: Counts
     special: Bytes
     rows: Bytes
-    entry: Floats
-    dead: Ints
-    used: Longs
+    entry: Float32s
+    dead: Int32s
+    used: Int64s
 
 
 class Prices(NamedTuple):
@@ -81,7 +79,7 @@ class Prices(NamedTuple):
     `beside` multiplies the price next to a square in use; the last entry of `table` is never exceeded.
     """
 
-    table: Floats
+    table: Float32s
     straight: np.float32
     oblique: np.float32
     beside: np.float32
@@ -210,9 +208,9 @@ def draw(
     flows: Flows,
     prices: Prices,
     limits: Limits,
-    start: Longs,
-    chosen: Longs,
-    first: Longs,
+    start: Int64s,
+    chosen: Int64s,
+    first: Int64s,
     ways: Bytes,
     drawn: Bytes,
     batch: int,

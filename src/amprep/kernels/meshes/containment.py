@@ -1,24 +1,20 @@
 """Winding numbers of points: how often the surface is crossed on the way down from each."""
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
-Ints = NDArray[np.int32]
+from amprep.arrays import Floats, Int32s, Int64s
 
 
 @njit(cache=True)
 def count_below(
     points: Floats,
-    first: Longs,
+    first: Int64s,
     vertices: Floats,
-    triangles: Longs,
+    triangles: Int64s,
     side: float,
     nx: int,
     ny: int,
-    winding: Ints,
+    winding: Int32s,
 ) -> None:
     """Add to `winding` (int32, modified in place) the signed crossings below each point.
 

@@ -6,10 +6,8 @@ share the edge agree to the last bit and no line slips through between them.
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
+from amprep.arrays import Floats, Int64s
 
 
 @njit(cache=True)
@@ -24,7 +22,7 @@ def slopes_of(points: Floats, a: int, b: int, c: int) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def ends_in_row(points: Floats, triangles: Longs, t: int, y: float) -> tuple[float, float]:
+def ends_in_row(points: Floats, triangles: Int64s, t: int, y: float) -> tuple[float, float]:
     """Return where a row of lines crosses a triangle: x on the edges that run up and down in y, or infinity."""
     up = down = np.inf
     for i in range(3):

@@ -2,14 +2,12 @@
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
+from amprep.arrays import Floats, Int64s
 
 
 @njit(cache=True)
-def lattice_points(vertices: Floats, triangles: Longs, spacing: float, points: Floats, owner: Longs) -> int:
+def lattice_points(vertices: Floats, triangles: Int64s, spacing: float, points: Floats, owner: Int64s) -> int:
     """Fill `points` ``(n, 3)`` and `owner` ``(n,)`` (the triangle) while there is room; return their number.
 
     Call it with empty arrays to count first. A line through a shared edge meets one of its two triangles.

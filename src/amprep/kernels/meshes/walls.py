@@ -2,16 +2,14 @@
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
+from amprep.arrays import Floats, Int64s
 
 
 @njit(cache=True)
 def nearest_walls(
     points: Floats,
-    first: Longs,
+    first: Int64s,
     side: float,
     shape: tuple[int, int],
     corners: Floats,

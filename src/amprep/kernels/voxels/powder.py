@@ -1,32 +1,25 @@
 """Flood kernels for loose powder: upright lines through solids, the free runs on them, and what those join to.
 
-Lines stand on a square grid in plan, numbered row by row: line (y, x) is ``y * nx + x``. Heights are mm; a
+Lines stand on a square grid in plan, numbered row by row: line (y, x) is ``y * nx + x``. Float32s are mm; a
 run is an interval of a line without solid.
 """
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from amprep.arrays import Bools, Float32s, Floats, Int8s, Int32s, Int64s
 from amprep.kernels.meshes.rows import ends_in_row, slopes_of
-
-Floats = NDArray[np.float64]
-Heights = NDArray[np.float32]
-Longs = NDArray[np.int64]
-Ints = NDArray[np.int32]
-Signs = NDArray[np.int8]
-Bools = NDArray[np.bool_]
 
 
 @njit(cache=True, nogil=True)
 def cross_lines(
     points: Floats,
-    triangles: Longs,
+    triangles: Int64s,
     spacing: float,
     shape: tuple[int, int],
-    place: Longs,
-    heights: Heights,
-    signs: Signs,
+    place: Int64s,
+    heights: Float32s,
+    signs: Int8s,
 ) -> None:
     """Find where the lines ``((x + 0.5) * spacing, (y + 0.5) * spacing)`` cross triangles.
 
@@ -60,7 +53,7 @@ def cross_lines(
 
 @njit(cache=True, nogil=True)
 def free_runs(
-    first: Longs, heights: Heights, signs: Signs, top: float, start: Longs, low: Heights, high: Heights
+    first: Int64s, heights: Float32s, signs: Int8s, top: float, start: Int64s, low: Float32s, high: Float32s
 ) -> int:
     """Write the runs between height 0 and `top` of each line, upwards; return how many there are.
 
@@ -101,7 +94,7 @@ def free_runs(
 
 
 @njit(cache=True)
-def _meet(spare: Heights, now: int, held: int, low: Heights, high: Heights, begin: int, end: int) -> int:
+def _meet(spare: Float32s, now: int, held: int, low: Float32s, high: Float32s, begin: int, end: int) -> int:
     """Write to ``spare[1 - now]`` what the `held` intervals of ``spare[now]`` share with runs; return how many."""
     kept, i, j = 0, 0, begin
     while i < held and j < end:
@@ -119,13 +112,13 @@ def _meet(spare: Heights, now: int, held: int, low: Heights, high: Heights, begi
 @njit(cache=True, nogil=True)
 def find_wide(
     shape: tuple[int, int],
-    start: Longs,
-    low: Heights,
-    high: Heights,
-    line: Longs,
-    bottom: Heights,
-    lid: Heights,
-    spare: Heights,
+    start: Int64s,
+    low: Float32s,
+    high: Float32s,
+    line: Int64s,
+    bottom: Float32s,
+    lid: Float32s,
+    spare: Float32s,
     wide: Bools,
 ) -> None:
     """Tell which parts of runs, `bottom` to `lid` on a line each, have room across as well: on the diagonal lines.
@@ -150,13 +143,13 @@ def find_wide(
 def roomy_runs(
     shape: tuple[int, int],
     radius: float,
-    start: Longs,
-    low: Heights,
-    high: Heights,
-    room: Longs,
-    room_low: Heights,
-    room_high: Heights,
-    spare: Heights,
+    start: Int64s,
+    low: Float32s,
+    high: Float32s,
+    room: Int64s,
+    room_low: Float32s,
+    room_high: Float32s,
+    spare: Float32s,
 ) -> int:
     """Write the parts of runs where a ball has room: `radius` up and down, and one line to each side.
 
@@ -197,7 +190,7 @@ def roomy_runs(
 
 
 @njit(cache=True)
-def _root(parent: Ints, node: int) -> int:
+def _root(parent: Int32s, node: int) -> int:
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]
@@ -206,7 +199,7 @@ def _root(parent: Ints, node: int) -> int:
 
 @njit(cache=True, nogil=True)
 def join_runs(
-    shape: tuple[int, int], start: Longs, low: Heights, high: Heights, lid: float, parent: Ints
+    shape: tuple[int, int], start: Int64s, low: Float32s, high: Float32s, lid: float, parent: Int32s
 ) -> None:
     """Join runs of neighbouring lines that overlap, and what is open to the outside.
 

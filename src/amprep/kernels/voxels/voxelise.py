@@ -1,18 +1,13 @@
-"""Voxelisation kernels: which cubes triangles, edges and points meet, and which cube centres lie inside.
+"""Voxelisation kernels: which voxels triangles, edges and points meet, and which voxel centres lie inside.
 
-Coordinates are mm relative to the window's corner; a window is an array over cubes ``[k, y, x]``.
+Coordinates are mm relative to the window's corner; a window is an array over voxels ``[k, y, x]``.
 """
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from amprep.arrays import Floats, Int16s, Int32s, Int64s
 from amprep.kernels.meshes.rows import ends_in_row, slopes_of
-
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
-Ints = NDArray[np.int32]
-Shorts = NDArray[np.int16]
 
 
 @njit(cache=True)
@@ -46,9 +41,9 @@ def _mark_column(
     holds: bool,
     iy: int,
     ix: int,
-    marks: Ints,
+    marks: Int32s,
 ) -> None:
-    """Mark the cubes of one column that the height interval of `polygon` meets."""
+    """Mark the voxels of one column that the height interval of `polygon` meets."""
     low = polygon[0, 2]
     high = low
     for i in range(1, count):
@@ -65,21 +60,21 @@ def _mark_column(
 @njit(cache=True)
 def mark_elements(
     points: Floats,
-    elements: Longs,
-    labels: Ints,
+    elements: Int64s,
+    labels: Int32s,
     pitch: float,
     step: float,
     grow: float,
     tolerance: float,
     holds: bool,
-    marks: Ints,
+    marks: Int32s,
 ) -> None:
-    """Lower `marks` (int32, modified in place) to the least label of the elements that meet each cube.
+    """Lower `marks` (int32, modified in place) to the least label of the elements that meet each voxel.
 
     Elements are triangles, edges ``(a, b, b)`` or points ``(a, a, a)``. Each is clipped to every xy-square,
     widened by `grow` mm on each side (negative: shrunk); the clipped polygon is connected, so its height
-    interval says exactly which cubes of the column it meets. Heights within `tolerance` of a grid plane do
-    not reach the cube beyond it. With `holds`, what lies on a grid plane belongs to the cube above.
+    interval says exactly which voxels of the column it meets. Heights within `tolerance` of a grid plane do
+    not reach the voxel beyond it. With `holds`, what lies on a grid plane belongs to the voxel above.
     """
     ny, nx = marks.shape[1], marks.shape[2]
     whole = np.empty((3, 3))
@@ -126,8 +121,8 @@ def mark_elements(
 
 
 @njit(cache=True)
-def count_crossings(points: Floats, triangles: Longs, pitch: float, step: float, change: Shorts) -> None:
-    """Add to `change` (int16, modified in place) how the winding number changes up each line of cube centres.
+def count_crossings(points: Floats, triangles: Int64s, pitch: float, step: float, change: Int16s) -> None:
+    """Add to `change` (int16, modified in place) how the winding number changes up each line of voxel centres.
 
     ``change[k]`` collects the crossings between centres k - 1 and k.
     """
@@ -156,8 +151,8 @@ def count_crossings(points: Floats, triangles: Longs, pitch: float, step: float,
 
 
 @njit(cache=True)
-def mark_interior(change: Shorts, marks: Ints) -> None:
-    """Mark with 0 the cubes whose centre has a positive winding number, from `count_crossings`."""
+def mark_interior(change: Int16s, marks: Int32s) -> None:
+    """Mark with 0 the voxels whose centre has a positive winding number, from `count_crossings`."""
     nz, ny, nx = change.shape
     for iy in range(ny):
         for k in range(nz):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.hookspecs import NoParams
-from amprep.model import CellRequest, Cells, Mesh, Report, Stop, Template
+from amprep.model import CellRequest, Cells, Mesh, Progress, Stop, Template
 
 _CORNERS = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 # opposite faces have the same diagonal, so that prisms that touch share their triangles
@@ -19,7 +19,7 @@ def unit_cube() -> Mesh:
     return Mesh(np.array(_CORNERS, np.float64), np.array(_FACES, np.int32))
 
 
-def emit_prisms(request: CellRequest, *, params: NoParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
+def emit_prisms(request: CellRequest, *, params: NoParams, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
     """Put the unit cube under the map of each edge."""
     count = len(request.plane)
     templates = (Template("prism", unit_cube()),)

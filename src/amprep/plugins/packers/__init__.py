@@ -4,15 +4,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from amprep.hookspecs import Packer, PackerAccepts, hookimpl, later
-from amprep.plugins.packers.integer_program.params import (
-    ColumnGenerationParams,
-    IpLocalSearchParams,
-    IpParams,
-)
 from amprep.plugins.packers.params import (
     AutoParams,
     BlockBuildingParams,
+    ColumnGenerationParams,
     ExtremePointsParams,
+    IpLocalSearchParams,
+    IpParams,
     SweepParams,
     TabuParams,
 )

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes import places as records
 from amprep.kernels.boxes.extreme_points import pack
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.instance.orders import GRID, Pass, enough_passes, passes
 from amprep.plugins.packers.instance.prepare import Scene, prepare
@@ -23,7 +23,7 @@ def pack_extreme_points(
     params: ExtremePointsParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> Packing:
     """Pack by extreme points (Crainic, Perboli, Tadei 2008, doi:10.1287/ijoc.1070.0250).
 
@@ -40,7 +40,7 @@ def pack_extreme_points(
             return as_packing(scene, best, stop.reason)
         if runner.work > params.work * 1e6:
             return as_packing(scene, best, "work used up")
-        report(number / (len(plans) + params.restarts), "trying orders")
+        progress(number / (len(plans) + params.restarts), "trying orders")
         plan = plans[number] if number < len(plans) else _disturbed(best.plan, params.disturbance, rng)
         best = min(best, runner.run(plan, best, stop), key=lambda solution: solution.rank)
     return as_packing(scene, best, stop.reason if stop() else "finished")
@@ -121,7 +121,7 @@ def _shapes(scene: Scene) -> records.Shapes:
     )
 
 
-def _starts(lengths: list[int]) -> records.Indices:
+def _starts(lengths: list[int]) -> Int64s:
     return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
 
 

@@ -7,10 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes.rows import fill_rows
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.instance.orders import Pass
 from amprep.plugins.packers.instance.prepare import Scene, prepare
@@ -24,10 +23,10 @@ class Slicing(NamedTuple):
     along: int
     across: int
     up: int
-    order: Indices
+    order: Int64s
 
 
-def slicings(scene: Scene, items: Indices) -> Iterator[Slicing]:
+def slicings(scene: Scene, items: Int64s) -> Iterator[Slicing]:
     """Yield the choices of axes; for `fill` boxes worth much for their volume come first, or high ones."""
     value = np.array([item.value for item in scene.problem.items])
     for along, across, up in permutations(range(3)):
@@ -41,7 +40,7 @@ def slicings(scene: Scene, items: Indices) -> Iterator[Slicing]:
             yield Slicing(along, across, up, items[np.lexsort((*by_height, -density))])
 
 
-def _turned(scene: Scene, across: int, up: int) -> tuple[Floats, Indices]:
+def _turned(scene: Scene, across: int, up: int) -> tuple[Floats, Int64s]:
     """Return each item's size ``(n, 3)`` with clearance, and its variant: the lowest that fits."""
     variants = [variant for kind in scene.kinds for variant in kind]
     first = np.cumsum([0, *(len(kind) for kind in scene.kinds)])
@@ -72,7 +71,7 @@ def pack_rows(scene: Scene, slicing: Slicing) -> Solution:
     return Solution(Pass(order, np.empty(0)), _rank(scene, build, place + size), True, build, variant, place)
 
 
-def _rank(scene: Scene, build: Indices, far: Floats) -> tuple[float, ...]:
+def _rank(scene: Scene, build: Int64s, far: Floats) -> tuple[float, ...]:
     """Return what is smaller for a better packing: fewer builds or more value, then lower builds."""
     placed = build >= 0
     height = float(far[placed, 2].sum())
@@ -81,7 +80,7 @@ def _rank(scene: Scene, build: Indices, far: Floats) -> tuple[float, ...]:
     return (float(build.max(initial=-1)), height)
 
 
-def best_rows(scene: Scene, items: Indices) -> Solution:
+def best_rows(scene: Scene, items: Int64s) -> Solution:
     """Return the best of all slicings of these items."""
     return min((pack_rows(scene, each) for each in slicings(scene, items)), key=lambda found: found.rank)
 
@@ -110,7 +109,7 @@ def with_rows(scene: Scene, found: Solution) -> Solution:
 
 
 def pack_sweep(
-    problem: PackingProblem, *, params: SweepParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem, *, params: SweepParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
     """Pack by slicing builds along two axes, which leaves one-dimensional packing (Sweep 2003, thesis 2.1).
 
@@ -126,6 +125,6 @@ def pack_sweep(
     for number, slicing in enumerate(chosen[1:], start=1):
         if stop():
             return as_packing(scene, best, stop.reason)
-        report(number / len(chosen), "trying slicings")
+        progress(number / len(chosen), "trying slicings")
         best = min(best, pack_rows(scene, slicing), key=lambda solution: solution.rank)
     return as_packing(scene, best, "finished")

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.geometry.boxes.build_space import union_volume
 from amprep.kernels.boxes import tabu as kernel
-from amprep.kernels.boxes.places import FINISHED, PAUSED, Indices
-from amprep.model.control import Report, Stop
+from amprep.kernels.boxes.places import FINISHED, PAUSED
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.bounds.volume import builds_bound
 from amprep.plugins.packers.extreme_points import Runner
@@ -26,7 +26,7 @@ PAUSE = 4_000_000
 
 
 def pack_tabu(
-    problem: PackingProblem, *, params: TabuParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem, *, params: TabuParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
     """Pack into as few builds as possible by tabu search (thesis 2.4).
 
@@ -50,7 +50,7 @@ def pack_tabu(
         elif search.idle > params.patience:
             reason = "no better one found"
         else:
-            report(min(search.work / (params.work * 1e6), 1.0), f"{search.best_count} builds")
+            progress(min(search.work / (params.work * 1e6), 1.0), f"{search.best_count} builds")
             if not search.search(stop):
                 search.diversify()
     return as_packing(scene, search.best(), reason)
@@ -60,8 +60,8 @@ def pack_tabu(
 class State:
     """Where the items are: build (-1: nowhere), variant as the kernel numbers them, place."""
 
-    build: Indices
-    variant: Indices
+    build: Int64s
+    variant: Int64s
     place: Floats
 
     def copy(self) -> "State":
@@ -144,7 +144,7 @@ class TabuSearch:
         self.tabu[:], self.d, self.idle = -1.0, 0, self.idle + 1
         self.target = self._by_filling()[0]
 
-    def _explore(self, item: int, others: Indices) -> int:
+    def _explore(self, item: int, others: Int64s) -> int:
         code = kernel.explore(
             item, self.target, others, self.k, self.items, self.share, self.current.build, self.shapes,
             self.room, self.zones, PAUSE, self.tabu[self.k], self.chosen, self.wanted, self.order, self.trial,
@@ -153,7 +153,7 @@ class TabuSearch:
         self.work += int(self.cursor[kernel.WORK])
         return int(code)
 
-    def _move(self, trial: kernel.Trial, build: Indices) -> None:
+    def _move(self, trial: kernel.Trial, build: Int64s) -> None:
         """Take the trial's builds over in place of those of its items."""
         moved = np.flatnonzero(build >= 0)
         self.current.build[moved] = self._count() + build[moved]
@@ -163,7 +163,7 @@ class TabuSearch:
             self._best, self.idle = self.current.copy(), 0
         self.target = self._by_filling()[0]
 
-    def _separate(self, items: Indices) -> None:
+    def _separate(self, items: Int64s) -> None:
         """Give each of the items a build of its own."""
         self.current.build[items] = self._count() + np.arange(len(items))
         for item in items.tolist():

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.errors import InputError
-from amprep.geometry.meshes.topology import Ints, merge_equal
+from amprep.geometry.meshes.topology import merge_equal
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.plugins.readers.limits import check_gltf, check_off, check_ply, read_bounded
@@ -23,7 +23,7 @@ _SPLIT: dict[str, Any] = {"split_objects": True, "group_material": False, "maint
 class _Named(NamedTuple):
     name: str
     vertices: Floats
-    triangles: Ints
+    triangles: Int64s
 
 
 def read_mesh_file(path: Path) -> list[Part]:

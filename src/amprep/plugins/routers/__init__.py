@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from amprep.hookspecs import NoParams, SupportRouter, hookimpl, later
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
 
@@ -18,11 +18,11 @@ def _min_cost_flow(
     params: NoParams,  # noqa: ARG001  # a hook's signature is given
     rng: np.random.Generator,  # noqa: ARG001
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportPlan:
     from amprep.plugins.routers.min_cost_flow import route_min_cost_flow
 
-    return route_min_cost_flow(problem, stop=stop, report=report)
+    return route_min_cost_flow(problem, stop=stop, progress=progress)
 
 
 def _push_relabel(
@@ -31,11 +31,11 @@ def _push_relabel(
     params: NoParams,  # noqa: ARG001  # a hook's signature is given
     rng: np.random.Generator,  # noqa: ARG001
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportPlan:
     from amprep.plugins.routers.push_relabel import route_push_relabel
 
-    return route_push_relabel(problem, stop=stop, report=report)
+    return route_push_relabel(problem, stop=stop, progress=progress)
 
 
 def _auto(
@@ -44,11 +44,11 @@ def _auto(
     params: NoParams,  # noqa: ARG001  # a hook's signature is given
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportPlan:
     from amprep.plugins.routers.auto import route_auto
 
-    return route_auto(problem, rng=rng, stop=stop, report=report)
+    return route_auto(problem, rng=rng, stop=stop, progress=progress)
 
 
 @hookimpl

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.min_cost_flow import route_min_cost_flow
 from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
@@ -33,29 +33,29 @@ class Choice(NamedTuple):
 def choose(problem: SupportProblem) -> Choice:
     """Return which router suits a problem."""
     capacity = min((c for c in (problem.edge_capacity, problem.node_capacity) if c), default=0)
-    cubes = f"{problem.cubes.size:,} cubes"
+    voxels = f"{problem.voxels.size:,} voxels"
     if 0 < capacity <= TIGHT:
         few = f"with a capacity of {capacity} paths can hardly be gathered"
-        if problem.cubes.size <= LARGE_JAM:
+        if problem.voxels.size <= LARGE_JAM:
             return Choice("min-cost-flow", f"{few}, so they are to be straight")
-        return Choice("push-relabel", f"{few}, and {cubes} are many for a least-cost flow in a jam")
-    if problem.cubes.size <= SMALL:
-        return Choice("tree", f"{cubes} are few enough to search for the least material")
-    return Choice("shortest-paths", f"it gathers paths quickly, and {cubes} are many for `tree`")
+        return Choice("push-relabel", f"{few}, and {voxels} are many for a least-cost flow in a jam")
+    if problem.voxels.size <= SMALL:
+        return Choice("tree", f"{voxels} are few enough to search for the least material")
+    return Choice("shortest-paths", f"it gathers paths quickly, and {voxels} are many for `tree`")
 
 
 def route_auto(
-    problem: SupportProblem, *, rng: np.random.Generator, stop: Stop, report: Report
+    problem: SupportProblem, *, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> SupportPlan:
     """Route by the router of `choose`; the plan's first note says which and why."""
     router, reason = choose(problem)
     if router == "min-cost-flow":
-        plan = route_min_cost_flow(problem, stop=stop, report=report)
+        plan = route_min_cost_flow(problem, stop=stop, progress=progress)
     elif router == "push-relabel":
-        plan = route_push_relabel(problem, stop=stop, report=report)
+        plan = route_push_relabel(problem, stop=stop, progress=progress)
     elif router == "tree":
-        plan = route_tree(problem, params=TreeParams(), rng=rng, stop=stop, report=report)
+        plan = route_tree(problem, params=TreeParams(), rng=rng, stop=stop, progress=progress)
     else:
         params = ShortestPathsParams()
-        plan = route_shortest_paths(problem, params=params, rng=rng, stop=stop, report=report)
+        plan = route_shortest_paths(problem, params=params, rng=rng, stop=stop, progress=progress)
     return replace(plan, notes=(f"auto chose the router {router}: {reason}", *plan.notes))

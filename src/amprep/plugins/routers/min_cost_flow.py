@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Int32s, Int64s
 from amprep.flows.escalation import escalate
 from amprep.flows.network import Task, exact_plan, nothing_carried, task_of, uncountable
 from amprep.kernels.flow.min_cost import (
@@ -19,8 +19,7 @@ from amprep.kernels.flow.min_cost import (
     search,
 )
 from amprep.kernels.flow.residual import UNREACHED, Carried
-from amprep.kernels.flow.shortest_paths import Ints, Longs
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 
 _CLOSED = 1 << 14
@@ -50,17 +49,17 @@ class MinCostFlow(NamedTuple):
 
     task: Task
     carried: Carried
-    potential: Ints
+    potential: Int32s
     connected: Bools
     stop_reason: str
 
 
-def route_min_cost_flow(problem: SupportProblem, *, stop: Stop, report: Report) -> SupportPlan:
+def route_min_cost_flow(problem: SupportProblem, *, stop: Stop, progress: Progress) -> SupportPlan:
     """Connect as many red squares as the capacities allow and make the sum of all edges' costs least.
 
     Exact, unless stopped: then what has been connected so far is of least cost for those red squares.
     """
-    solved = solve_min_cost_flow(problem, stop=stop, report=report)
+    solved = solve_min_cost_flow(problem, stop=stop, progress=progress)
     done = solved.stop_reason == "finished"
     return exact_plan(
         solved.task,
@@ -79,7 +78,7 @@ def cost_of(task: Task, carried: Carried) -> int:
     return int(straight * task.problem.costs[0] + sum(oblique) * task.problem.costs[1])
 
 
-def solve_min_cost_flow(problem: SupportProblem, *, stop: Stop, report: Report) -> MinCostFlow:
+def solve_min_cost_flow(problem: SupportProblem, *, stop: Stop, progress: Progress) -> MinCostFlow:
     """Return a flow of greatest value and least cost, with potentials.
 
     First the plate is the exit, and every red square with a way is to ship one unit. Those that then cannot
@@ -89,15 +88,15 @@ def solve_min_cost_flow(problem: SupportProblem, *, stop: Stop, report: Report) 
     When capacities may be raised, a greatest flow says first which ones, and all starts anew with these.
     """
     routing = _Routing(task_of(problem))
-    stop_reason = routing.connect(stop, report)
+    stop_reason = routing.connect(stop, progress)
     if stop_reason == "finished":
         first = Carried(*(each.copy() for each in routing.carried))
-        task, _, stop_reason = escalate(routing.task, first, routing.connected, stop=stop, report=report)
+        task, _, stop_reason = escalate(routing.task, first, routing.connected, stop=stop, progress=progress)
         if task.room is not routing.task.room and stop_reason == "finished":
             routing = _Routing(task)
-            stop_reason = routing.connect(stop, report)
+            stop_reason = routing.connect(stop, progress)
     if stop_reason == "finished":
-        stop_reason = routing.exchange(stop, report)
+        stop_reason = routing.exchange(stop, progress)
     potential = routing.potential.astype(np.int32)
     potential[np.repeat(routing.task.distance == UNREACHED, 2)] = UNREACHED
     return MinCostFlow(routing.task, routing.carried, potential, routing.connected, stop_reason)
@@ -116,7 +115,7 @@ class _Routing:
         self.work = _work(self.potential.size, min(buckets, _MANY))
         self.number, self._last = 0, 0
 
-    def connect(self, stop: Stop, report: Report) -> str:
+    def connect(self, stop: Stop, progress: Progress) -> str:
         """Send units to the plate until no more can get there; return why it ended."""
         exits = self._exits(np.arange(self.task.network.stride), 0, once=False)
         left = np.flatnonzero(self.task.open)
@@ -128,10 +127,10 @@ class _Routing:
             self.connected[left] = False
             if stop():
                 return stop.reason
-            report(1.0 - left.size / self.connected.size, "connecting red squares")
+            progress(1.0 - left.size / self.connected.size, "connecting red squares")
         return "finished"
 
-    def exchange(self, stop: Stop, report: Report) -> str:
+    def exchange(self, stop: Stop, progress: Progress) -> str:
         """Leave those red squares out that save most, instead of those that came last; say why it ended."""
         left = np.flatnonzero(self.task.open & ~self.connected)
         count = left.size
@@ -144,11 +143,11 @@ class _Routing:
             if stop():
                 self.carried = before
                 return stop.reason
-            report(1.0 - left.size / count, "choosing what to leave out")
+            progress(1.0 - left.size / count, "choosing what to leave out")
         self.connected = self.task.open & (exits.open[self.task.start] == 1)
         return "finished"
 
-    def _exits(self, squares: Longs, level: int, *, once: bool) -> Exits:
+    def _exits(self, squares: Int64s, level: int, *, once: bool) -> Exits:
         exits = Exits(np.zeros(self.task.network.via.size, np.uint8), level, once)
         exits.open[squares] = 1
         return exits
@@ -157,7 +156,7 @@ class _Routing:
         """Return the greatest potential of a red square with a way."""
         return int(self.potential[2 * self.task.start[self.task.open]].max())
 
-    def _serve(self, exits: Exits, left: Longs) -> tuple[int, Longs]:
+    def _serve(self, exits: Exits, left: Int64s) -> tuple[int, Int64s]:
         """Send units as far away as the last search has found, then search on; return as `_search` does.
 
         A round of augmenting overlooks ways that it has closed itself: many are worth another round, a few are
@@ -174,7 +173,7 @@ class _Routing:
             singles += 1
         return distance, left
 
-    def _augment(self, exits: Exits, left: Longs) -> Longs:
+    def _augment(self, exits: Exits, left: Int64s) -> Int64s:
         """Send units over ways of no reduced cost; return the red squares that are left."""
         self._number(1)
         ends = np.empty(left.size, np.int64)
@@ -182,7 +181,7 @@ class _Routing:
         augment(*state, exits, self.task.start[left], ends, self.work, self.number)
         return left[ends < 0]
 
-    def _search(self, exits: Exits, left: Longs) -> tuple[int, Longs]:
+    def _search(self, exits: Exits, left: Int64s) -> tuple[int, Int64s]:
         """Send one unit the shortest way; return its reduced cost and the red squares that are left."""
         state = (self.task.network, self.carried, self.task.room, self.prices, self.potential)
         start, lift = self.task.start[left], self._highest() + 1
@@ -210,7 +209,7 @@ class _Routing:
             self.number, self._last = 1, 1 + span
 
 
-def _narrow(distance: Ints) -> Potentials:
+def _narrow(distance: Int32s) -> Potentials:
     """Return the distance of both states of each square, in 16 bits when these are enough: they are quicker."""
     if distance.max(where=distance < UNREACHED, initial=0) < _CLOSED:
         return np.repeat(np.minimum(distance, _CLOSED).astype(np.int16), 2)

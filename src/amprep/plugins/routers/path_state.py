@@ -5,22 +5,15 @@ from functools import cached_property
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.flows.escalation import escalate
 from amprep.flows.maximum_flow import push
 from amprep.flows.minimum_cut import Extender
 from amprep.flows.network import Task, hard_limits, network_of, no_flows, plan_of, reasons_of, task_of
 from amprep.kernels.flow.paths import erase, redo, untangle
 from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import (
-    FAR,
-    UNBOUNDED,
-    Limits,
-    Longs,
-    Prices,
-    draw,
-    sweep,
-)
-from amprep.model.control import Report, Stop, silent
+from amprep.kernels.flow.shortest_paths import FAR, UNBOUNDED, Limits, Prices, draw, sweep
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.min_cost_flow import MinCostFlow
 from amprep.plugins.routers.params import ShortestPathsParams
@@ -70,7 +63,7 @@ class Drawing:
         straight, oblique = costs
         return Prices(table, np.float32(straight), np.float32(oblique), np.float32(1.0 - discount))
 
-    def connect_all(self, stop: Stop, report: Report) -> None:
+    def connect_all(self, stop: Stop, progress: Progress) -> None:
         """Draw the first paths, by the plain costs; raise limits until every open red square has one, if allowed."""
         self._draw(self.open, self.plain)
         while self.soft and self._lost().size and not stop():
@@ -78,7 +71,7 @@ class Drawing:
             self.limits = Limits(square, square, UNBOUNDED)
             self._draw(self._lost(), self.plain)
         if self.problem.escalation == "uniform" and not self.soft:
-            self.escalate(stop, report)
+            self.escalate(stop, progress)
 
     def adopt(self, solved: MinCostFlow) -> None:
         """Take over the paths of a flow instead, and the limits that it keeps."""
@@ -101,7 +94,7 @@ class Drawing:
         """Material of all edges in use, mm3."""
         return float(self.flows.used @ self.problem.material)
 
-    def choices(self, rng: np.random.Generator) -> Iterator[Longs]:
+    def choices(self, rng: np.random.Generator) -> Iterator[Int64s]:
         """Yield the red squares of each round: slices of random orders of all that are open."""
         size = max(1, round(len(self.open) * self.params.redraw_ratio))
         order = np.empty(0, np.int64)
@@ -111,13 +104,13 @@ class Drawing:
             yield order[:size]
             order = order[size:]
 
-    def redraw(self, chosen: Longs) -> None:
+    def redraw(self, chosen: Int64s) -> None:
         """Take the chosen paths back and draw them anew at the present prices."""
         lost = self._lost()
         self._erase(chosen)
         self._draw(np.concatenate([lost, chosen]), self.shared)
 
-    def improve(self, chosen: Longs) -> bool:
+    def improve(self, chosen: Int64s) -> bool:
         """Redraw the chosen paths if all find a way and no more material is used; tell whether they were."""
         before, ways = self.material, self.ways.copy()
         chosen = chosen[self.drawn[chosen] == 1]
@@ -129,17 +122,17 @@ class Drawing:
         self._redo(chosen)
         return False
 
-    def _erase(self, chosen: Longs) -> None:
+    def _erase(self, chosen: Int64s) -> None:
         erase(self.network, self.flows, self.start, chosen, self.first, self.ways, self.drawn)
 
-    def _redo(self, chosen: Longs) -> None:
+    def _redo(self, chosen: Int64s) -> None:
         redo(self.network, self.flows, self.start, chosen, self.first, self.ways, self.drawn)
 
-    def _draw(self, chosen: Longs, prices: Prices) -> None:
+    def _draw(self, chosen: Int64s, prices: Prices) -> None:
         if self._try(chosen, prices):
             self._extend()
 
-    def _try(self, chosen: Longs, prices: Prices) -> int:
+    def _try(self, chosen: Int64s, prices: Prices) -> int:
         """Draw the chosen paths; return how many found no way."""
         self.batch += 1
         sweep(self.network, self.flows, prices, self.limits)
@@ -157,8 +150,8 @@ class Drawing:
         )
         return failed
 
-    def _lost(self) -> Longs:
-        lost: Longs = self.open[self.drawn[self.open] == 0]
+    def _lost(self) -> Int64s:
+        lost: Int64s = self.open[self.drawn[self.open] == 0]
         return lost
 
     def _extend(self) -> None:
@@ -166,7 +159,7 @@ class Drawing:
         if self.soft:
             self._extend_softly()
         else:
-            connected, _ = push(self._task, self.carried, self.drawn == 1, stop=Stop(), report=silent)
+            connected, _ = push(self._task, self.carried, self.drawn == 1, stop=Stop(), progress=silent)
             self.drawn[:] = connected
         self._follow()
 
@@ -212,12 +205,14 @@ class Drawing:
         reasons = reasons_of(self.drawn == 1, way, stop_reason)
         return plan_of(self.problem, self.network, self.flows, reasons, stop_reason=stop_reason)
 
-    def escalate(self, stop: Stop, report: Report) -> str:
+    def escalate(self, stop: Stop, progress: Progress) -> str:
         """Raise capacities for the red squares left over, if `problem.escalation` says so; return why it ended."""
         if not self._lost().size:
             return "finished"
         connected = self.drawn == 1
-        task, connected, stop_reason = escalate(self._task, self.carried, connected, stop=stop, report=report)
+        task, connected, stop_reason = escalate(
+            self._task, self.carried, connected, stop=stop, progress=progress
+        )
         self.drawn[:] = connected
         if not task.room.each:
             self._task = task

@@ -5,11 +5,11 @@ import numpy as np
 from amprep.flows.escalation import escalate
 from amprep.flows.maximum_flow import push
 from amprep.flows.network import exact_plan, nothing_carried, task_of
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 
 
-def route_push_relabel(problem: SupportProblem, *, stop: Stop, report: Report) -> SupportPlan:
+def route_push_relabel(problem: SupportProblem, *, stop: Stop, progress: Progress) -> SupportPlan:
     """Connect as many red squares as the capacities allow, or all when these may be raised.
 
     The number is the greatest possible, unless stopped; that straight edges are preferred is a rule of thumb
@@ -17,9 +17,9 @@ def route_push_relabel(problem: SupportProblem, *, stop: Stop, report: Report) -
     """
     task = task_of(problem)
     carried, nobody = nothing_carried(task), np.zeros(len(task.start), np.bool_)
-    connected, stop_reason = push(task, carried, nobody, stop=stop, report=report)
+    connected, stop_reason = push(task, carried, nobody, stop=stop, progress=progress)
     if stop_reason == "finished":
-        task, connected, stop_reason = escalate(task, carried, connected, stop=stop, report=report)
+        task, connected, stop_reason = escalate(task, carried, connected, stop=stop, progress=progress)
     return exact_plan(
         task,
         carried,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.params import ShortestPathsParams
 from amprep.plugins.routers.path_state import Drawing
@@ -14,7 +14,7 @@ def route_shortest_paths(
     params: ShortestPathsParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportPlan:
     """Draw a path from every red square, then redraw a random share of them round by round (thesis 3.4).
 
@@ -34,14 +34,14 @@ def route_shortest_paths(
     """
     stop = stop.within(params.seconds)
     drawing = Drawing(problem, params)
-    drawing.connect_all(stop, report)
+    drawing.connect_all(stop, progress)
     stop_reason = "finished"
     for done, chosen in enumerate(drawing.choices(rng)):
         if stop():
             stop_reason = stop.reason
             break
         drawing.redraw(chosen)
-        report((done + 1) / params.rounds, "redrawing paths")
+        progress((done + 1) / params.rounds, "redrawing paths")
     if stop_reason == "finished":
-        stop_reason = drawing.escalate(stop, report)
+        stop_reason = drawing.escalate(stop, progress)
     return drawing.plan(stop_reason)

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from amprep.kernels.flow.shortest_paths import Longs
-from amprep.model.control import Report, Stop, silent
+from amprep.arrays import Int64s
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
@@ -22,7 +22,7 @@ def route_tree(
     params: TreeParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> SupportPlan:
     """Use as little material as can be found; an edge in use costs `problem.material`, whatever its flow.
 
@@ -37,7 +37,7 @@ def route_tree(
     gathered = Drawing(problem, gather)
     gathered.connect_all(stop, silent)
     grown = Drawing(problem, gather, problem.material)
-    flow = solve_min_cost_flow(_limited(problem, params), stop=stop, report=silent)
+    flow = solve_min_cost_flow(_limited(problem, params), stop=stop, progress=silent)
     grown.adopt(flow)
     adopted = grown.material
     for drawing in (gathered, grown):
@@ -48,13 +48,13 @@ def route_tree(
         best = Drawing(problem, gather, problem.material)
         best.adopt(flow)
     best.price(_G, 0.0, problem.material)
-    stop_reason = _improve(best, params, rng, stop, report)
+    stop_reason = _improve(best, params, rng, stop, progress)
     note = (
         f"tree takes {best.material:.6g} mm3 of material: {_less(best.material, gathered_material)} "
         f"shortest-paths, {_less(best.material, adopted)} min-cost-flow"
     )
     if stop_reason == "finished":
-        stop_reason = best.escalate(stop, report)
+        stop_reason = best.escalate(stop, progress)
     return replace(best.plan(stop_reason), notes=(note,) if best.drawn.any() else ())
 
 
@@ -73,22 +73,22 @@ def _redraw(drawing: Drawing, rng: np.random.Generator, stop: Stop) -> None:
 
 
 def _improve(
-    drawing: Drawing, params: TreeParams, rng: np.random.Generator, stop: Stop, report: Report
+    drawing: Drawing, params: TreeParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> str:
     """Redraw neighbours while it pays; return why it ended."""
     for done in range(params.rounds if len(drawing.open) else 0):
         if stop():
             return stop.reason
         drawing.improve(_neighbours(drawing, int(rng.choice(drawing.open)), params.neighbours))
-        report((done + 1) / params.rounds, "merging supports")
+        progress((done + 1) / params.rounds, "merging supports")
     return "finished"
 
 
-def _neighbours(drawing: Drawing, red: int, count: int) -> Longs:
+def _neighbours(drawing: Drawing, red: int, count: int) -> Int64s:
     """Return the `count` red squares that are nearest to one, itself included, seen from above."""
     place = drawing.problem.red[drawing.open, 1:].astype(np.int64)
     away = ((place - drawing.problem.red[red, 1:]) ** 2).sum(axis=1)
-    nearest: Longs = drawing.open[np.argsort(away, kind="stable")[:count]]
+    nearest: Int64s = drawing.open[np.argsort(away, kind="stable")[:count]]
     return nearest
 
 

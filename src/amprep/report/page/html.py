@@ -8,11 +8,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from amprep.files import replacing
 from amprep.report.json_report import plain
 from amprep.report.page.tables import body_sections, header
 from amprep.report.page.view_model import view_model
 from amprep.report.record import RunRecord
-from amprep.threemf.package.write import replacing
 
 VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">

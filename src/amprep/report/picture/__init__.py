@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.files import replacing
 from amprep.model import Build, Mesh
 from amprep.report.picture.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.picture.labels import draw_labels
 from amprep.report.picture.render import render
 from amprep.report.picture.scene import PART_KIND, Body, build_bodies, plate_body, unsupported_marks
-from amprep.threemf.package.write import replacing
 
 if TYPE_CHECKING:
     from PIL.Image import Image

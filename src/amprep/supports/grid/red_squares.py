@@ -1,4 +1,4 @@
-"""Red squares: where the columns of needy black cubes have a white cube below (thesis 3.2)."""
+"""Red squares: where the columns of needy occupied voxels have a free voxel below (thesis 3.2)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -7,12 +7,12 @@ import numpy as np
 
 from amprep.arrays import Bytes, Ints
 from amprep.geometry.voxels.voxelise import UNMARKED
-from amprep.model.supports import Cube
-from amprep.supports.grid.sizing import PartCubes
+from amprep.model.supports import Voxel
+from amprep.supports.grid.voxel_states import PartVoxels
 
 
 class RedSquares(NamedTuple):
-    """Red squares of a build: ``(m, 3)`` plane, y, x; part, region, and cubes the connector may pass."""
+    """Red squares of a build: ``(m, 3)`` plane, y, x; part, region, and voxels the connector may pass."""
 
     square: Ints
     part: Ints
@@ -20,21 +20,21 @@ class RedSquares(NamedTuple):
     rise: Ints
 
 
-def red_squares(cubes: Bytes, meeting: Bytes, parts: Sequence[PartCubes]) -> RedSquares:
+def red_squares(voxels: Bytes, meeting: Bytes, parts: Sequence[PartVoxels]) -> RedSquares:
     """Return the red squares of all parts, sorted by part, plane, y, x.
 
-    A run is a contiguous column of black cubes that hold needed geometry of one part. Its bottom square is
-    red when the cube below is white, or when it lies on the plate. The rise counts the run's cubes up to the
+    A run is a contiguous column of occupied voxels that hold needed geometry of one part. Its bottom square is
+    red when the voxel below is white, or when it lies on the plate. The rise counts the run's voxels up to the
     first that is closed, or above the lowest one that another part meets too.
     """
-    found = [_of_part(cubes, meeting, part, number) for number, part in enumerate(parts)]
+    found = [_of_part(voxels, meeting, part, number) for number, part in enumerate(parts)]
     empty = RedSquares(np.empty((0, 3), np.int32), *(np.empty(0, np.int32) for _ in range(3)))
     return RedSquares(*(np.concatenate(each) for each in zip(empty, *found, strict=True)))
 
 
-def _of_part(cubes: Bytes, meeting: Bytes, part: PartCubes, number: int) -> RedSquares:
+def _of_part(voxels: Bytes, meeting: Bytes, part: PartVoxels, number: int) -> RedSquares:
     k, y, x = part.window.slices
-    own = cubes[k, y, x] == Cube.BLACK
+    own = voxels[k, y, x] == Voxel.OCCUPIED
     holds = (part.region != UNMARKED) & own
     rise = holds.astype(np.int32)
     region = np.where(holds, part.region, UNMARKED)
@@ -47,8 +47,8 @@ def _of_part(cubes: Bytes, meeting: Bytes, part: PartCubes, number: int) -> RedS
     bottom[1:] &= ~holds[:-1]
     first = part.window.first[0]
     if first > 0:
-        bottom[:1] &= cubes[first - 1, y, x] == Cube.WHITE
-    bottom[1:] &= cubes[k, y, x][:-1] == Cube.WHITE
+        bottom[:1] &= voxels[first - 1, y, x] == Voxel.FREE
+    bottom[1:] &= voxels[k, y, x][:-1] == Voxel.FREE
     square = np.argwhere(bottom)
     at = tuple(square.T)
     count = len(square)
@@ -58,27 +58,27 @@ def _of_part(cubes: Bytes, meeting: Bytes, part: PartCubes, number: int) -> RedS
 
 
 def close_gap(
-    cubes: Bytes,
-    parts: Sequence[PartCubes],
+    voxels: Bytes,
+    parts: Sequence[PartVoxels],
     red: RedSquares,
     *,
     gap: float,
     step: float,
     overhang_angle_deg: float,
 ) -> None:
-    """Close the white cubes nearer than `gap` mm to a part sideways; `cubes` is modified in place.
+    """Close the free voxels nearer than `gap` mm to a part sideways; `voxels` is modified in place.
 
-    Below a red square cubes stay open down to where an overhang as steep as the threshold has left the gap:
-    ``gap * tan(overhang angle)``, in whole cubes and one more.
+    Below a red square voxels stay open down to where an overhang as steep as the threshold has left the gap:
+    ``gap * tan(overhang angle)``, in whole voxels and one more.
     """
-    near = np.zeros(cubes.shape, np.bool_)
+    near = np.zeros(voxels.shape, np.bool_)
     for part in parts:
         if part.near is not None:
             near[part.window.slices] |= part.near
     leaving = np.ceil(gap * np.tan(np.radians(min(overhang_angle_deg, 80.0))) / step) + 1
-    deep = int(min(leaving, len(cubes)))
+    deep = int(min(leaving, len(voxels)))
     plane, y, x = red.square.T
     for down in range(1, deep + 1):
         reached = plane >= down
         near[plane[reached] - down, y[reached], x[reached]] = False
-    cubes[near & (cubes == Cube.WHITE)] = Cube.CLOSED
+    voxels[near & (voxels == Voxel.FREE)] = Voxel.CLOSED

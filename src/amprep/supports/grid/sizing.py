@@ -1,18 +1,16 @@
-"""The support grid of a build: its fineness, its frame, and which cubes are black or closed (thesis 3.2)."""
+"""The support grid of a build: its fineness, its frame, and which voxels are black or closed (thesis 3.2)."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Bytes, Floats, Ints
+from amprep.arrays import Floats
 from amprep.errors import JobError
-from amprep.geometry.overhangs.find import Overhangs
-from amprep.geometry.voxels.voxelise import UNMARKED, Grid, Window, holding_cubes, met_cubes, near_cubes
+from amprep.geometry.overhangs.regions import Overhangs
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
-from amprep.model.supports import Cube, GridFrame
 
 FINEST_PITCH, USUAL_PITCH = 0.8, 2.0
 """mm; the bounds of the automatic pitch, before memory."""
@@ -21,6 +19,7 @@ MEMORY_MB = 2000
 """Default budget of a support grid."""
 
 _SQUARES_PER_PART = 12
+
 _BYTES_PER_CUBE = 40
 """At the peak, measured with the exact routers; `shortest-paths` takes half."""
 
@@ -80,10 +79,10 @@ def frame_of(
     pitch: float,
     strut_angle_deg: float,
     memory_mb: int = MEMORY_MB,
-) -> GridFrame:
+) -> Grid:
     """Lay the grid around the parts, within the build volume, up to the highest overhang.
 
-    It is as much wider than the parts as paths from the highest plane can stray. No cube sticks out of the
+    It is as much wider than the parts as paths from the highest plane can stray. No voxel sticks out of the
     box; when the pitch does not divide the box and a part stands in the last, partial square, the grid is
     shifted to end at that wall.
 
@@ -103,18 +102,18 @@ def frame_of(
             f"supports.memory_mb = {memory_mb}: choose a larger pitch (--set supports.pitch_mm={fitting:g}) or allow "
             "more memory"
         )
-    return GridFrame(origin, pitch, step, (count[0], count[1], count[2]))
+    return Grid(origin, pitch, step, (count[0], count[1], count[2]))
 
 
 def _extent(
     bounds: Sequence[tuple[Floats, Floats]], height: float, space: BuildVolume, pitch: float, step: float
 ) -> tuple[Floats, list[int]]:
-    """Return the origin, and the numbers of cubes (z, y, x), of a grid for overhangs up to `height` mm."""
-    top = max(min(_whole(height / step) + 1, _whole(space.size[2] / step)), 1)
+    """Return the origin, and the numbers of voxels (z, y, x), of a grid for overhangs up to `height` mm."""
+    top = max(min(whole_count(height / step) + 1, whole_count(space.size[2] / step)), 1)
     lo, hi = _common_bounds(bounds)
     origin, count = np.zeros(3), [top, 1, 1]
     for axis in (0, 1):
-        whole = _whole(space.size[axis] / pitch)
+        whole = whole_count(space.size[axis] / pitch)
         spare = float(space.size[axis]) - whole * pitch
         shift = spare if hi[axis] > whole * pitch and lo[axis] >= spare else 0.0
         first = max(int(np.floor((lo[axis] - shift) / pitch)) - top, 0)
@@ -124,7 +123,8 @@ def _extent(
     return origin, count
 
 
-def _whole(count: float) -> int:
+def whole_count(count: float) -> int:
+    """Return the number of voxels that cover a length of `count` voxels."""
     return int(np.floor(count + 1e-9))
 
 
@@ -132,61 +132,3 @@ def _common_bounds(bounds: Sequence[tuple[Floats, Floats]]) -> tuple[Floats, Flo
     if not bounds:
         return np.zeros(3), np.zeros(3)
     return np.min([lo for lo, _ in bounds], axis=0), np.max([hi for _, hi in bounds], axis=0)
-
-
-def closed_cubes(frame: GridFrame, space: BuildVolume) -> Bools:
-    """Tell which cubes are not wholly inside the build volume or meet a forbidden zone."""
-    closed = np.zeros(frame.shape, np.bool_)
-    x0, y0, _ = frame.origin
-    _, ny, nx = frame.shape
-    left, front = x0 + np.arange(nx) * frame.pitch, y0 + np.arange(ny) * frame.pitch
-    outside_x = (left < -CONTACT_TOLERANCE) | (left + frame.pitch > space.size[0] + CONTACT_TOLERANCE)
-    outside_y = (front < -CONTACT_TOLERANCE) | (front + frame.pitch > space.size[1] + CONTACT_TOLERANCE)
-    closed |= outside_y[:, None] | outside_x
-    if space.shape == "cylinder":
-        radius = space.size[0] / 2
-        far_x = np.maximum(np.abs(left - radius), np.abs(left + frame.pitch - radius))
-        far_y = np.maximum(np.abs(front - radius), np.abs(front + frame.pitch - radius))
-        closed |= np.hypot(far_y[:, None], far_x) > radius + CONTACT_TOLERANCE
-    size = np.array([frame.pitch, frame.pitch, frame.step])
-    for lo, hi in zip(space.zone_lo, space.zone_hi, strict=True):
-        first = np.floor((lo + CONTACT_TOLERANCE - frame.origin) / size).astype(int)
-        last = np.ceil((hi - CONTACT_TOLERANCE - frame.origin) / size).astype(int)
-        x, y, z = (slice(max(a, 0), max(b, 0)) for a, b in zip(first, last, strict=True))
-        closed[z, y, x] = True
-    closed[_whole((space.size[2] + CONTACT_TOLERANCE) / frame.step) :] = True
-    return closed
-
-
-class PartCubes(NamedTuple):
-    """One part's cubes in its window: those it meets, the region each needy cube holds, those it is near."""
-
-    window: Window
-    black: Bools
-    region: Ints
-    near: Bools | None
-
-
-def cubes_of(mesh: Mesh, overhangs: Overhangs, frame: GridFrame, *, gap: float, solid: bool) -> PartCubes:
-    """Voxelise one part; `near` only when `gap` (mm) is not 0."""
-    grid = Grid(frame.origin, frame.pitch, frame.step, frame.shape)
-    lo, hi = mesh.bounds
-    window = grid.window(lo, hi, margin=gap)
-    black = met_cubes(window, mesh.vertices, mesh.triangles, solid=solid)
-    region = np.full(window.shape, UNMARKED, np.int32)
-    if overhangs.regions:
-        region = holding_cubes(window, mesh.vertices, mesh.triangles, overhangs)
-        region[~black] = UNMARKED
-    near = near_cubes(window, mesh.vertices, mesh.triangles, gap) if gap > 0 else None
-    return PartCubes(window, black, region, near)
-
-
-def coloured(frame: GridFrame, space: BuildVolume, parts: Sequence[PartCubes]) -> tuple[Bytes, Bytes]:
-    """Return all cubes (values of `Cube`) and how many parts meet each, at most 2."""
-    meeting = np.zeros(frame.shape, np.uint8)
-    for part in parts:
-        block = meeting[part.window.slices]
-        np.minimum(block + part.black, 2, out=block, casting="unsafe")
-    cubes = np.where(meeting > 0, np.uint8(Cube.BLACK), np.uint8(Cube.WHITE))
-    cubes[closed_cubes(frame, space)] = Cube.CLOSED
-    return cubes, meeting

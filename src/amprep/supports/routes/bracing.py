@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bytes, Ints
-from amprep.model.supports import DIRECTIONS, Cube, GridFrame
-from amprep.supports.routes.edges import components, cube_users, lower_squares
+from amprep.geometry.voxels.grid import Grid
+from amprep.model.supports import DIRECTIONS, Voxel
+from amprep.supports.routes.edges import components, lower_squares, voxel_users
 
 FARTHEST_MM = 15.0
 """mm sideways; struts are no longer than this."""
@@ -25,19 +26,19 @@ class Joined(NamedTuple):
     alone: int
 
 
-def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) -> Joined:
+def join_columns(frame: Grid, voxels: Bytes, edges: Ints, slender: float) -> Joined:
     """Brace every column higher than `slender` times its least width.
 
     A column is a connected piece of the supports of one part; its width is that of the box around its
     squares. From each height of `slender` widths upwards a strut of oblique edges leads down from the
     column, one square sideways a layer, to the nearest square of another column of the same part: at the
-    strut angle, so it carries itself. Struts pass white cubes that no other part's supports use. They carry
+    strut angle, so it carries itself. Struts pass free voxels that no other part's supports use. They carry
     no path: flow 1 and capacity 1 stand for the least section of the cell.
     """
     piece, _ = components(edges, np.empty((0, 3), np.int32))
     squares = np.concatenate([edges[:, :3], lower_squares(edges)])
     pieces, parts = np.concatenate([piece, piece]), np.concatenate([edges[:, 6], edges[:, 6]])
-    owners = _Owners(squares, pieces, parts, cube_users(edges))
+    owners = _Owners(squares, pieces, parts, voxel_users(edges))
     struts: list[list[int]] = []
     braced = alone = 0
     for number in range(int(piece.max(initial=-1)) + 1):
@@ -45,9 +46,9 @@ def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) ->
         count, slim = 0, False
         for square in _levels(own, frame, slender):
             slim = True
-            strut = _strut(square, number, owners, cubes, round(FARTHEST_MM / frame.pitch))
+            strut = _strut(square, number, owners, voxels, round(FARTHEST_MM / frame.pitch))
             struts += strut
-            owners.cube_part.update(cube_users(np.array(strut, np.int32).reshape(-1, 7)))
+            owners.voxel_part.update(voxel_users(np.array(strut, np.int32).reshape(-1, 7)))
             count += bool(strut)
         braced += count > 0
         alone += slim and not count
@@ -55,16 +56,16 @@ def join_columns(frame: GridFrame, cubes: Bytes, edges: Ints, slender: float) ->
 
 
 class _Owners:
-    """Which column and part each square belongs to, and which part's supports use each cube."""
+    """Which column and part each square belongs to, and which part's supports use each voxel."""
 
-    def __init__(self, squares: Ints, pieces: Ints, parts: Ints, cubes: dict[Square, int]) -> None:
+    def __init__(self, squares: Ints, pieces: Ints, parts: Ints, voxels: dict[Square, int]) -> None:
         names = [(plane, y, x) for plane, y, x in squares.tolist()]
         self.piece: dict[Square, int] = dict(zip(names, pieces.tolist(), strict=True))
         self.part: dict[Square, int] = dict(zip(names, parts.tolist(), strict=True))
-        self.cube_part = cubes
+        self.voxel_part = voxels
 
 
-def _levels(own: Ints, frame: GridFrame, slender: float) -> Iterator[Square]:
+def _levels(own: Ints, frame: Grid, slender: float) -> Iterator[Square]:
     """Yield a square of a column at each height where it should be braced."""
     extent = np.ptp(own[:, 1:], axis=0) + 1
     free = slender * float(extent.min()) * frame.pitch
@@ -76,7 +77,7 @@ def _levels(own: Ints, frame: GridFrame, slender: float) -> Iterator[Square]:
             yield plane, y, x
 
 
-def _strut(start: Square, piece: int, owners: _Owners, cubes: Bytes, farthest: int) -> list[list[int]]:
+def _strut(start: Square, piece: int, owners: _Owners, voxels: Bytes, farthest: int) -> list[list[int]]:
     """Search downwards, breadth first, for the nearest square of another column of the part; return the edges."""
     part = owners.part[start]
     came: dict[Square, tuple[Square, int]] = {}
@@ -86,7 +87,7 @@ def _strut(start: Square, piece: int, owners: _Owners, cubes: Bytes, farthest: i
         for plane, y, x in front:
             for direction, dy, dx in _OBLIQUE:
                 after = (plane - 1, y + dy, x + dx)
-                if after in came or not _free(cubes, owners, part, (plane - 1, y, x), after):
+                if after in came or not _free(voxels, owners, part, (plane - 1, y, x), after):
                     continue
                 found = owners.piece.get(after)
                 if found == piece:
@@ -99,13 +100,13 @@ def _strut(start: Square, piece: int, owners: _Owners, cubes: Bytes, farthest: i
     return []
 
 
-def _free(cubes: Bytes, owners: _Owners, part: int, *needed: Square) -> bool:
-    """Tell whether an edge may use these cubes."""
-    for cube in needed:
-        plane, y, x = cube
-        if not (0 <= plane < cubes.shape[0] and 0 <= y < cubes.shape[1] and 0 <= x < cubes.shape[2]):
+def _free(voxels: Bytes, owners: _Owners, part: int, *needed: Square) -> bool:
+    """Tell whether an edge may use these voxels."""
+    for voxel in needed:
+        plane, y, x = voxel
+        if not (0 <= plane < voxels.shape[0] and 0 <= y < voxels.shape[1] and 0 <= x < voxels.shape[2]):
             return False
-        if cubes[plane, y, x] != Cube.WHITE or owners.cube_part.get(cube, part) != part:
+        if voxels[plane, y, x] != Voxel.FREE or owners.voxel_part.get(voxel, part) != part:
             return False
     return True
 

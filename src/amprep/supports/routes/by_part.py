@@ -5,18 +5,18 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.checks.supports.plan import has_way
 from amprep.flows.complete import complete
-from amprep.model.control import Report, Stop, silent
+from amprep.flows.reachability import has_way
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME
 from amprep.supports.routes.edges import (
-    cubes_below,
-    cubes_used,
     keys_of,
     merge_edges,
-    no_cubes,
     no_edges,
+    no_voxels,
     part_of_edges,
+    voxels_below,
+    voxels_used,
 )
 from amprep.supports.routes.network import Network
 
@@ -36,20 +36,20 @@ class Routed(NamedTuple):
     reasons: tuple[str, ...]
 
 
-def route_together(network: Network, report: Report) -> Routed:
+def route_together(network: Network, progress: Progress) -> Routed:
     """Route everything as one network, as in the thesis: supports of different parts may merge."""
     reds = np.flatnonzero(network.red.square[:, 0] > 0).astype(np.int32)
-    edges = network.connect(reds, no_cubes(), network.stop, report)
+    edges = network.connect(reds, no_voxels(), network.stop, progress)
     edges[:, 6] = part_of_edges(edges, network.red, reds)
     return Routed(edges, tuple(network.reasons))
 
 
-def route_apart(network: Network, report: Report) -> Routed:
-    """Route part by part; squares and cubes in use are closed to the parts that follow.
+def route_apart(network: Network, progress: Progress) -> Routed:
+    """Route part by part; squares and voxels in use are closed to the parts that follow.
 
     Parts come by the height of their highest red square, lowest first: the less height, the less room to
     give way. Cubes right below the red squares of other parts are kept free for these. Each part gets an equal
-    share of the time that is left. Red squares that stay unconnected are then routed once more with the cubes
+    share of the time that is left. Red squares that stay unconnected are then routed once more with the voxels
     of other supports open: they share where they must.
     """
     red = network.red
@@ -60,13 +60,13 @@ def route_apart(network: Network, report: Report) -> Routed:
     blocks = [no_edges()]
     for done, part in enumerate(parts):
         own = np.flatnonzero(above & (red.part == part)).astype(np.int32)
-        kept = cubes_below(red.square[above & (red.part != part)])
-        kept = kept[~np.isin(keys_of(kept), keys_of(cubes_below(red.square[own])))]
-        closed = np.concatenate([kept, *(cubes_used(block) for block in blocks)])
+        kept = voxels_below(red.square[above & (red.part != part)])
+        kept = kept[~np.isin(keys_of(kept), keys_of(voxels_below(red.square[own])))]
+        closed = np.concatenate([kept, *(voxels_used(block) for block in blocks)])
         edges = network.connect(own, closed, _equal_share(network.stop, len(parts) - done), silent)
         edges[:, 6] = part
         blocks.append(edges)
-        report((done + 1) / (len(parts) + 1), "routing part by part")
+        progress((done + 1) / (len(parts) + 1), "routing part by part")
     edges = share(network, np.concatenate(blocks))
     return Routed(edges, tuple(network.reasons))
 
@@ -86,7 +86,7 @@ def share(network: Network, edges: Ints) -> Ints:
     left = network.left()
     if not left.size:
         return edges
-    posed = network.pose(left, no_cubes())
+    posed = network.pose(left, no_voxels())
     way = has_way(posed.problem)[posed.number]
     network.explain(left[~way], ENCLOSED)
     left = left[way]
@@ -104,7 +104,7 @@ def _beside(network: Network, edges: Ints, left: Ints) -> Ints:
     It does not know the flow that is there already, so squares where both together exceed a capacity are closed
     and all is routed again, until nothing is exceeded.
     """
-    rules, closed = network.rules, no_cubes()
+    rules, closed = network.rules, no_voxels()
     limit = rules.edge_limit(network.frame, int(network.red.square[:, 0].max()))
     while left.size and not network.stop():
         network.rules = rules._replace(escalation="none")
@@ -113,7 +113,7 @@ def _beside(network: Network, edges: Ints, left: Ints) -> Ints:
         network.explain(left[np.isin(left, network.left(ENCLOSED))], CAPACITY)
         more[:, 6] = part_of_edges(more, network.red, left)
         full = _exceeded(np.concatenate([edges, more]), limit, rules.node_capacity)
-        full = full[np.isin(keys_of(full), keys_of(cubes_below(more[:, :3])))]
+        full = full[np.isin(keys_of(full), keys_of(voxels_below(more[:, :3])))]
         if not len(full):
             return more
         closed = np.concatenate([closed, full])
@@ -121,7 +121,7 @@ def _beside(network: Network, edges: Ints, left: Ints) -> Ints:
 
 
 def _exceeded(edges: Ints, edge_capacity: int, node_capacity: int) -> Ints:
-    """Return the cubes below the squares, and below the edges' upper squares, that exceed the capacities."""
+    """Return the voxels below the squares, and below the edges' upper squares, that exceed the capacities."""
     merged = merge_edges(edges)
     over = np.zeros(len(merged), np.bool_)
     if edge_capacity:
@@ -129,17 +129,17 @@ def _exceeded(edges: Ints, edge_capacity: int, node_capacity: int) -> Ints:
     if node_capacity:
         _, square = np.unique(keys_of(merged[:, :3]), return_inverse=True)
         over |= np.bincount(square, weights=merged[:, 4])[square] > node_capacity
-    return cubes_below(merged[over, :3])
+    return voxels_below(merged[over, :3])
 
 
 def _completed(network: Network, edges: Ints) -> Ints:
     """Return the edges of the greatest flow in one network of all parts, capacities raised where that is allowed."""
     reds = np.flatnonzero(network.red.square[:, 0] > 0).astype(np.int32)
-    posed = network.pose(reds, no_cubes())
+    posed = network.pose(reds, no_voxels())
     connected = np.zeros(len(posed.problem.red), np.bool_)
     connected[posed.number[~np.isin(reds, network.left())]] = True
     inner = edges - np.append(posed.corner, [0, 0, 0, 0])
-    plan = complete(posed.problem, inner, connected, stop=network.stop, report=silent)
+    plan = complete(posed.problem, inner, connected, stop=network.stop, progress=silent)
     more = network.read(plan, posed, reds)
     more[:, 6] = part_of_edges(more, network.red, reds)
     return more

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from amprep.arrays import Ints
-from amprep.geometry.overhangs.find import Longs
+from amprep.arrays import Int64s, Ints
 from amprep.model.supports import DIRECTIONS
 from amprep.supports.grid.red_squares import RedSquares
 
@@ -18,7 +17,7 @@ def merge_edges(edges: Ints) -> Ints:
     return np.column_stack([edges[first, :4], flow, capacity, edges[first, 6]]).astype(np.int32)
 
 
-def keys_of(square: Ints) -> Longs:
+def keys_of(square: Ints) -> Int64s:
     """Return a number for each square ``(n, 3)``, in the order of plane, y, x."""
     plane, y, x = square.T.astype(np.int64)
     return np.asarray((plane << 40) | (y << 20) | x)
@@ -30,24 +29,24 @@ def lower_squares(edges: Ints) -> Ints:
     return edges[:, :3] + np.column_stack([np.full(len(edges), -1), step]).astype(np.int32)
 
 
-def cubes_used(edges: Ints) -> Ints:
-    """Return the two cubes (k, y, x) of each edge: below its upper square, above its lower one."""
+def voxels_used(edges: Ints) -> Ints:
+    """Return the two voxels (k, y, x) of each edge: below its upper square, above its lower one."""
     return np.stack([edges[:, :3] - (1, 0, 0), lower_squares(edges)], axis=1).reshape(-1, 3).astype(np.int32)
 
 
-def cube_users(edges: Ints) -> dict[tuple[int, int, int], int]:
-    """Return the cubes (k, y, x) that edges use, each with a part whose they are."""
+def voxel_users(edges: Ints) -> dict[tuple[int, int, int], int]:
+    """Return the voxels (k, y, x) that edges use, each with a part whose they are."""
     parts = np.repeat(edges[:, 6], 2).tolist()
-    return {(k, y, x): part for (k, y, x), part in zip(cubes_used(edges).tolist(), parts, strict=True)}
+    return {(k, y, x): part for (k, y, x), part in zip(voxels_used(edges).tolist(), parts, strict=True)}
 
 
-def cubes_below(square: Ints) -> Ints:
-    """Return the cube (k, y, x) below each square."""
+def voxels_below(square: Ints) -> Ints:
+    """Return the voxel (k, y, x) below each square."""
     return np.asarray(square - (1, 0, 0), np.int32)
 
 
-def no_cubes() -> Ints:
-    """Return an empty list of cubes."""
+def no_voxels() -> Ints:
+    """Return an empty list of voxels."""
     return np.empty((0, 3), np.int32)
 
 

@@ -1,29 +1,21 @@
-"""The cubes of a build and the red squares to connect, as a network that any router can be asked to route."""
+"""The voxels of a build and the red squares to connect, as a network that any router can be asked to route."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bytes, Ints
+from amprep.arrays import Bytes, Int64s, Ints
 from amprep.checks.supports.plan import check_plan
 from amprep.errors import PluginError
-from amprep.geometry.overhangs.find import Longs
-from amprep.job.settings.job import LARGEST_COUNT
-from amprep.model.control import Report, Stop
-from amprep.model.supports import (
-    ENCLOSED,
-    OUT_OF_TIME,
-    Cube,
-    Escalation,
-    GridFrame,
-    SupportPlan,
-    SupportProblem,
-)
+from amprep.geometry.voxels.grid import Grid
+from amprep.model.control import Progress, Stop
+from amprep.model.supports import ENCLOSED, OUT_OF_TIME, Escalation, SupportPlan, SupportProblem, Voxel
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.routes.edges import cubes_below, keys_of, no_edges
+from amprep.supports.routes.edges import keys_of, no_edges, voxels_below
+from amprep.validation import LARGEST_COUNT
 
-Route = Callable[[SupportProblem, Stop, Report], SupportPlan]
+Route = Callable[[SupportProblem, Stop, Progress], SupportPlan]
 
 
 class Rules(NamedTuple):
@@ -46,7 +38,7 @@ class Rules(NamedTuple):
     load_area: float = 0.0
     load_height: float = 0.0
 
-    def edge_limit(self, frame: GridFrame, top: int) -> int:
+    def edge_limit(self, frame: Grid, top: int) -> int:
         """Return the capacity of edges in a network whose highest red square is in plane `top`; 0 for none.
 
         A path carries one square of overhang. At least one path may use an edge.
@@ -60,23 +52,23 @@ class Rules(NamedTuple):
 
 
 class Posed(NamedTuple):
-    """A problem in the block of cubes that paths can reach.
+    """A problem in the block of voxels that paths can reach.
 
     Attributes
     ----------
     corner
-        ``(3,)`` plane, y, x of the block's first cube in the grid.
+        ``(3,)`` plane, y, x of the block's first voxel in the grid.
     number
         ``(n,)`` which of the problem's red squares each one asked for is; parts may share some.
     """
 
     problem: SupportProblem
     corner: Ints
-    number: Longs
+    number: Int64s
 
 
 class Network:
-    """The cubes of a build and the red squares to connect, ready to be routed by any of the routers.
+    """The voxels of a build and the red squares to connect, ready to be routed by any of the routers.
 
     Attributes
     ----------
@@ -87,19 +79,19 @@ class Network:
     """
 
     def __init__(
-        self, frame: GridFrame, cubes: Bytes, red: RedSquares, rules: Rules, route: Route, stop: Stop
+        self, frame: Grid, voxels: Bytes, red: RedSquares, rules: Rules, route: Route, stop: Stop
     ) -> None:
-        self.frame, self.cubes, self.red = frame, cubes, red
+        self.frame, self.voxels, self.red = frame, voxels, red
         self.rules, self.route, self.stop = rules, route, stop
         self.reasons = [""] * len(red.part)
         self.notes: list[tuple[int | None, str]] = []
 
-    def connect(self, reds: Ints, closed: Ints, stop: Stop, report: Report) -> Ints:
-        """Route the red squares numbered `reds` with the cubes ``closed[:, :3]`` (k, y, x) closed for once.
+    def connect(self, reds: Ints, closed: Ints, stop: Stop, progress: Progress) -> Ints:
+        """Route the red squares numbered `reds` with the voxels ``closed[:, :3]`` (k, y, x) closed for once.
 
         Notes the reasons of those that stay unconnected, and returns the edges; without time nothing is routed.
         """
-        shut = np.isin(keys_of(cubes_below(self.red.square[reds])), keys_of(closed))
+        shut = np.isin(keys_of(voxels_below(self.red.square[reds])), keys_of(closed))
         self.explain(reds[shut], ENCLOSED)
         reds = reds[~shut]
         if len(reds) and stop():
@@ -108,7 +100,7 @@ class Network:
         if not len(reds) or stop():
             return no_edges()
         posed = self.pose(reds, closed)
-        plan = self.route(posed.problem, stop, report)
+        plan = self.route(posed.problem, stop, progress)
         broken = check_plan(posed.problem, plan)
         if broken:
             raise PluginError(
@@ -123,12 +115,12 @@ class Network:
         top = int(square[:, 0].max())
         _, ny, nx = self.frame.shape
         y, x = _stretch(square[:, 1], top, ny), _stretch(square[:, 2], top, nx)
-        cubes = self.cubes[: top + 1, y, x].copy()
+        voxels = self.voxels[: top + 1, y, x].copy()
         corner = np.array([0, y.start, x.start], np.int32)
         inner = closed - corner
-        inner = inner[((inner >= 0) & (inner < cubes.shape)).all(axis=1)]
-        cubes[tuple(inner.T)] = Cube.CLOSED
-        return Posed(self._problem(cubes, square - corner, reds[first], corner), corner, number)
+        inner = inner[((inner >= 0) & (inner < voxels.shape)).all(axis=1)]
+        voxels[tuple(inner.T)] = Voxel.CLOSED
+        return Posed(self._problem(voxels, square - corner, reds[first], corner), corner, number)
 
     def read(self, plan: SupportPlan, posed: Posed, reds: Ints) -> Ints:
         """Note what a plan says of the red squares it was asked for, and return its edges."""
@@ -162,17 +154,17 @@ class Network:
         notes = [(int(parts[0]) if len(parts) == 1 else None, each) for each in words]
         self.notes += [note for note in notes if note not in self.notes]
 
-    def _problem(self, cubes: Bytes, square: Ints, reds: Ints, corner: Ints) -> SupportProblem:
+    def _problem(self, voxels: Bytes, square: Ints, reds: Ints, corner: Ints) -> SupportProblem:
         frame, rules = self.frame, self.rules
         origin = frame.origin + corner[::-1] * (frame.pitch, frame.pitch, frame.step)
-        nz, ny, nx = cubes.shape
+        nz, ny, nx = voxels.shape
         return SupportProblem(
-            GridFrame(origin, frame.pitch, frame.step, (nz, ny, nx)),
-            cubes,
+            Grid(origin, frame.pitch, frame.step, (nz, ny, nx)),
+            voxels,
             square,
             self.red.part[reds],
             self.red.region[reds],
-            cubes[0] == Cube.WHITE,
+            voxels[0] == Voxel.FREE,
             rules.edge_limit(frame, int(square[:, 0].max())),
             rules.node_capacity,
             rules.costs,

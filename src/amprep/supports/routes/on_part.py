@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Bytes, Ints
-from amprep.model.supports import Cube
+from amprep.model.supports import Voxel
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.grid.sizing import PartCubes
-from amprep.supports.routes.edges import cube_users
+from amprep.supports.grid.voxel_states import PartVoxels
+from amprep.supports.routes.edges import voxel_users
 
 DEEPEST = 2
 """Cubes below a green square that its foot may pass on its way to the surface."""
@@ -23,7 +23,7 @@ class Grounded(NamedTuple):
     edges
         Rows as in `Routed.edges`.
     feet
-        ``(k, 5)`` int32: the green square (plane, y, x) on top of a black cube, the part, and how many cubes of
+        ``(k, 5)`` int32: the green square (plane, y, x) on top of a occupied voxel, the part, and how many voxels of
         its column the foot may pass downwards.
     served
         ``(m,)`` which red squares they connect.
@@ -35,30 +35,30 @@ class Grounded(NamedTuple):
 
 
 def stand_on_parts(
-    cubes: Bytes, meeting: Bytes, blocks: Sequence[PartCubes], red: RedSquares, left: Bools, edges: Ints
+    voxels: Bytes, meeting: Bytes, blocks: Sequence[PartVoxels], red: RedSquares, left: Bools, edges: Ints
 ) -> Grounded:
-    """Lead the red squares that are `left` ``(m,)`` straight down to the first black cube.
+    """Lead the red squares that are `left` ``(m,)`` straight down to the first occupied voxel.
 
-    That cube has to belong to the part that the square holds, and to no other; the cubes on the way are white
+    That voxel has to belong to the part that the square holds, and to no other; the voxels on the way are white
     and in no other part's supports.
     """
-    users = cube_users(edges)
+    users = voxel_users(edges)
     found: list[list[int]] = []
     feet: dict[tuple[int, int, int], list[int]] = {}
     served = np.zeros(len(left), np.bool_)
     for number in np.flatnonzero(left).tolist():
         (plane, y, x), part = red.square[number].tolist(), int(red.part[number])
         below = plane - 1
-        while below >= 0 and cubes[below, y, x] == Cube.WHITE and users.get((below, y, x), part) == part:
+        while below >= 0 and voxels[below, y, x] == Voxel.FREE and users.get((below, y, x), part) == part:
             below -= 1
-        if below < 0 or below == plane - 1 or not _bears(cubes, meeting, blocks[part], (below, y, x)):
+        if below < 0 or below == plane - 1 or not _bears(voxels, meeting, blocks[part], (below, y, x)):
             continue
         served[number] = True
         for k in range(below + 1, plane):
             users[k, y, x] = part
         found += [[k + 1, y, x, 0, 1, 1, part] for k in range(below + 1, plane)]
         deep = 1
-        while deep < DEEPEST and _bears(cubes, meeting, blocks[part], (below - deep, y, x)):
+        while deep < DEEPEST and _bears(voxels, meeting, blocks[part], (below - deep, y, x)):
             deep += 1
         feet[below + 1, y, x] = [below + 1, y, x, part, deep]
     return Grounded(
@@ -68,9 +68,9 @@ def stand_on_parts(
     )
 
 
-def _bears(cubes: Bytes, meeting: Bytes, block: PartCubes, cube: tuple[int, int, int]) -> bool:
-    """Tell whether a cube is black because of the part alone."""
-    inner = tuple(at - first for at, first in zip(cube, block.window.first, strict=True))
+def _bears(voxels: Bytes, meeting: Bytes, block: PartVoxels, voxel: tuple[int, int, int]) -> bool:
+    """Tell whether a voxel is black because of the part alone."""
+    inner = tuple(at - first for at, first in zip(voxel, block.window.first, strict=True))
     if not all(0 <= at < count for at, count in zip(inner, block.window.shape, strict=True)):
         return False
-    return bool(block.black[inner] and meeting[cube] == 1 and cubes[cube] == Cube.BLACK)
+    return bool(block.black[inner] and meeting[voxel] == 1 and voxels[voxel] == Voxel.OCCUPIED)

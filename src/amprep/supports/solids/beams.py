@@ -30,9 +30,6 @@ from amprep.model import (
     Template,
 )
 
-MOST_STOOD_IN = 100_000
-"""Triangles of a body that its file shows to readers that know no beams; larger ones get a coarser mesh."""
-
 _WIDER = 1.15
 """Points are tried this much farther out than a beam reaches: it may bulge between two of them."""
 
@@ -230,5 +227,5 @@ def prisms(request: CellRequest) -> Cells:
 
     count = len(request.plane)
     points, triangles = arrays_of(Manifold.cube([1.0, 1.0, 1.0]))
-    cube = Template("prism", Mesh(points, triangles))
-    return Cells((cube,), np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices)
+    voxel = Template("prism", Mesh(points, triangles))
+    return Cells((voxel,), np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices)

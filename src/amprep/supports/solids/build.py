@@ -4,17 +4,19 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.arrays import CONTACT_TOLERANCE
+from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import Emitted, sort_out
 from amprep.errors import JobError
-from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Report, Stop, SupportBody
+from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop, SupportBody
+from amprep.model.build import MOST_STOOD_IN
 from amprep.model.contacts import Base, Connector
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.bases import make_bases, with_base
-from amprep.supports.solids.beams import MOST_STOOD_IN, keep_out, lattice_of, of_group, prisms
+from amprep.supports.solids.beams import keep_out, lattice_of, of_group, prisms
 from amprep.supports.solids.connectors import Ways, find_ways, foot_boxes
 from amprep.supports.solids.drain_holes import drained
 from amprep.supports.solids.keep_out import Clearance, Obstacles
-from amprep.supports.solids.request import Emit, checked, make_request
+from amprep.supports.solids.request import make_request
 from amprep.supports.solids.unite_group import sheet_of, solid_of
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def build_supports(
     base: Base = DIRECT,
     allow_surface: bool,
     stop: Stop,
-    report: Report,
+    progress: Progress,
     beams: bool | None = None,
     gap: float = 0.0,
     space: BuildVolume | None = None,
@@ -61,7 +63,7 @@ def build_supports(
     beams
         Whether struts become beams: None as the cell's parameters say, False never.
     gap
-        mm that supports keep from walls of parts, sideways; walls without thickness only keep to white cubes.
+        mm that supports keep from walls of parts, sideways; walls without thickness only keep to free voxels.
     space
         What cuts beams off; without it all supports are meshes.
 
@@ -74,7 +76,7 @@ def build_supports(
     """
     if not len(layout.red) or not layout.connected.any():
         return ()
-    report(0.0, "emitting cells")
+    progress(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
 
     def ask(*, extend: bool, beams: bool | None) -> Emitted:
@@ -94,7 +96,7 @@ def build_supports(
         if stop.cancelled.is_set():
             break
         names.append(", ".join(parts[part].label for part in held))
-        report(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
+        progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
         solids.append(work.drained_solid(group, emitted))
     bodies: list[SupportBody] = []
     bases = make_bases(solids, parts, base, space, gap)
@@ -111,7 +113,7 @@ def build_supports(
             bodies.append(
                 SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
             )
-    report(1.0, "supports finished")
+    progress(1.0, "supports finished")
     return tuple(bodies)
 
 

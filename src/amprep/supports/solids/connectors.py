@@ -5,16 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats
-from amprep.geometry.cells.tiling import Arrays
-from amprep.geometry.connectors.columns import (
-    Columns,
-    Patches,
-    clip_into,
-    connect,
-    held_corners,
-    join_patches,
-)
+from amprep.arrays import Bools, Floats, MeshArrays
+from amprep.geometry.connectors.columns import Columns, Patches, clip_into, held_corners, join_patches
+from amprep.geometry.connectors.connect import connect
 from amprep.model import Mesh
 from amprep.supports.layout import SupportLayout
 
@@ -81,7 +74,7 @@ _DOWN = np.array([1.0, 1.0, -1.0])
 
 def make_feet(
     layout: SupportLayout, meshes: Sequence[Mesh], group: int, *, overlap: float, seat: float
-) -> list[Arrays]:
+) -> list[MeshArrays]:
     """Return closed meshes of the feet of a group, from `seat` mm above their squares to `overlap` in the part.
 
     The world is mirrored for this: what looks up looks down then, and is held as overhangs are.

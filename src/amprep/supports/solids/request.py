@@ -1,15 +1,10 @@
 """What the host asks a cell emitter for, and whether the answer fits the question."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.errors import PluginError
-from amprep.model import Beams, CellRequest, Cells, Mesh, Role
+from amprep.model import CellRequest, Mesh, Role
 from amprep.supports.layout import SupportLayout
-
-Emit = Callable[[CellRequest], Cells]
 
 
 def make_request(
@@ -21,9 +16,9 @@ def make_request(
     extend: bool,
     beams: bool | None = None,
 ) -> CellRequest:
-    """Return a request for every edge of the layout, and with `extend` for the cubes above red squares.
+    """Return a request for every edge of the layout, and with `extend` for the voxels above red squares.
 
-    A connector gets one cube more than its red square's run, for the overlap.
+    A connector gets one voxel more than its red square's run, for the overlap.
     """
     roles = np.where(layout.plane == 1, Role.FOOT, Role.TRUNK)
     edges = np.column_stack(
@@ -49,61 +44,11 @@ def make_request(
 
 
 def _above_red(layout: SupportLayout) -> Ints:
-    """Connector edges: the cubes of each connected red square's run from below, and one above it."""
+    """Connector edges: the voxels of each connected red square's run from below, and one above it."""
     red = np.flatnonzero(layout.connected)
-    cubes = layout.red_rise[red] + 1
-    up = np.arange(int(cubes.sum())) - np.repeat(np.cumsum(cubes) - cubes, cubes) + 1
-    plane, y, x = np.repeat(layout.red[red], cubes, axis=0).T
-    group = np.repeat(layout.red_group[red], cubes)
+    voxels = layout.red_rise[red] + 1
+    up = np.arange(int(voxels.sum())) - np.repeat(np.cumsum(voxels) - voxels, voxels) + 1
+    plane, y, x = np.repeat(layout.red[red], voxels, axis=0).T
+    group = np.repeat(layout.red_group[red], voxels)
     rest = np.zeros_like(plane)
     return np.column_stack([plane + up, y, x, rest + 1, group, rest, rest + Role.CONNECTOR]).astype(np.int32)
-
-
-def checked(request: CellRequest, cells: object) -> Cells:
-    """Return what an emitter answered if it is sound, as far as the host relies on it.
-
-    Raises
-    ------
-    PluginError
-        Saying what was expected and what came.
-    """
-    if not isinstance(cells, Cells):
-        raise PluginError(f"the lattice cell returned {type(cells).__name__}, expected amprep.model.Cells")
-    count = len(cells.template)
-    if not len(cells.edge) == len(cells.matrix) == count:
-        raise PluginError("the lattice cell returned arrays template, edge and matrix of different lengths")
-    _require_range("template", cells.template, len(cells.templates))
-    _require_range("edge", cells.edge, len(request.plane))
-    _require_range(
-        "group", np.array([extra.group for extra in cells.extra]), int(request.group.max(initial=-1)) + 1
-    )
-    meshes = [template.mesh for template in cells.templates] + [extra.mesh for extra in cells.extra]
-    finite = np.isfinite(cells.matrix).all() and all(np.isfinite(mesh.vertices).all() for mesh in meshes)
-    if not finite:
-        raise PluginError("the lattice cell returned coordinates that are not finite")
-    if cells.beams is not None and len(cells.beams.struts):
-        _require_beams(request, cells.beams)
-    return cells
-
-
-def _require_beams(request: CellRequest, beams: Beams) -> None:
-    if request.beams is False:
-        raise PluginError("the lattice cell returned beams where request.beams is False; return templates")
-    count = len(beams.struts)
-    if (
-        np.shape(beams.struts) != (count, 2)
-        or np.shape(beams.radii) != (count, 2)
-        or len(beams.group) != count
-    ):
-        raise PluginError("the lattice cell returned beams whose struts, radii and groups do not match")
-    _require_range("strut", np.asarray(beams.struts), len(beams.nodes))
-    _require_range("group", np.asarray(beams.group), int(request.group.max(initial=-1)) + 1)
-    if not np.isfinite(beams.nodes).all() or not (np.isfinite(beams.radii) & (beams.radii > 0)).all():
-        raise PluginError(
-            "the lattice cell returned beams with nodes that are not finite or radii not above 0"
-        )
-
-
-def _require_range(name: str, index: np.ndarray, count: int) -> None:
-    if len(index) and not (index.min() >= 0 and index.max() < count):
-        raise PluginError(f"the lattice cell returned a {name} index outside 0 to {count - 1}")

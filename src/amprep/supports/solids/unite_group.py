@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
-from amprep.cells.instances import Emitted, arrays, ends, on_red, squares, trunks
-from amprep.geometry.cells.tiling import Arrays, expand
-from amprep.geometry.connectors.columns import connect
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints, MeshArrays
+from amprep.cells.instances import Emitted, arrays, trunks
+from amprep.geometry.cells.tiling import expand
+from amprep.geometry.connectors.connect import connect
 from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
 from amprep.geometry.merging.union import FILE_STEP, finish, union
 from amprep.geometry.meshes.repair import as_manifold
@@ -15,6 +15,7 @@ from amprep.model import Mesh
 from amprep.model.contacts import Connector
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import Ways, foot_boxes, make_feet
+from amprep.supports.solids.extended_cells import ends, on_red, squares
 from amprep.supports.solids.keep_out import Obstacles, standing_only
 from amprep.supports.solids.tips import Shaped, may_sink, shaped
 
@@ -80,7 +81,9 @@ def _feet(layout: SupportLayout, group: int, obstacles: Obstacles, overlap: floa
     return [obstacles.carve(stood, layout.group_parts[group], overlap, down=True)]
 
 
-def _connectors(red: Bools, below: Floats, layout: SupportLayout, ways: Ways, overlap: float) -> list[Arrays]:
+def _connectors(
+    red: Bools, below: Floats, layout: SupportLayout, ways: Ways, overlap: float
+) -> list[MeshArrays]:
     """Return connectors over red squares; they begin so many mm below them."""
     held = ways.held.chosen(red[ways.held.owner[:, 0]])
     base = ways.columns.lo[:, 2] - below

@@ -1,12 +1,8 @@
 """Files that appear whole or not at all, and zip packages whose bytes depend on their contents alone."""
 
-import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
-
-from amprep.errors import AmprepError
 
 _COMPRESSION = 1
 """Level 4 makes a mesh 10 % smaller and takes twice as long."""
@@ -15,25 +11,6 @@ _OF_REGULAR = 4
 """Rows of beams repeat far more than those of meshes: a fifth smaller at hardly more time."""
 
 _UNIX = 3
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Give a temporary name beside `path` to write to; rename it at the end, or leave nothing behind.
-
-    Raises
-    ------
-    AmprepError
-        If the folder or file cannot be written.
-    """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield temporary
-        temporary.replace(path)
-    except OSError as error:
-        raise AmprepError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_package(

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from amprep.arrays import Floats
 from amprep.errors import AmprepError
+from amprep.files import replacing
 from amprep.model.build import Build
 from amprep.threemf.build.record import NAMESPACE
-from amprep.threemf.package.write import replacing, write_package
+from amprep.threemf.package.write import write_package
 from amprep.threemf.write.document import Document
 from amprep.threemf.write.generic_and_cura import CURA_NAMESPACE, components_document
 from amprep.threemf.write.geometry import check_geometry, mesh_text, text_size

@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Ints
 from amprep.errors import JobError
-from amprep.model import DIRECTIONS, CellRequest, Cells, Report, Role, Stop
+from amprep.model import DIRECTIONS, CellRequest, Cells, Progress, Role, Stop
 from amprep.plugins.cells.hatch.shapes import Walls, hatch_template
 
 HAIR = 1e-3
@@ -62,7 +62,7 @@ def _require(name: str, value: float | None, *, above: bool) -> None:
         raise ValueError(f"{name} must be {'more than 0' if above else '0 or more'}, got {value}")
 
 
-def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
+def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
     """Put the walls under the map of each edge.
 
     Ends of supports have teeth; connector edges are teeth all the way up, so that the part is met by teeth alone.

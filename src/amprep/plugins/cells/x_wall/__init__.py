@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.errors import JobError
-from amprep.model import DIRECTIONS, CellRequest, Cells, Report, Role, Stop, Template
+from amprep.model import DIRECTIONS, CellRequest, Cells, Progress, Role, Stop, Template
 from amprep.plugins.cells.x_wall.shapes import Window, solid_x, surface_x
 
 HAIR = 1e-3
@@ -67,7 +67,7 @@ class _Shares:
     window: Window | None = None
 
 
-def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, report: Report) -> Cells:  # noqa: ARG001
+def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
     """Put an X under the map of each edge; its size at a plane depends on the plane alone.
 
     At both planes of every `join_every`-th layer the arms reach the sides of the square, at the others they

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from amprep.arrays import Floats
 from amprep.model import Mesh, Template
-
-Floats = NDArray[np.float64]
 
 # a ring of 16 points: each arm ends in three of them around a corner of the square, from the corner at (1, 1)
 # counter-clockwise, and between two arms lies one near the centre

@@ -6,7 +6,7 @@ from threading import Thread
 
 import numpy as np
 
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.auto.ruin_and_recreate import Search
 from amprep.plugins.packers.bounds.fractional_cover import CoverBound
@@ -19,7 +19,7 @@ from amprep.plugins.packers.params import AutoParams
 
 
 def pack_builds(
-    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
     """Pack by the sortings of `extreme-points`, then search until the bound is met or the budget is used.
 
@@ -39,7 +39,7 @@ def pack_builds(
     with _proof(CoverBound(scene, bound), search, params, stop) as proof:
         while not reason:
             share = min(float(search.spent[0]) / (params.work * 1e6 + 1.0), 1.0)
-            report(share, f"{search.builds} builds, bound {proof.builds}")
+            progress(share, f"{search.builds} builds, bound {proof.builds}")
             reason = search.save_a_build(lambda: proof.builds, stop)
     # the proof may go on when the search is through; which ends first must not show
     reason = "bound met" if search.builds <= proof.builds else reason

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.block_building import fill_by_blocks
 from amprep.plugins.packers.block_building.integer_instance import is_of_single_boxes
@@ -21,7 +21,7 @@ ORDERS_SHARE = 0.05
 
 
 def pack_fill(
-    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, report: Report
+    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
     """Fill one build: by the sortings of `extreme-points`, by `block-building`, then by disturbed orders.
 
@@ -37,7 +37,7 @@ def pack_fill(
     reason, best = orders.run(early, ORDERS_SHARE * params.work), orders.best
     if reason != "bound met" and not stop():
         work = params.work * (1.0 - ORDERS_SHARE)
-        found, reason = fill_by_blocks(scene, BlockBuildingParams(work=work), stop, report)
+        found, reason = fill_by_blocks(scene, BlockBuildingParams(work=work), stop, progress)
         best = min(best, found, key=_worth)
         if reason == "no better one found":
             reason = orders.run(stop, params.work)

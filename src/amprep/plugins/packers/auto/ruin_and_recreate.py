@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes import places as records
 from amprep.kernels.boxes import ruin_and_recreate as kernel
 from amprep.model.control import Stop
@@ -75,7 +75,7 @@ class Search:
             if self._choose_in_time(stop):
                 return ""
 
-    def _keep(self, build: records.Indices, variant: records.Indices, place: Floats) -> None:
+    def _keep(self, build: Int64s, variant: Int64s, place: Floats) -> None:
         """Make this the best solution and go on from it."""
         plan, rank = Pass(self.items, self.styles[0]), (0.0, float(build.max() + 1))
         self.best = Solution(plan, rank, True, build, variant, place)
@@ -108,7 +108,7 @@ class Search:
         self._keep(build, new_variant - self.first_variant, new_place)
         return True
 
-    def _met(self) -> tuple[records.Indices, records.Indices, records.Indices, Floats]:
+    def _met(self) -> tuple[Int64s, Int64s, Int64s, Floats]:
         """Return where builds begin, and item, variant and place of what they hold: the best ones first."""
         own = np.concatenate([np.flatnonzero(self.best.build == number) for number in range(self.builds)])
         sizes = np.bincount(self.best.build[own], minlength=self.builds)

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.model.control import Stop
 
 MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
@@ -23,20 +22,20 @@ MARGIN = 1e-6
 class Pool(NamedTuple):
     """Builds by kinds: ``(p + 1,)`` where each begins in `kind` ``(t,)``."""
 
-    start: Indices
-    kind: Indices
+    start: Int64s
+    kind: Int64s
 
     def worth(self, price: Floats) -> Floats:
         """Return the total price of each build, ``(p,)``."""
         return np.asarray(np.add.reduceat(price[self.kind], self.start[:-1]))
 
-    def counts(self, rows: Indices, kinds: int) -> Floats:
+    def counts(self, rows: Int64s, kinds: int) -> Floats:
         """Return how many of each kind the builds hold, ``(kinds, r)``."""
         held = [self.kind[self.start[row] : self.start[row + 1]] for row in rows.tolist()]
         return np.array([np.bincount(kind, minlength=kinds) for kind in held], np.float64).T
 
 
-def choose_builds(pool: Pool, demand: Indices, first: Indices, most: int, stop: Stop) -> Indices | None:
+def choose_builds(pool: Pool, demand: Int64s, first: Int64s, most: int, stop: Stop) -> Int64s | None:
     """Return at most `most` builds of the pool that hold every item, or None if none are found.
 
     The fractional cover over the whole pool comes first: where it needs more builds, no choice does with
@@ -58,7 +57,7 @@ def choose_builds(pool: Pool, demand: Indices, first: Indices, most: int, stop: 
     return None if found is None or found.sum() > most + 0.5 else np.repeat(chosen, found)
 
 
-def _fractional(pool: Pool, demand: Indices, first: Indices, stop: Stop) -> tuple[Indices, Floats, float]:
+def _fractional(pool: Pool, demand: Int64s, first: Int64s, stop: Stop) -> tuple[Int64s, Floats, float]:
     """Return the builds used, prices and value of the best fractional cover; builds are priced in as needed."""
     from scipy.optimize import linprog
 
@@ -78,7 +77,7 @@ def _fractional(pool: Pool, demand: Indices, first: Indices, stop: Stop) -> tupl
     return rows, price, float(price @ demand)
 
 
-def _whole(counts: Floats, demand: Indices, seconds: float) -> Indices | None:
+def _whole(counts: Floats, demand: Int64s, seconds: float) -> Int64s | None:
     """Return how often each build is used in the best whole cover found; None without one."""
     from scipy.optimize import Bounds, LinearConstraint, milp
 

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from amprep.kernels.blocks import beam_search as kernel
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.block_building.beam_search import Filling, Manner, Worker
 from amprep.plugins.packers.block_building.integer_instance import Whole, whole_scene
@@ -29,7 +29,7 @@ def pack_block_building(
     params: BlockBuildingParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> Packing:
     """Fill one build with blocks of boxes (Araya and Riff 2014, doi:10.1016/j.cor.2013.09.003).
 
@@ -41,12 +41,12 @@ def pack_block_building(
     """
     del rng
     scene = prepare(problem)
-    found, reason = fill_by_blocks(scene, params, stop, report)
+    found, reason = fill_by_blocks(scene, params, stop, progress)
     return as_packing(scene, found, reason)
 
 
 def fill_by_blocks(
-    scene: Scene, params: BlockBuildingParams, stop: Stop, report: Report
+    scene: Scene, params: BlockBuildingParams, stop: Stop, progress: Progress
 ) -> tuple[Solution, str]:
     """Return the best filling found and why the search ended.
 
@@ -59,13 +59,13 @@ def fill_by_blocks(
         for manner in MANNERS
     ]
     if len(whole.singles):
-        _run(workers, stop, report)
+        _run(workers, stop, progress)
     best = min(workers, key=lambda worker: (-worker.filling.value, worker.met))
     filling = best.settled() if len(whole.singles) else best.filling
     return as_solution(scene, whole, filling), _reason(workers, best, stop)
 
 
-def _run(workers: Sequence[Worker], stop: Stop, report: Report) -> None:
+def _run(workers: Sequence[Worker], stop: Stop, progress: Progress) -> None:
     """Run the workers, each in a thread of its own; the kernels leave the interpreter free."""
     begun = time.monotonic()
     whole = begun + stop.remaining()
@@ -79,7 +79,7 @@ def _run(workers: Sequence[Worker], stop: Stop, report: Report) -> None:
             for worker in workers:
                 if worker.reached:
                     _limit(workers, worker.met)
-            report(_share(workers, begun, whole), "building blocks")
+            progress(_share(workers, begun, whole), "building blocks")
         for future in running:
             future.result()
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.kernels.blocks import beam_search as kernel
 from amprep.kernels.blocks.push import push
-from amprep.kernels.boxes.places import Indices
 from amprep.plugins.packers.block_building.arrays import room_of, scratch_of, sizes_of, states_of
 from amprep.plugins.packers.block_building.blocks import Built, build_blocks
 from amprep.plugins.packers.block_building.integer_instance import Whole
@@ -58,8 +58,8 @@ class Manner:
 class Filling(NamedTuple):
     """Boxes in a room: which single ``(n,)`` and its corners ``(n, 6)``; their value."""
 
-    single: Indices
-    boxes: Indices
+    single: Int64s
+    boxes: Int64s
     value: float
 
 
@@ -156,7 +156,7 @@ class Worker:
         return bool(self.control[kernel.MORE])
 
 
-def _push_down(boxes: Indices, obstacles: Indices, *, flat: bool) -> None:
+def _push_down(boxes: Int64s, obstacles: Int64s, *, flat: bool) -> None:
     """Push boxes ``(n, 6)`` (in place) down, then to the front and the left, a few times or until none moves."""
     rounds = MOST_PAIRS // (3 * len(boxes) * (len(boxes) + len(obstacles)) + 1)
     for _ in range(min(rounds, 4)):
@@ -165,7 +165,7 @@ def _push_down(boxes: Indices, obstacles: Indices, *, flat: bool) -> None:
             return
 
 
-def _filling(whole: Whole, built: Built, placed: Indices, kept: Filling, value: float) -> Filling:
+def _filling(whole: Whole, built: Built, placed: Int64s, kept: Filling, value: float) -> Filling:
     """Return the boxes of the placed blocks ``(n, 7)`` besides those kept."""
     boxes = [box for row in placed for box in built.boxes(int(row[6]), row[:3])]
     single = np.array([number for number, _ in boxes], dtype=np.int64)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.kernels.blocks.making import GRID, MOST_KINDS, Making, make_blocks
 from amprep.kernels.blocks.records import Blocks
-from amprep.kernels.boxes.places import Indices
 from amprep.plugins.packers.block_building.integer_instance import Whole
 
 
@@ -22,12 +22,12 @@ class Built:
 
     blocks: Blocks
     making: Making
-    origin: Indices
-    singles: Indices
+    origin: Int64s
+    singles: Int64s
 
-    def boxes(self, block: int, corner: Indices) -> list[tuple[int, Indices]]:
+    def boxes(self, block: int, corner: Int64s) -> list[tuple[int, Int64s]]:
         """Return the single and the least corner of each box of a block that lies at `corner`."""
-        found: list[tuple[int, Indices]] = []
+        found: list[tuple[int, Int64s]] = []
         pending = [(int(self.origin[block]), corner)]
         while pending:
             row, at = pending.pop()

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.plugins.packers.bounds.volume import fill_bound
 from amprep.plugins.packers.instance.prepare import Scene
 
@@ -39,17 +38,17 @@ class Whole:
     """
 
     unit: float
-    room: Indices
-    obstacles: Indices
-    singles: Indices
-    kind: Indices
-    variant: Indices
-    items: tuple[Indices, ...]
+    room: Int64s
+    obstacles: Int64s
+    singles: Int64s
+    kind: Int64s
+    variant: Int64s
+    items: tuple[Int64s, ...]
     worth: Floats
     goal: float
 
     @property
-    def stock(self) -> Indices:
+    def stock(self) -> Int64s:
         """``(k,)`` number of boxes of each kind."""
         return np.array([len(items) for items in self.items], dtype=np.int64)
 
@@ -93,7 +92,7 @@ def _values(scene: Scene) -> Floats:
     return np.array([item.value for item in scene.problem.items], dtype=np.float64)
 
 
-def _groups(scene: Scene, values: Floats) -> tuple[list[int], list[Indices]]:
+def _groups(scene: Scene, values: Floats) -> tuple[list[int], list[Int64s]]:
     """Return for each pair of kind and value the scene's kind and its free items."""
     free = np.flatnonzero(scene.free)
     members: dict[tuple[int, float], list[int]] = {}
@@ -110,10 +109,10 @@ def _unit(sizes: Floats, lo: Floats, hi: Floats, longest: float) -> int:
     return max(divisor, int(np.ceil(longest / GRAIN / MOST_UNITS)), 1)
 
 
-def _up(lengths: Floats, unit: int) -> Indices:
+def _up(lengths: Floats, unit: int) -> Int64s:
     return np.asarray(-_down(-lengths, unit))
 
 
-def _down(lengths: Floats, unit: int) -> Indices:
+def _down(lengths: Floats, unit: int) -> Int64s:
     """Return lengths in units, rounded down but for what is surely an error of rounding."""
     return np.asarray(np.floor(lengths / GRAIN + 1e-3).astype(np.int64) // unit)

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 
 ROUNDING = 1e-12
 MOST_CUTS, FEWEST_CUTS, MANY = 20, 3, 1000
@@ -60,7 +59,7 @@ def _rounded(length: Floats, cut: Floats) -> Floats:
     return np.asarray(np.where(half, cuts, np.where(length > 0.5, large, small)) / (2.0 * cuts))
 
 
-def heaviest_scale(share: Floats, demand: Indices) -> float:
+def heaviest_scale(share: Floats, demand: Int64s) -> float:
     """Return the greatest total of boxes under a conservative scale: no fewer builds can hold them.
 
     Parameters
@@ -73,7 +72,7 @@ def heaviest_scale(share: Floats, demand: Indices) -> float:
     return float(_weights([measures(share[:, axis]) for axis in range(3)], demand).max(initial=0.0))
 
 
-def heavy_scales(share: Floats, demand: Indices, most: int) -> Floats:
+def heavy_scales(share: Floats, demand: Int64s, most: int) -> Floats:
     """Return the volume and the scales that weigh most, ``(k, s)``.
 
     Parameters
@@ -96,7 +95,7 @@ def heavy_scales(share: Floats, demand: Indices, most: int) -> Floats:
     return np.ascontiguousarray(np.array(kept).T)
 
 
-def _weights(measured: Sequence[Floats], demand: Indices) -> Floats:
+def _weights(measured: Sequence[Floats], demand: Int64s) -> Floats:
     """Return the total under each triple of functions."""
     x, y, z = measured
     return np.array([(row * demand * y) @ z.T for row in x])

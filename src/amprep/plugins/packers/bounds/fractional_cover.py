@@ -11,9 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes import pricing as kernel
-from amprep.kernels.boxes.places import Indices
 from amprep.kernels.boxes.relations import relation_scratch
 from amprep.model.control import Stop
 from amprep.plugins.packers.auto.set_covering import MOST_KINDS
@@ -101,7 +100,7 @@ class CoverBound:
         solved = linprog(np.ones(len(self.columns)), A_ub=cover, b_ub=-self.demand, method="highs")
         return np.maximum(-solved.ineqlin.marginals, 0.0) if solved.success else None
 
-    def _price(self, price: Floats, work: float) -> tuple[int, float, Indices]:
+    def _price(self, price: Floats, work: float) -> tuple[int, float, Int64s]:
         """Return whether the search was complete, the greatest worth of a set, and sets worth more than 1."""
         load = np.maximum(self.sets.load.T, 1e-9)
         order = np.argsort(-price / load, axis=1, kind="stable")

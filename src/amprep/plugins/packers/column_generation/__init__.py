@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.model.control import Report, Stop, silent
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.bounds.fractional_cover import CoverBound
 from amprep.plugins.packers.bounds.volume import builds_bound
@@ -26,9 +26,8 @@ from amprep.plugins.packers.column_generation.master import Fractional, fraction
 from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.instance.prepare import Scene, prepare
 from amprep.plugins.packers.integer_program import as_packing, pack_ip, settled
-from amprep.plugins.packers.integer_program.params import ColumnGenerationParams
 from amprep.plugins.packers.integer_program.solver import TOLERANCE
-from amprep.plugins.packers.params import ExtremePointsParams
+from amprep.plugins.packers.params import ColumnGenerationParams, ExtremePointsParams
 
 MARGIN = 10.0 * TOLERANCE
 """By how much a price must exceed 1 to be worth a column, and a bound a whole number to be rounded up."""
@@ -47,7 +46,7 @@ def pack_column_generation(
     params: ColumnGenerationParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> Packing:
     """Pack into the fewest builds by column generation (thesis 2.1, last paragraph).
 
@@ -58,7 +57,7 @@ def pack_column_generation(
     max(1, that bound) (Farley 1990, doi:10.1287/opre.38.5.922). Then builds are chosen in whole numbers, by
     the covering program and by completing beginnings of the fractional cover.
     """
-    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, report=report)
+    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
     scene = prepare(problem)
     if settled(scene, known, stop):
         return known
@@ -72,7 +71,7 @@ def pack_column_generation(
         return replace(known, bound=float(least), status=status, stop_reason="bound met")
     cover = fractional_cover(columns, demand, params)
     for number in range(params.rounds):
-        report(number / max(params.rounds, 1), f"{least} to {most} builds")
+        progress(number / max(params.rounds, 1), f"{least} to {most} builds")
         priced = price_builds(scene, cover.price, params, rng, stop)
         proved = float(cover.price @ demand) / max(1.0, priced.bound * (1.0 + TOLERANCE))
         least = max(least, math.ceil(proved - MARGIN))
@@ -98,9 +97,9 @@ def price_builds(
     items = np.flatnonzero(scene.free & (price[scene.kind] > TOLERANCE / len(scene.kind)))
     part = part_of(scene, items, "fill", price)
     quick = ExtremePointsParams(restarts=params.restarts)
-    found = pack_extreme_points(part.problem, params=quick, rng=rng, stop=stop, report=silent)
+    found = pack_extreme_points(part.problem, params=quick, rng=rng, stop=stop, progress=silent)
     if worth_of(found, part.problem) <= 1.0 + MARGIN:
-        found = pack_ip(part.problem, params=params, rng=rng, stop=stop, report=silent)
+        found = pack_ip(part.problem, params=params, rng=rng, stop=stop, progress=silent)
     # items left out as worth nothing may be worth the tolerance all together
     bound = math.inf if found.bound is None else found.bound + TOLERANCE
     worth = worth_of(found, part.problem) > 1.0 + MARGIN
@@ -155,5 +154,7 @@ def completed(
     if not len(items):
         return beginning
     part = part_of(scene, items, "builds")
-    rest = pack_extreme_points(part.problem, params=ExtremePointsParams(), rng=rng, stop=stop, report=silent)
+    rest = pack_extreme_points(
+        part.problem, params=ExtremePointsParams(), rng=rng, stop=stop, progress=silent
+    )
     return None if rest.unplaced else [*beginning, *part.columns(rest)]

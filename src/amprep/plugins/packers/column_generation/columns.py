@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.model.packing import Objective, Packing, PackingProblem
 from amprep.plugins.packers.instance.arrangement import Arrangement, arrangement_of, nothing_placed
 from amprep.plugins.packers.instance.prepare import Scene, prepare
@@ -24,16 +23,16 @@ class Column:
         ``(m, 3)`` mm, least corners.
     """
 
-    kind: Indices
-    variant: Indices
+    kind: Int64s
+    variant: Int64s
     place: Floats
 
-    def counts(self, kinds: int) -> Indices:
+    def counts(self, kinds: int) -> Int64s:
         """Return how many items of each kind there are, ``(kinds,)``."""
         return np.bincount(self.kind, minlength=kinds)
 
 
-def demand_of(scene: Scene) -> Indices:
+def demand_of(scene: Scene) -> Int64s:
     """Return how many items of each kind are to be placed, ``(kinds,)``."""
     return np.bincount(scene.kind[scene.free], minlength=len(scene.kinds))
 
@@ -43,7 +42,7 @@ def columns_of(scene: Scene, packing: Packing) -> list[Column]:
     return _columns(scene, arrangement_of(scene, packing), np.arange(len(scene.kind)))
 
 
-def _columns(scene: Scene, found: Arrangement, items: Indices) -> list[Column]:
+def _columns(scene: Scene, found: Arrangement, items: Int64s) -> list[Column]:
     """Return the builds of an arrangement of some `items` of the scene."""
     columns = []
     for build in range(int(found.build.max(initial=-1)) + 1):
@@ -68,14 +67,14 @@ class Part:
 
     scene: Scene
     problem: PackingProblem
-    items: Indices
+    items: Int64s
 
     def columns(self, packing: Packing) -> list[Column]:
         """Return the builds of a packing of the smaller problem."""
         return _columns(self.scene, arrangement_of(prepare(self.problem), packing), self.items)
 
 
-def part_of(scene: Scene, items: Indices, objective: Objective, values: Floats | None = None) -> Part:
+def part_of(scene: Scene, items: Int64s, objective: Objective, values: Floats | None = None) -> Part:
     """Return the problem over `items`, with the `values` of their kinds when given."""
     kept = [scene.problem.items[item] for item in items.tolist()]
     if values is not None:
@@ -84,7 +83,7 @@ def part_of(scene: Scene, items: Indices, objective: Objective, values: Floats |
     return Part(scene, replace(scene.problem, items=tuple(kept), objective=objective), items)
 
 
-def remaining_items(scene: Scene, taken: Indices) -> Indices:
+def remaining_items(scene: Scene, taken: Int64s) -> Int64s:
     """Return the items to be placed when `taken` ``(kinds,)`` of each kind are."""
     left = demand_of(scene) - taken
     kept = [np.flatnonzero(scene.free & (scene.kind == k))[: max(n, 0)] for k, n in enumerate(left.tolist())]
@@ -106,7 +105,7 @@ def arrangement_from(scene: Scene, columns: Iterable[Column]) -> Arrangement:
     return found
 
 
-def count_of(columns: Sequence[Column], kinds: int) -> Indices:
+def count_of(columns: Sequence[Column], kinds: int) -> Int64s:
     """Return how many items of each kind are in all columns together, ``(kinds,)``."""
     total = np.zeros(kinds, np.int64)
     for column in columns:

@@ -6,13 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pulp
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, Int64s
 from amprep.errors import AmprepError
-from amprep.kernels.boxes.places import Indices
 from amprep.model.control import Stop, silent
 from amprep.plugins.packers.column_generation.columns import Column
-from amprep.plugins.packers.integer_program.params import IpParams
 from amprep.plugins.packers.integer_program.solver import installed_solver, solve
+from amprep.plugins.packers.params import IpParams
 
 
 class Fractional(NamedTuple):
@@ -30,7 +29,7 @@ class Fractional(NamedTuple):
     price: Floats
 
 
-def fractional_cover(columns: Sequence[Column], demand: Indices, params: IpParams) -> Fractional:
+def fractional_cover(columns: Sequence[Column], demand: Int64s, params: IpParams) -> Fractional:
     """Return the least total of shares of builds that hold every item.
 
     Raises
@@ -52,19 +51,19 @@ def fractional_cover(columns: Sequence[Column], demand: Indices, params: IpParam
 
 
 def whole_cover(
-    columns: Sequence[Column], demand: Indices, params: IpParams, stop: Stop
+    columns: Sequence[Column], demand: Int64s, params: IpParams, stop: Stop
 ) -> list[Column] | None:
     """Return the fewest columns that hold every item, as far as the effort goes; None if none were found."""
     problem, shares, _ = _cover(columns, demand, pulp.LpInteger)
     nodes = int(params.effort * 1e6 / max(len(columns), 1)) + 1
-    if not solve(problem, params, nodes=nodes, stop=stop, report=silent).solved:
+    if not solve(problem, params, nodes=nodes, stop=stop, progress=silent).solved:
         return None
     times = [round(share.varValue) for share in shares]
     return [column for column, n in zip(columns, times, strict=True) for _ in range(n)]
 
 
 def _cover(
-    columns: Sequence[Column], demand: Indices, category: str
+    columns: Sequence[Column], demand: Int64s, category: str
 ) -> tuple[pulp.LpProblem, list[Any], dict[int, Any]]:
     """Return the covering problem, a variable per column and a constraint per kind to be placed."""
     problem = pulp.LpProblem("cover", pulp.LpMinimize)

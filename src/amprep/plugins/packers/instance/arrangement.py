@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.model.packing import Packing, Placement, Unplaced
 from amprep.plugins.packers.instance.prepare import Scene, placements
 
@@ -22,8 +21,8 @@ class Arrangement:
         ``(n, 3)`` mm, least corners.
     """
 
-    build: Indices
-    variant: Indices
+    build: Int64s
+    variant: Int64s
     place: Floats
 
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import CENTRE, LOW, RESIDUAL, TOUCHING, Indices
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.places import CENTRE, LOW, RESIDUAL, TOUCHING
 from amprep.plugins.packers.instance.prepare import Scene
 
 BANDS = (0.1, 0.2, 0.3, 0.5)
@@ -28,7 +28,7 @@ MANY = 500
 class Pass(NamedTuple):
     """One order of items (indices) and one way to place them."""
 
-    order: Indices
+    order: Int64s
     style: Floats
 
 
@@ -85,7 +85,7 @@ GRID = 1024
 """Crossings of lines tried besides the extreme points, at most."""
 
 
-def _orders(scene: Scene) -> Iterator[Indices]:
+def _orders(scene: Scene) -> Iterator[Int64s]:
     """Yield orders of the free items, each once."""
     free = np.flatnonzero(scene.free)
     seen: set[bytes] = set()
@@ -98,7 +98,7 @@ def _orders(scene: Scene) -> Iterator[Indices]:
             yield order
 
 
-def _keys(scene: Scene, free: Indices) -> Iterator[tuple[Floats, ...]]:
+def _keys(scene: Scene, free: Int64s) -> Iterator[tuple[Floats, ...]]:
     """Yield sort keys, greatest first; the first key of a tuple rules."""
     size = np.array([variants[0].size for variants in scene.kinds]).reshape(-1, 3)[scene.kind[free]]
     room = np.maximum(scene.space.hi - scene.space.lo, 1e-9)

@@ -6,10 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.errors import AmprepError
 from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes
-from amprep.kernels.boxes.places import Indices
 from amprep.model.bounding_volume import BoundingVolume, Boxes
 from amprep.model.packing import Item, PackingProblem, Placement
 
@@ -61,7 +60,7 @@ class Scene:
 
     problem: PackingProblem
     space: Space
-    kind: Indices
+    kind: Int64s
     kinds: tuple[tuple[Variant, ...], ...]
     free: Bools
     too_large: Bools

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.kernels.boxes.places import Indices
+from amprep.arrays import Floats, Int64s
 from amprep.model.packing import Packing, Placement, Status, Unplaced
 from amprep.plugins.packers.bounds.volume import builds_bound, fill_bound
 from amprep.plugins.packers.instance.orders import Pass
@@ -27,12 +26,12 @@ class Solution:
     plan: Pass
     rank: tuple[float, ...]
     complete: bool
-    build: Indices
-    variant: Indices
+    build: Int64s
+    variant: Int64s
     place: Floats
 
 
-def value_of(scene: Scene, build: Indices) -> float:
+def value_of(scene: Scene, build: Int64s) -> float:
     """Return the value of what is placed, fixed items included."""
     fixed = [placement.item for placement in scene.problem.fixed]
     return sum(scene.problem.items[i].value for i in [*np.flatnonzero(build >= 0).tolist(), *fixed])

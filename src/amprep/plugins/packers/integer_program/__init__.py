@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from amprep.model.control import Report, Stop
+from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, Status
 from amprep.plugins.packers.bounds.volume import builds_bound, fill_bound
 from amprep.plugins.packers.extreme_points import pack_extreme_points
@@ -20,9 +20,8 @@ from amprep.plugins.packers.instance.prepare import Scene, prepare
 from amprep.plugins.packers.integer_program.data import Ground, count_directions, prepare_ground
 from amprep.plugins.packers.integer_program.decode import read_arrangement, start_values
 from amprep.plugins.packers.integer_program.model import make_program, value_unit
-from amprep.plugins.packers.integer_program.params import IpParams
 from amprep.plugins.packers.integer_program.solver import TOLERANCE, Outcome, solve
-from amprep.plugins.packers.params import ExtremePointsParams
+from amprep.plugins.packers.params import ExtremePointsParams, IpParams
 
 
 def pack_ip(
@@ -31,7 +30,7 @@ def pack_ip(
     params: IpParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> Packing:
     """Pack by the integer program of thesis 2.1, boxes of one item by substitution (2.3).
 
@@ -40,7 +39,7 @@ def pack_ip(
     passed on without clearance only, for with it the program asks for more than the judge does at corners.
     Proofs hold to within the solver's tolerances.
     """
-    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, report=report)
+    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
     scene = prepare(problem)
     if settled(scene, known, stop):
         return known
@@ -48,7 +47,7 @@ def pack_ip(
     directions = count_directions(scene, params)
     if directions > params.directions:
         return replace(known, stop_reason=too_many(directions, params))
-    report(0.0, "building the model")
+    progress(0.0, "building the model")
     ground = prepare_ground(scene, 1 if filling else len(known.builds) - 1, params)
     program, variables = make_program(ground, params)
     arrangement = arrangement_of(scene, known)
@@ -57,14 +56,14 @@ def pack_ip(
         params,
         nodes=node_budget(directions, params),
         stop=stop,
-        report=report,
+        progress=progress,
         start=start_values(ground, variables, arrangement) if filling else None,
     )
     found = read_arrangement(ground, variables) if outcome.solved else None
     if found is not None and better(scene, found, arrangement):
         arrangement = found
     packing = as_packing(scene, arrangement, proved_bound(ground, outcome), outcome.stop_reason)
-    report(1.0, f"gap {gap_of(packing, problem):.1%}")
+    progress(1.0, f"gap {gap_of(packing, problem):.1%}")
     return packing
 
 

@@ -9,8 +9,8 @@ import pulp
 from amprep.arrays import CONTACT_TOLERANCE
 from amprep.plugins.packers.bounds.volume import amounts_of
 from amprep.plugins.packers.integer_program.data import Ground, Pair
-from amprep.plugins.packers.integer_program.params import IpParams
 from amprep.plugins.packers.integer_program.variables import Expression, Variables, corner, within
+from amprep.plugins.packers.params import IpParams
 
 Constraint = Any
 """A pulp constraint."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.plugins.packers.instance.prepare import Scene, Variant
-from amprep.plugins.packers.integer_program.params import IpParams
+from amprep.plugins.packers.params import IpParams
 
 
 @dataclass(frozen=True, eq=False)

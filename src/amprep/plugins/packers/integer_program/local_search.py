@@ -7,7 +7,7 @@ import numpy as np
 import pulp
 
 from amprep.arrays import Bools
-from amprep.model.control import Report, Stop, silent
+from amprep.model.control import Progress, Stop, silent
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.bounds.volume import fill_bound
 from amprep.plugins.packers.extreme_points import pack_extreme_points
@@ -23,9 +23,8 @@ from amprep.plugins.packers.integer_program.decode import (
     start_values,
 )
 from amprep.plugins.packers.integer_program.model import make_program
-from amprep.plugins.packers.integer_program.params import IpLocalSearchParams
 from amprep.plugins.packers.integer_program.solver import TOLERANCE, solve
-from amprep.plugins.packers.params import ExtremePointsParams
+from amprep.plugins.packers.params import ExtremePointsParams, IpLocalSearchParams
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +85,7 @@ def pack_ip_local_search(
     params: IpLocalSearchParams,
     rng: np.random.Generator,
     stop: Stop,
-    report: Report,
+    progress: Progress,
 ) -> Packing:
     """Fill a build by local search with the integer program (thesis 2.2).
 
@@ -94,7 +93,7 @@ def pack_ip_local_search(
     neighbourhood of the last packing; where nothing better is in it, the neighbourhood grows. `effort` is
     shared by the steps. The bound is that of `ip` only if a neighbourhood came to hold every packing.
     """
-    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, report=report)
+    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
     scene = prepare(problem)
     if settled(scene, known, stop):
         return known
@@ -106,11 +105,11 @@ def pack_ip_local_search(
     used_distance, direction_distance = params.used_distance, params.direction_distance
     budget = node_budget(directions, params)
     for step in range(params.steps):
-        report(step / params.steps, f"value {value_of(scene, best):g}")
+        progress(step / params.steps, f"value {value_of(scene, best):g}")
         near = neighbourhood(ground, best, used_distance, direction_distance)
         program, variables = make_program(ground, params, (near.used_near, near.directions_near))
         start = start_values(ground, variables, best)
-        outcome = solve(program, params, nodes=budget, stop=stop, report=silent, start=start)
+        outcome = solve(program, params, nodes=budget, stop=stop, progress=silent, start=start)
         budget -= max(outcome.nodes, 1)
         found = read_arrangement(ground, variables) if outcome.solved else None
         improved = found is not None and value_of(scene, found) > value_of(scene, best)

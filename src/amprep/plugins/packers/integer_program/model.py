@@ -8,8 +8,8 @@ from amprep.plugins.packers.integer_program import constraints as rules
 from amprep.plugins.packers.integer_program import symmetry_breaking as symmetry
 from amprep.plugins.packers.integer_program.constraints import Constraint, Program
 from amprep.plugins.packers.integer_program.data import Ground
-from amprep.plugins.packers.integer_program.params import IpParams
 from amprep.plugins.packers.integer_program.variables import Expression, Variables, make_variables
+from amprep.plugins.packers.params import IpParams
 
 Family = Callable[[Program], Iterable[Constraint]]
 """Yields the constraints that its docstring states."""

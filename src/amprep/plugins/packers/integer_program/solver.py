@@ -8,8 +8,8 @@ import highspy
 import pulp
 
 from amprep.errors import AmprepError, nearest_hint
-from amprep.model.control import Report, Stop
-from amprep.plugins.packers.integer_program.params import IpParams
+from amprep.model.control import Progress, Stop
+from amprep.plugins.packers.params import IpParams
 
 Proof = Literal["optimal", "infeasible", "stopped"]
 
@@ -46,7 +46,7 @@ def solve(
     *,
     nodes: int,
     stop: Stop,
-    report: Report,
+    progress: Progress,
     start: Mapping[Any, float] | None = None,
 ) -> Outcome:
     """Solve, and leave the solution in the variables.
@@ -66,7 +66,7 @@ def solve(
     if stop():
         return Outcome("stopped", None, solved=False, stop_reason=stop.reason)
     if params.solver == "HiGHS":
-        return _solve_by_highs(program, params, nodes, stop, report, start or {})
+        return _solve_by_highs(program, params, nodes, stop, progress, start or {})
     return _solve_by_name(program, params.solver, stop)
 
 
@@ -75,14 +75,14 @@ def _solve_by_highs(
     params: IpParams,
     nodes: int,
     stop: Stop,
-    report: Report,
+    progress: Progress,
     start: Mapping[Any, float],
 ) -> Outcome:
     """Solve by HiGHS, step by step, for pulp passes on neither a start nor the bound."""
     kinds = highspy.cb.HighsCallbackType
 
     def look(_kind: Any, _words: str, at: Any, answer: Any, _own: Any) -> None:
-        report(min(at.mip_node_count / max(nodes, 1), 1.0), f"gap {at.mip_gap:.1%}")
+        progress(min(at.mip_node_count / max(nodes, 1), 1.0), f"gap {at.mip_gap:.1%}")
         if stop():
             answer.user_interrupt = True
 

@@ -1,0 +1,132 @@
+"""Regions: overhangs that hang together."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Int32s, Int64s
+from amprep.geometry.overhangs.surface import (
+    Surface,
+)
+
+Kind = Literal["face", "edge", "tip"]
+
+
+class OverhangRegion(NamedTuple):
+    """A connected region that needs support.
+
+    Attributes
+    ----------
+    kind
+        ``face``, ``edge`` or ``tip``.
+    measure
+        Area in mm2, length in mm, or 0 for a tip.
+    centre
+        ``(3,)`` mm, weighted by area or length.
+    """
+
+    kind: Kind
+    measure: float
+    centre: Floats
+
+
+class Overhangs(NamedTuple):
+    """Everything of a mesh that needs support, in connected regions.
+
+    Attributes
+    ----------
+    faces
+        ``(f,)`` int32, triangles.
+    face_region
+        ``(f,)`` int32, index into `regions`; labels of faces come first, then edges, then tips.
+    edges
+        ``(e, 2)`` int32, vertex indices.
+    edge_region
+        ``(e,)`` int32.
+    tips
+        ``(t,)`` int32, vertex indices.
+    tip_region
+        ``(t,)`` int32.
+    """
+
+    faces: Int32s
+    face_region: Int32s
+    edges: Int32s
+    edge_region: Int32s
+    tips: Int32s
+    tip_region: Int32s
+    regions: tuple[OverhangRegion, ...]
+
+
+def connected_components(start: Int64s, end: Int64s, count: int) -> Int64s:
+    """Label the connected components of a graph of `count` nodes with edges `start`-`end`."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+
+
+def components_of_faces(surface: Surface, needy: Bools) -> Int64s:
+    """Label the component of every needy face, over shared edges."""
+    position = np.cumsum(needy) - 1
+    halves = np.flatnonzero(needy[surface.half_face])
+    same = surface.half_edge[halves[1:]] == surface.half_edge[halves[:-1]]
+    faces = position[surface.half_face[halves]]
+    return connected_components(faces[:-1][same], faces[1:][same], int(needy.sum()))
+
+
+def components_of_edges(edges: Int64s, count: int) -> Int64s:
+    """Label the component of every edge, over shared vertices."""
+    return connected_components(edges[:, 0], edges[:, 1], count)[edges[:, 0]]
+
+
+def large_enough(label: Int64s, measure: Floats, least: float, always: Bools) -> Bools:
+    """Tell which members belong to regions that are large enough or have a member to keep always."""
+    keep = np.bincount(label, weights=measure) >= least
+    keep[label[always]] = True
+    return np.asarray(keep[label])
+
+
+def labelled_regions(
+    surface: Surface,
+    faces: tuple[Int64s, Int64s, Floats],
+    edges: tuple[Int64s, Int64s, Floats],
+    tips: tuple[Int64s, Int64s],
+) -> Overhangs:
+    """Label the regions 0, 1, ..., faces first, and measure them."""
+    points = surface.points
+    groups: list[Int32s] = []
+    regions: list[OverhangRegion] = []
+    middle = points[surface.triangles[faces[0]]].mean(axis=1).reshape(-1, 3)
+    halfway = points[edges[0]].mean(axis=1).reshape(-1, 3)
+    kinds: tuple[tuple[Kind, Int64s, Floats, Floats], ...] = (
+        ("face", faces[1], faces[2], middle),
+        ("edge", edges[1], edges[2], halfway),
+        ("tip", tips[1], np.ones(len(tips[1])), points[tips[0]]),
+    )
+    for kind, label, weight, centres in kinds:
+        number = _by_first_appearance(label)
+        groups.append((number + len(regions)).astype(np.int32))
+        total = np.bincount(number, weights=weight)
+        centre = [np.bincount(number, weights=weight * centres[:, i]) / total for i in range(3)]
+        for i in range(len(total)):
+            measure = 0.0 if kind == "tip" else float(total[i])
+            regions.append(OverhangRegion(kind, measure, np.array([c[i] for c in centre])))
+    first = surface.first.astype(np.int32)
+    return Overhangs(
+        faces[0].astype(np.int32),
+        groups[0],
+        first[edges[0]],
+        groups[1],
+        first[tips[0]],
+        groups[2],
+        tuple(regions),
+    )
+
+
+def _by_first_appearance(label: Int64s) -> Int64s:
+    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    return rank[inverse]

@@ -1,0 +1,74 @@
+"""The merged surface of a part, as the search for overhangs reads it."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.arrays import Bools, Floats, Int64s
+
+LEVEL = 1e-6
+"""mm; vertices nearer than that are one, and heights that differ by less are equal."""
+
+ON_PLATE = 1e-3
+"""mm; what lies nearer to the plate than that touches it."""
+
+
+class Surface(NamedTuple):
+    """A mesh with coincident vertices merged and its half-edges sorted by edge.
+
+    `half_edge` gives each half-edge's edge, `opposite` the corner across from it, `half_face` its triangle.
+    """
+
+    points: Floats
+    first: Int64s
+    triangles: Int64s
+    edges: Int64s
+    half_edge: Int64s
+    half_face: Int64s
+    opposite: Int64s
+
+
+def merge_vertices(vertices: Floats, triangles: NDArray[Any]) -> Surface:
+    """Return the mesh with coincident vertices merged."""
+    keys = np.round(vertices / LEVEL).astype(np.int64)
+    order = np.lexsort(keys.T[::-1])
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (keys[order[1:]] != keys[order[:-1]]).any(axis=1)
+    merged = np.empty(len(order), np.int64)
+    merged[order] = np.cumsum(new) - 1
+    first = order[new]  # lexsort is stable: the least index of each position
+    corners = merged[triangles]
+    sound = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    half_face = np.repeat(np.flatnonzero(sound), 3)
+    start, end = corners[sound].ravel(), np.roll(corners[sound], -1, axis=1).ravel()
+    opposite = np.roll(corners[sound], -2, axis=1).ravel()
+    key = np.minimum(start, end) * np.int64(len(first)) + np.maximum(start, end)
+    edge_key, half_edge = np.unique(key, return_inverse=True)
+    edges = np.column_stack(np.divmod(edge_key, max(len(first), 1)))
+    by_edge = np.argsort(half_edge, kind="stable")
+    return Surface(
+        vertices[first], first, corners, edges, half_edge[by_edge], half_face[by_edge], opposite[by_edge]
+    )
+
+
+def cross_products(points: Floats, corners: Int64s) -> Floats:
+    """Return twice the area vectors ``(n, 3)`` of triangles."""
+    a, b, c = points[corners[:, 0]], points[corners[:, 1]], points[corners[:, 2]]
+    return np.asarray(np.cross(b - a, c - a), np.float64)
+
+
+def unit_normals(surface: Surface) -> Floats:
+    """Return unit normals; zero for triangles without area."""
+    cross = cross_products(surface.points, surface.triangles)
+    size = np.linalg.norm(cross, axis=1, keepdims=True)
+    return cross / np.where(size > 0, size, 1.0)
+
+
+def above_plate(surface: Surface) -> Bools:
+    """Tell which faces do not lie on the plate."""
+    heights = surface.points[:, 2][surface.triangles]
+    return np.asarray(heights.max(axis=1, initial=-np.inf) > ON_PLATE)
+
+
+"""mm; vertices closer than this in height are level, closer than this in space are one."""

@@ -1,0 +1,64 @@
+"""Tips: local minima of the surface."""
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Int64s
+from amprep.geometry.overhangs.regions import connected_components
+from amprep.geometry.overhangs.surface import LEVEL, ON_PLATE, Surface
+
+
+def minimum_plateaus(surface: Surface) -> Int64s:
+    """Label each vertex by its level plateau where that is a local minimum above the plate, else -1."""
+    count = len(surface.points)
+    start, end = surface.edges[:, 0], surface.edges[:, 1]
+    difference = surface.points[end, 2] - surface.points[start, 2]
+    level = np.abs(difference) <= LEVEL
+    plateau = connected_components(start[level], end[level], count)
+    lowest = np.zeros(int(plateau.max(initial=-1)) + 1, np.bool_)
+    lowest[plateau[surface.edges.ravel()]] = True
+    lowest[plateau[np.where(difference > 0, end, start)[~level]]] = False
+    lowest[plateau[surface.points[:, 2] <= ON_PLATE]] = False
+    lowest &= _section_areas(surface, plateau, lowest) < 0
+    return np.where(lowest[plateau], plateau, -1)
+
+
+def _section_areas(surface: Surface, plateau: Int64s, lowest: Bools) -> Floats:
+    """Measure the surface's level section just above each local minimum.
+
+    The signed area is negative (clockwise seen from above) where the solid lies above the plateau, positive
+    at the bottom of a pit. A triangle touches at most one minimum: of two the higher would not be one.
+    """
+    corners = surface.triangles
+    inside = lowest[plateau[corners]]
+    group = np.where(inside, plateau[corners], -1).max(axis=1, initial=-1)
+    touching = np.flatnonzero((group >= 0) & ~inside.all(axis=1))
+    corners, inside, group = corners[touching], inside[touching], group[touching]
+    height = surface.points[corners, 2]
+    floor = np.full(len(lowest), np.inf)
+    np.minimum.at(floor, group, np.where(inside, height, np.inf).min(axis=1, initial=np.inf))
+    ceiling = np.full(len(lowest), np.inf)
+    np.minimum.at(ceiling, group, np.where(inside, np.inf, height).min(axis=1, initial=np.inf))
+    level = 0.5 * (floor + ceiling)[group]
+    origin = np.zeros((len(lowest), 2))
+    origin[group] = surface.points[corners[np.arange(len(group)), inside.argmax(axis=1)], :2]
+    down, up = np.zeros((len(group), 2)), np.zeros((len(group), 2))
+    for i in range(3):
+        j = (i + 1) % 3
+        a, b = surface.points[corners[:, i]], surface.points[corners[:, j]]
+        crosses = inside[:, i] != inside[:, j]
+        share = np.divide(level - a[:, 2], b[:, 2] - a[:, 2], out=np.zeros(len(a)), where=crosses)
+        point = a[:, :2] + np.clip(share, 0, 1)[:, None] * (b - a)[:, :2] - origin[group]
+        leaves = crosses & inside[:, i]
+        up[leaves], down[crosses & ~leaves] = point[leaves], point[crosses & ~leaves]
+    signed = up[:, 0] * down[:, 1] - up[:, 1] * down[:, 0]
+    return np.asarray(np.bincount(group, weights=signed, minlength=len(lowest)), np.float64)
+
+
+def tips_of(minimum: Int64s, corners: Int64s, ends: Int64s) -> tuple[Int64s, Int64s]:
+    """Pick the vertices of the local minima that no needy face or edge touches, and the plateau of each."""
+    held = np.zeros(int(minimum.max(initial=-1)) + 2, np.bool_)
+    held[minimum[corners.ravel()]] = True
+    held[minimum[ends.ravel()]] = True
+    held[-1] = True  # the vertices that are no minimum
+    tips = np.flatnonzero(~held[minimum])
+    return tips, minimum[tips]

@@ -1,0 +1,66 @@
+"""Settings of single parts in a job."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from amprep.arrays import Floats, frozen
+from amprep.errors import JobError
+from amprep.job.settings.bounds import require_overhang, require_quantity
+from amprep.model.part import Orientations
+from amprep.model.rotations import parse_rotations
+from amprep.validation import require
+
+Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+Box = tuple[float, float, float, float, float, float]
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PartSettings:
+    """What a ``[[part]]`` entry says about the parts of one file or name; None keeps what was read."""
+
+    file: str | None = None
+    name: str | None = None
+    quantity: int | None = None
+    value: float | None = None
+    rotations: str | tuple[Matrix, ...] | None = None
+    boxes: tuple[Box, ...] | None = None
+    fixed: tuple[Point, ...] = ()
+    supports: bool | None = None
+    overhang_angle_deg: float | None = None
+    blockers: tuple[str, ...] = ()
+    enforcers: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for file in (*self.blockers, *self.enforcers):
+            require(bool(file) and "\0" not in file, "blockers and enforcers are paths", repr(file))
+        require(bool(self.file or self.name), "a part is named by file or name", "neither")
+        require("\0" not in (self.file or ""), "file is a path", repr(self.file))
+        require_quantity(self.quantity)
+        require(self.value is None or self.value >= 0, "value is at least 0", self.value)
+        if self.overhang_angle_deg is not None:
+            require_overhang(self.overhang_angle_deg)
+        self._require_boxes()
+        try:
+            self.orientations  # noqa: B018 reading the property checks the rotations
+        except JobError as error:
+            raise ValueError(str(error)) from error
+
+    @property
+    def orientations(self) -> Orientations | None:
+        """The rotations allowed, or None."""
+        if self.rotations is None or isinstance(self.rotations, str):
+            return None if self.rotations is None else parse_rotations(self.rotations)
+        return parse_rotations([[list(row) for row in matrix] for matrix in self.rotations])
+
+    @property
+    def box_array(self) -> Floats | None:
+        """The boxes as ``(k, 6)`` mm, or None."""
+        return None if self.boxes is None else frozen(self.boxes, np.float64, 6)
+
+    def _require_boxes(self) -> None:
+        require(self.boxes is None or len(self.boxes) > 0, "boxes holds at least one box", "none")
+        for box in self.boxes or ():
+            ordered = all(lo < hi for lo, hi in zip(box[:3], box[3:], strict=True))
+            require(ordered, "boxes are x0, y0, z0, x1, y1, z1 with each 0 below its 1", list(box))

@@ -1,0 +1,82 @@
+"""Capacities that give way: on grids small enough to know the answer, and needed by scipy's greatest flow."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.shared.grids import Late, floor_with_holes, random_problem, route
+
+from amprep.checks.supports.plan import check_plan, check_raises
+from amprep.model.control import Stop, silent
+from amprep.model.supports import CAPACITY
+from amprep.plugins.routers.min_cost_certificate import find_gaps
+from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
+
+ROUTERS = ["min-cost-flow", "push-relabel", "shortest-paths"]
+
+
+@pytest.mark.parametrize("router", ROUTERS)
+@pytest.mark.parametrize("rules", [{"edge_capacity": 2}, {"node_capacity": 2}], ids=str)
+def test_all_come_through_one_hole_by_raising_what_is_at_it_alone(router, rules):
+    task = floor_with_holes([3], escalation="cut", **rules)
+    plan = route(router, task)
+    assert check_plan(task, plan) == check_raises(task, plan) == []
+    assert (plan.unconnected, plan.raised) == ((), 5)
+    if "edge_capacity" in rules:
+        assert set(plan.capacity.tolist()) <= set(range(2, 8))
+
+
+@pytest.mark.parametrize("router", ROUTERS)
+def test_two_holes_share_what_is_raised(router):
+    task = floor_with_holes([1, 5], node_capacity=1, escalation="cut")
+    assert route(router, task).raised == 3  # 4 and 3 paths: the smallest grows first
+
+
+@pytest.mark.parametrize("router", ROUTERS)
+def test_uniform_raises_all_edges_alike(router):
+    task = floor_with_holes([1, 5], edge_capacity=1, escalation="uniform")
+    plan = route(router, task)
+    assert check_plan(task, plan) == check_raises(task, plan) == []
+    assert (plan.unconnected, plan.raised) == ((), 3)
+    assert set(plan.capacity.tolist()) == {4}
+
+
+@pytest.mark.parametrize("router", ROUTERS)
+def test_without_escalation_they_are_listed(router):
+    plan = route(router, floor_with_holes([3], node_capacity=2))
+    assert [each.reason for each in plan.unconnected] == [CAPACITY] * 5
+    assert plan.raised == 0
+
+
+@pytest.mark.parametrize("router", ["min-cost-flow", "push-relabel"])
+def test_a_stopped_escalation_is_a_legal_plan(router):
+    task = floor_with_holes([3], node_capacity=1, escalation="cut")
+    plan = route(router, task, Late(1))
+    assert check_plan(task, plan) == []
+    assert plan.stop_reason != "finished"
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 100_000), st.sampled_from(["cut", "uniform"]))
+def test_every_red_square_with_a_way_is_served_and_what_was_raised_was_needed(seed, escalation):
+    task = random_problem(seed, escalation=escalation)
+    for router in ROUTERS:
+        plan = route(router, task)
+        assert check_plan(task, plan) == check_raises(task, plan) == []
+    assert find_gaps(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
+
+
+def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():
+    task = floor_with_holes([3], edge_capacity=2, escalation="cut")
+    plan = route("push-relabel", task)
+    found = [each.message for each in check_plan(replace(task, escalation="none"), plan)]
+    assert "raises capacities, though the problem forbids it" in found
+    assert "is used" in check_plan(task, replace(plan, raised=6))[0].message
+    idle = check_plan(task, replace(plan, capacity=np.where(plan.flow == 1, 3, plan.capacity)))
+    assert "a raised capacity that it does not use" in idle[0].message
+    wide = replace(task, edge_capacity=7)
+    assert "without that all 7" in check_raises(wide, plan)[0].message
+    left = route("push-relabel", replace(task, escalation="none"))
+    assert "leaves out 5" in check_raises(task, left)[0].message

@@ -1,0 +1,93 @@
+"""Connectors fill the space below what they hold, up to the lowest face in the way, whatever lies above."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from amprep.geometry.connectors import connect as connectors
+from amprep.geometry.connectors.columns import Columns, Patches, clip_into
+from amprep.geometry.connectors.connect import connect, find_below
+from amprep.geometry.merging.union import union
+from amprep.geometry.meshes.repair import as_manifold
+
+Floats = NDArray[np.float64]
+
+OVERLAP = 0.01
+ONE_COLUMN = Columns(
+    np.array([[0.0, 0.0, 0.0]]), np.array([[2.0, 2.0, 10.0]]), np.zeros((1, 2), np.int64),
+    np.array([0.0, 0.0, 2.0]), (1, 1),
+)  # fmt: skip
+
+
+def tiles(count: int, height: float, *, side: float = 2.0, slope: float = 0.0) -> Floats:
+    """Return triangles that look down and cut a square from the origin into `count` x `count` tiles."""
+    ends = np.linspace(0.0, side, count + 1)
+    x, y = (each.ravel() for each in np.meshgrid(ends[:-1], ends[:-1]))
+    step = side / count
+    corners = [np.stack([x + a, y + b, height + slope * (x + a)], 1) for a, b in _SQUARE * step]
+    a, b, c, d = corners
+    return np.concatenate([np.stack([a, c, b], 1), np.stack([a, d, c], 1)])
+
+
+_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+def patches_of(layers: Sequence[Floats]) -> Patches:
+    """Return all triangles of several layers, cut to the one column."""
+    corners = np.concatenate(list(layers))
+    return clip_into(ONE_COLUMN, corners, np.arange(len(corners)), np.array([True]))
+
+
+def volume_of(layers: Sequence[Floats]) -> float:
+    """Return the volume of connectors that hold all the layers; they overlap nowhere."""
+    patches = patches_of(layers)
+    own = np.ones(len(patches.owner), np.bool_)
+    meshes = connect(patches, patches, base=np.zeros(1), lid=np.array([11.0]), overlap=OVERLAP, own=own)
+    solids = [as_manifold(*mesh) for mesh in meshes]
+    assert sum(each.volume() for each in solids) == pytest.approx(union(solids).volume(), rel=1e-6)
+    return float(union(solids).volume())
+
+
+def test_what_lies_above_the_lowest_layer_adds_nothing():
+    lowest, above = tiles(2, 3.0), [tiles(3, 4.0), tiles(2, 5.0, slope=0.2)]
+    assert volume_of([lowest, *above]) == pytest.approx(4.0 * (3.0 + OVERLAP), rel=1e-6)
+
+
+def test_columns_crowded_with_hidden_layers_hold_the_lowest():
+    """Forty layers of 18 triangles each: most are left out as hidden, and the volume stays."""
+    layers = [tiles(3, 1.0 + 0.2 * each, slope=0.05 * (each % 3)) for each in range(40)]
+    assert sum(map(len, layers)) > 10 * connectors.CROWDED
+    assert volume_of(layers) == pytest.approx(4.0 * (1.0 + OVERLAP), rel=1e-5)
+
+
+@settings(deadline=None, max_examples=15)
+@given(
+    st.lists(
+        st.tuples(st.integers(1, 4), st.floats(1.0, 8.0), st.floats(0.5, 2.0), st.floats(-0.4, 0.4)),
+        min_size=1, max_size=5,
+    )
+)  # fmt: skip
+def test_connectors_reach_the_lowest_of_what_is_above_them(layers):
+    """The volume is the integral of the lower envelope, summed on a fine lattice."""
+    ends = (np.arange(400) + 0.5) / 200
+    x, y = np.meshgrid(ends, ends)
+    lowest = np.full(x.shape, np.inf)
+    for _, height, side, slope in layers:
+        inside = (x < side) & (y < side)
+        lowest[inside] = np.minimum(lowest[inside], (height + slope * x)[inside])
+    held = np.isfinite(lowest)
+    expected = float((lowest[held] + OVERLAP).sum()) * 2e-2 * 2e-2 / 16
+    pieces = [tiles(count, height, side=side, slope=slope) for count, height, side, slope in layers]
+    assert volume_of(pieces) == pytest.approx(expected, rel=0.02)
+
+
+def test_patches_below_held_ones_are_found_and_only_those():
+    held, surface = patches_of([tiles(1, 5.0, side=1.0)]), patches_of([tiles(1, 4.0), tiles(1, 6.0)])
+    held = held._replace(owner=held.owner + (0, 100))
+    lower = surface.owner[:, 1] < 2
+    assert lower.any()
+    assert (find_below(held, surface) == lower).all()

@@ -1,0 +1,222 @@
+"""Cells of all directions united on arrays, against manifold3d's union of each cell by itself."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from amprep.bench.merging import barrel, random_layout, run_merging
+from amprep.cells import instances as cell_trunks
+from amprep.cells.instances import sort_out, trunks
+from amprep.geometry.merging.interfaces import seam
+from amprep.geometry.merging.merge_cells import join_cells
+from amprep.geometry.merging.union import arrays_of, union
+from amprep.geometry.merging.voxel_contents import LATTICE, Pieces
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.topology import degenerate, edges_match
+from amprep.host import Host
+from amprep.model import DIRECTIONS, CellRequest, Grid, Stop, silent
+
+ORIGIN, SIZE = np.array([3.0, 5.0, 0.0]), np.array([2.0, 2.0, 1.5])
+
+
+def box(lo, hi):
+    from manifold3d import Manifold
+
+    lo, hi = np.array(lo, float), np.array(hi, float)
+    return arrays_of(Manifold.cube((hi - lo).tolist()).translate(lo.tolist()))
+
+
+def joined(templates, template, square, shift):
+    mesh = join_cells(Pieces(templates), template, square, shift, ORIGIN, SIZE)
+    assert mesh is not None
+    assert edges_match(mesh[1])
+    assert not degenerate(mesh[1]).any()
+    return as_manifold(*mesh)
+
+
+def united(templates, template, square, shift):
+    """The union that takes so long: cell by cell."""
+    solids = []
+    for which, upper, step in zip(template, square, shift, strict=True):
+        points, triangles = templates[which]
+        moved = points + upper
+        moved[:, :2] += (1.0 - points[:, 2:]) * step
+        solids.append(as_manifold(ORIGIN + moved * SIZE, triangles))
+    return union(solids)
+
+
+def layout(rows, templates=1):
+    """Cells from (layer, y, x, direction), each of some template."""
+    rows = np.array(sorted(set(rows)), np.int64)
+    shift = np.array(DIRECTIONS, np.int64)[rows[:, 3]][:, ::-1]
+    return rows.sum(axis=1) % templates, rows[:, 2::-1], shift
+
+
+ROWS = st.lists(
+    st.tuples(st.integers(0, 2), st.integers(1, 3), st.integers(1, 3), st.integers(0, 4)),
+    min_size=2,
+    max_size=24,
+)
+
+# ------------------------------------------------------------------------------------------ sides that differ
+
+
+def outline(*corners):
+    points = (np.array(corners) * LATTICE).round().astype(np.int64)
+    return np.stack([points, np.roll(points, -1, axis=0)], axis=1)
+
+
+def area(points, triangles):
+    corners = points[triangles] / LATTICE
+    sides = corners[:, 1:] - corners[:, :1]
+    return float(np.linalg.det(sides).sum() / 2)
+
+
+def test_equal_regions_leave_nothing_of_one_another():
+    square = outline((0, 0), (1, 0), (1, 1), (0, 1))
+    found = seam(square, square)
+    assert found is not None
+    assert len(found.ours) == len(found.theirs) == len(found.splits) == 0
+
+
+def test_a_corner_on_the_other_s_edge_splits_it():
+    found = seam(outline((0, 0), (1, 0), (1, 1), (0, 1)), outline((0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1)))
+    assert found is not None
+    assert len(found.ours) == len(found.theirs) == 0
+    assert (found.points[found.splits[:, 2]] == [[LATTICE // 2, 0]]).all()
+
+
+RADII = st.lists(st.floats(0.05, 0.45), min_size=3, max_size=9)
+
+
+def star(radii, turn):
+    """A polygon around the middle of the unit square with corners at these distances."""
+    angle = turn + 2 * np.pi * np.arange(len(radii)) / len(radii)
+    return outline(*(0.5 + np.array(radii)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])))
+
+
+@given(RADII, RADII, st.floats(0.0, 1.0))
+@settings(deadline=None, max_examples=40)
+def test_what_is_left_of_two_regions_has_the_area_that_clipping_gives(ours, theirs, turn):
+    from manifold3d import CrossSection, FillRule
+
+    first, second = star(ours, 0.0), star(theirs, turn)
+    found = seam(first, second)
+    assert found is not None
+    a, b = (CrossSection([each[:, 0] / LATTICE], FillRule.Positive) for each in (first, second))
+    assert area(found.points, found.ours) == pytest.approx((a - b).area(), abs=1e-5)
+    assert area(found.points, found.theirs) == pytest.approx((b - a).area(), abs=1e-5)
+
+
+# ------------------------------------------------------------------------------------------ cells
+
+
+def test_a_straight_and_an_oblique_cube_with_a_common_square_overlap_by_half():
+    cube = [box((0, 0, 0), (1, 1, 1))]
+    solid = joined(cube, *layout([(0, 1, 1, 0), (0, 1, 1, 1)]))
+    assert solid.volume() == pytest.approx(1.5 * SIZE.prod())
+    assert solid.genus() == 0
+
+
+@given(ROWS)
+@settings(deadline=None, max_examples=25)
+def test_junctions_of_random_cells_have_the_volume_and_genus_of_the_union(rows):
+    cell = [barrel(5, 4)]
+    ours, theirs = (make(cell, *layout(rows)) for make in (joined, united))
+    assert ours.volume() == pytest.approx(theirs.volume(), rel=1e-6)
+    assert ours.genus() == theirs.genus()
+
+
+def test_cells_that_do_not_conform_are_united_side_by_side_and_one_upon_another():
+    """Bars and plates that reach different sides of their cubes by different outlines."""
+    cells = [
+        box((0, 0.2, 0.25), (1, 0.8, 0.75)),
+        box((0.15, 0, 0.35), (0.9, 1, 1)),
+        box((0.25, 0.3, 0), (1, 0.7, 0.85)),
+    ]
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        which = layout(list(map(tuple, rng.integers([0, 1, 1, 0], [3, 4, 4, 5], (22, 4)))), templates=3)
+        ours, theirs = joined(cells, *which), united(cells, *which)
+        assert ours.volume() == pytest.approx(theirs.volume(), rel=1e-6)
+        assert ours.genus() == theirs.genus()
+
+
+def test_the_same_cells_give_the_same_mesh():
+    which = random_layout(300, 0.2, seed=4)
+    template = np.zeros(len(which.square), np.int64)
+    first, second = (
+        join_cells(Pieces([barrel()]), template, which.square, which.shift, ORIGIN, SIZE) for _ in range(2)
+    )
+    assert (first[0] == second[0]).all()
+    assert (first[1] == second[1]).all()
+
+
+def emitted(cell, seed, count=30, **params):
+    """A built-in cell on random edges with many junctions."""
+    rng = np.random.default_rng(seed)
+    rows = np.unique(rng.integers([1, 2, 2, 0], [4, 6, 6, 5], (count, 4)), axis=0)
+    plane, y, x, direction = rows.T
+    zero = np.zeros(len(rows), np.int32)
+    frame = Grid(np.zeros(3), 2.0, 2.0, (12, 9, 9))
+    request = CellRequest(frame, plane, y, x, direction, zero, zero + 1, zero)
+    host = Host.load(plugins_enabled=False)
+    listed = host.choose("cell", cell)
+    return sort_out(
+        request, host.call(listed, request, params=host.params(listed, params), stop=Stop(), progress=silent)
+    )
+
+
+def each_by_itself(found):
+    solids = []
+    for template, matrix in zip(found.cells.template, found.cells.matrix, strict=True):
+        points, triangles = found.templates[template]
+        solids.append(as_manifold(points @ matrix[:, :3].T + matrix[:, 3], triangles))
+    return union(solids)
+
+
+@pytest.mark.parametrize("cell", ["prism", "x-wall", "strut", "bcc", "hatch"])
+def test_built_in_cells_become_one_closed_mesh_of_the_union_s_volume(cell):
+    found = emitted(cell, seed=len(cell))
+    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_))
+    assert edges_match(mesh[1])
+    assert as_manifold(*mesh).volume() == pytest.approx(each_by_itself(found).volume(), rel=1e-6)
+
+
+def test_struts_have_the_genus_of_the_union_too():
+    """Other built-in cells touch in edges, where manifold3d's answer depends on the order of the cells."""
+    found = emitted("strut", seed=2, count=60)
+    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_))
+    assert as_manifold(*mesh).genus() == each_by_itself(found).genus()
+
+
+def test_seats_are_united_with_the_cells_they_lie_in():
+    found = emitted("strut", seed=1)
+    seats = np.array([[2, 3, 3], [2, 3, 4], [3, 4, 4]])
+    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_), seats, 0.2)
+    plates = [(square[::-1] - (0, 0, 1)) * 2.0 + (1.0, 1.0, 1.9) for square in seats]
+    from manifold3d import Manifold
+
+    lids = [Manifold.cube((2.0, 2.0, 0.2), True).translate(place.tolist()) for place in plates]
+    expected = union([each_by_itself(found), *lids])
+    assert as_manifold(*mesh).volume() == pytest.approx(expected.volume(), rel=1e-6)
+
+
+def test_cells_that_cannot_be_joined_on_arrays_come_one_mesh_a_direction(monkeypatch):
+    found = emitted("strut", seed=3)
+    every = np.ones(len(found.tiles), np.bool_)
+    (mesh,) = trunks(found, every)
+    monkeypatch.setattr(cell_trunks, "join_cells", lambda *_: None)
+    meshes = [as_manifold(*each) for each in trunks(found, every)]
+    assert len(meshes) >= 5
+    assert union(meshes).volume() == pytest.approx(as_manifold(*mesh).volume(), rel=1e-6)
+
+
+def test_the_benchmark_judges_what_it_times():
+    result = run_merging(400, 150)
+    assert result.validated
+    assert result.junctions > 0.15
+    assert result.triangles == 200
+    assert result.record["cells"] == 400
+    assert "batch union" in result.line

@@ -1,0 +1,150 @@
+"""Blockers and enforcers mark what lies in them, to the millimetre, not whole triangles."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.shared.builds import box_mesh
+
+from amprep.geometry.meshes.subdivision import refine
+from amprep.model import Mesh, Part, PlacedPart, Region
+from amprep.overhangs.blockers import FINEST, mark
+from amprep.overhangs.of_part import needs_of
+from amprep.threemf.read.painted_supports import Painted, decode, find_paint, painted_regions
+
+SLAB = box_mesh((0, 0, 10), (100, 60, 5))
+"""Its underside is two triangles."""
+
+
+def underside(mesh):
+    corners = mesh.vertices[mesh.triangles]
+    return np.flatnonzero((corners[:, :, 2] < 10.001).all(axis=1))
+
+
+def area(mesh, chosen):
+    corners = mesh.vertices[mesh.triangles[chosen]]
+    return (
+        np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+        / 2
+    )
+
+
+def edge_uses(mesh):
+    ends = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2).reshape(
+        -1, 2
+    )
+    return np.unique(ends, axis=0, return_counts=True)[1]
+
+
+def blocked_area(*regions, mesh=SLAB, matrix=None):
+    marked = mark(mesh, regions, np.eye(4) if matrix is None else matrix)
+    assert (edge_uses(marked.mesh) == 2).all(), "no gaps, no corners on edges"
+    assert marked.mesh.signed_volume == pytest.approx(mesh.signed_volume)
+    under = underside(marked.mesh)
+    return area(marked.mesh, under[marked.marks.blocked[under]])
+
+
+@given(x=st.floats(5, 60), y=st.floats(5, 30), size=st.floats(3, 25))
+@settings(deadline=None, max_examples=15)
+def test_a_blocker_box_blocks_its_own_area_of_a_large_triangle(x, y, size):
+    found = blocked_area(Region("blocker", "b", mesh=box_mesh((x, y, 9), (size, size, 2))))
+    assert found == pytest.approx(size * size, abs=4 * size * FINEST)
+
+
+def test_regions_move_with_the_part():
+    turn = np.array([[0.0, -1, 0, 90], [1, 0, 0, 5], [0, 0, 1, 0], [0, 0, 0, 1]])
+    blocker = Region("blocker", "b", mesh=box_mesh((10, 10, 9), (20, 20, 2)))
+    assert blocked_area(blocker, mesh=SLAB.moved(turn), matrix=turn) == pytest.approx(400, abs=80 * FINEST)
+
+
+def test_without_blockers_and_enforcers_the_mesh_stays_as_it_is():
+    marked = mark(SLAB, (Region("lattice", "l", mesh=box_mesh((0, 0, 0), (5, 5, 5))),), np.eye(4))
+    assert marked.mesh is SLAB
+    assert marked.marks is None
+
+
+def test_needs_lose_what_is_blocked_and_gain_what_is_enforced():
+    slope = Mesh(SLAB.vertices + (0, 0, 1) * (SLAB.vertices[:, [0]] * 2.0), SLAB.triangles)  # 63 degrees
+    enforcer = Region("enforcer", "e", mesh=box_mesh((20, 10, 0), (10, 10, 300)))
+    limits = {"overhang_angle_deg": 45.0, "least_area": 0.5, "least_length": 0.5}
+    bare = needs_of(PlacedPart("s", Part("s", slope, 1.0), np.eye(4)), **limits)
+    assert [region.kind for region in bare.overhangs.regions] == ["edge"], "only its lower edge"
+    forced = needs_of(PlacedPart("s", Part("s", slope, 1.0, regions=(enforcer,)), np.eye(4)), **limits)
+    (face,) = (region for region in forced.overhangs.regions if region.kind == "face")
+    assert face.measure == pytest.approx(100 * np.sqrt(5), rel=0.15)
+    blocker = Region("blocker", "b", mesh=box_mesh((-1, -1, 9), (51, 62, 2)))
+    rest = needs_of(PlacedPart("s", Part("s", SLAB, 1.0, regions=(blocker,)), np.eye(4)), **limits)
+    (face,) = rest.overhangs.regions
+    assert face.measure == pytest.approx(3000, abs=120 * FINEST)
+    assert face.centre[0] == pytest.approx(75, abs=1)
+
+
+def test_refining_ends_where_nothing_is_wanted_and_names_the_parents():
+    fine = refine(
+        SLAB.vertices, SLAB.triangles, lambda corners, parent: (parent == 3) & (_size(corners) > 10)
+    )
+    assert _size(fine.vertices[fine.triangles[fine.parent == 3]]).max() <= 10
+    for parent in range(12):
+        here = Mesh(fine.vertices, fine.triangles)
+        assert area(here, fine.parent == parent) == pytest.approx(area(SLAB, [parent]))
+
+
+def _size(corners):
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+
+
+A, B, C, AB, BC, CA = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]])
+
+
+@pytest.mark.parametrize(
+    ("text", "corners"),
+    [
+        ("4", (A, B, C)),
+        ("041", (BC, C, A)),
+        ("401", (A, B, BC)),
+        ("045", (CA, A, B)),
+        ("049", (AB, B, C)),
+        ("0042", (B, C, CA)),
+        ("4002", (A, AB, CA)),
+        ("0406", (BC, C, AB)),
+        ("400A", (C, CA, BC)),
+        ("00043", (AB, BC, CA)),
+        ("40003", (A, AB, CA)),
+    ],
+)
+def test_painted_pieces_are_where_prusaslicer_puts_its_supports(text, corners):
+    """Compared with where PrusaSlicer 2.5 lays support when it slices a plate painted with the same text."""
+    pieces, states = decode(text)
+    assert states.tolist() == [1]
+    assert sorted(map(tuple, pieces[0])) == sorted(map(tuple, np.array(corners, float)))
+
+
+def test_pieces_of_pieces_halve_again():
+    pieces, states = decode("000" + "00043" + "3")
+    assert states.tolist() == [1]
+    assert np.linalg.det(pieces[0]) == pytest.approx(1 / 16), "share of the triangle's area"
+
+
+def test_other_states_are_read_and_left_out():
+    assert decode("8")[1].tolist() == [2]
+    assert len(decode("0")[0]) == 0
+    assert len(decode("5C")[0]) == 0, "a state above 2, in two digits"
+
+
+@pytest.mark.parametrize("text", ["1", "41", "44", "4D", "000041", "1" * 5000])
+def test_damaged_paint_is_an_error(text):
+    with pytest.raises(ValueError, match="it "):
+        decode(text)
+
+
+def test_damaged_paint_is_noted_and_the_rest_kept():
+    model = b"""<model><object id="7"><mesh><triangles><triangle v1="0" v2="1" v3="2"/>
+    <triangle v1="0" v2="2" v3="3" slic3rpe:custom_supports="4"/><triangle paint_supports="41" v1="0" v2="2" v3="4"/>
+    </triangles></mesh></object><object id="8" name="a > b"><triangles><triangle/></triangles></object></model>"""
+    ((name, painted),) = find_paint(model).items()
+    assert (name, painted) == (7, Painted(3, {1: "4", 2: "41"}))
+    corners = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 4]])
+    regions, words = painted_regions(painted, np.zeros((5, 3)), corners, np.array([False, True, True]), 10)
+    assert [(region.kind, region.triangles.tolist()) for region in regions] == [("enforcer", [10])]
+    assert "1 triangles are damaged" in words
+    assert painted_regions(painted, np.zeros((5, 3)), corners[:2], np.ones(2, bool), 0)[1]

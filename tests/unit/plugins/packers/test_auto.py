@@ -1,0 +1,124 @@
+"""The packer `auto` beats its own start, ends with the bound, and keeps what stands where it is."""
+
+import numpy as np
+import pytest
+from tests.shared.boxes import boxes_problem as problem
+from tests.shared.boxes import cut
+
+from amprep.checks.packing.volumes_placed import check_packing
+from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model.rotations import axis_rotations
+from amprep.plugins.packers.auto import pack_auto
+from amprep.plugins.packers.auto.ruin_and_recreate import _nothing_seen
+from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.params import AutoParams, ExtremePointsParams
+
+
+def run(task, stop=None, **params):
+    packing = pack_auto(
+        task, params=AutoParams(**params), rng=np.random.default_rng(0), stop=stop or Stop(), progress=silent
+    )
+    assert check_packing(task, packing) == []
+    return packing
+
+
+def test_three_rooms_cut_up_without_waste_are_put_together_again():
+    rng = np.random.default_rng(1)
+    task = problem([box for _ in range(3) for box in cut(rng, (10, 10, 10), 6)])
+    packing = run(task)
+    assert len(packing.builds) == 3
+    assert (packing.status, packing.stop_reason) == ("optimal", "bound met")
+
+
+def test_the_search_saves_builds_that_the_sortings_do_not():
+    # class 1 of Martello, Pisinger, Vigo, n = 50, instances 2 and 3: sortings alone need one build more
+    from amprep.bench.packing.instances import mpv_instance
+
+    for index, builds in ((2, 14), (3, 14)):
+        task = mpv_instance(1, 50, index).problem
+        start = pack_extreme_points(
+            task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), progress=silent
+        )
+        assert len(start.builds) == builds + 1
+        assert len(run(task, work=40.0).builds) == builds
+
+
+def test_boxes_may_be_turned_to_save_a_build():
+    sizes = [(10, 10, 5), (10, 5, 10), (5, 10, 10), (5, 10, 10)]
+    assert len(run(problem(sizes)).builds) == 3
+    assert len(run(problem(sizes, orientations=Orientations("list", axis_rotations()))).builds) == 2
+
+
+def test_what_is_fixed_stays_in_the_first_build_and_is_never_dissolved():
+    sizes = [(4, 4, 4), *np.random.default_rng(3).integers(2, 7, (25, 3)).tolist()]
+    fixed = (Placement(0, np.eye(3), np.array([3.0, 3.0, 0.0])),)
+    packing = run(problem(sizes, fixed=fixed), work=10.0)
+    assert packing.builds[0][0].item == 0
+
+
+@pytest.mark.parametrize("rules", [{"stacking": False}, {"clearance": 0.5}, {"lift": 1.0}])
+def test_the_rules_of_the_job_hold(rules):
+    run(problem(np.random.default_rng(4).integers(2, 6, (25, 3)).tolist(), **rules), work=10.0)
+
+
+def test_a_round_plate_holds_what_it_can():
+    items = problem(np.random.default_rng(5).integers(2, 6, (20, 3)).tolist()).items
+    run(PackingProblem(items, BuildVolume(np.full(3, 12.0), "cylinder")), work=10.0)
+
+
+def test_filling_ends_when_all_is_placed():
+    packing = run(problem([(5, 5, 5)] * 8, objective="fill"))
+    assert (packing.status, packing.stop_reason, packing.bound) == ("optimal", "bound met", 1000.0)
+
+
+def test_filling_is_never_worse_than_by_the_sortings():
+    task = problem(np.random.default_rng(6).integers(2, 7, (40, 3)).tolist(), objective="fill")
+    start = pack_extreme_points(
+        task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), progress=silent
+    )
+    found = [sum(task.items[p.item].value for p in packing.builds[0]) for packing in (start, run(task))]
+    assert found[1] >= found[0]
+
+
+def test_the_budget_of_work_ends_the_search_at_the_same_place_every_time():
+    task = problem(np.random.default_rng(7).integers(2, 8, (40, 3)).tolist())
+    one, other = run(task, work=5.0), run(task, work=5.0)
+    assert [[p.item for p in b] for b in one.builds] == [[p.item for p in b] for b in other.builds]
+
+
+def test_a_proof_that_ends_after_the_search_is_the_reason_too():
+    from amprep.bench.packing.instances import mpv_instance
+
+    packing = run(mpv_instance(1, 50, 1).problem, work=0.001, proof=400.0)
+    assert (packing.status == "optimal") == (packing.stop_reason == "bound met")
+
+
+def test_many_small_boxes_in_few_builds_need_no_memory_for_every_build_met():
+    held = _nothing_seen(200_000, 100_000)
+    assert held.item.size == 8_000_000
+
+
+def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
+    from amprep.bench.packing.instances import mpv_instance
+
+    packing = run(mpv_instance(5, 50, 1).problem, Stop.after(0.0))
+    assert packing.stop_reason == "time limit"
+    assert run(problem([(6, 6, 6)] * 5), Stop.after(0.0)).stop_reason == "bound met"
+    assert run(problem([])).builds == ()
+
+
+def test_parameters_out_of_bounds_are_refused():
+    for params in ({"most_ruined": 0}, {"heat": -1.0}, {"patience": -1}, {"work": float("nan")}):
+        with pytest.raises(ValueError, match=next(iter(params))):
+            AutoParams(**params)
+
+
+def test_a_thousand_sizes_on_plates_end_within_the_time_given():
+    import time
+
+    sizes = np.random.default_rng(8).integers(3, 15, (900, 3)).tolist()
+    task = problem(sizes, room=(100, 100, 20), stacking=False, clearance=1.0)
+    run(task, Stop.after(0.2))  # compiles
+    start = time.process_time()
+    run(task, Stop.after(1.0))
+    assert time.process_time() - start < 4.0

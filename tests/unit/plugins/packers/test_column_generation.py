@@ -1,0 +1,121 @@
+"""The packer `column-generation`: covers pack everything, bounds are never above the fewest builds."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.shared.boxes import boxes_problem
+
+from amprep.checks.packing.volumes_placed import check_packing
+from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
+from amprep.plugins.packers.column_generation import pack_column_generation, price_builds, useful
+from amprep.plugins.packers.column_generation.columns import (
+    Column,
+    arrangement_from,
+    demand_of,
+    single_columns,
+)
+from amprep.plugins.packers.column_generation.master import fractional_cover, whole_cover
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.integer_program import pack_ip
+from amprep.plugins.packers.params import ColumnGenerationParams, IpParams
+
+
+def problem(sizes, room=4, **rules):
+    return boxes_problem(sizes, room, **rules)
+
+
+def run(given_problem, stop=None, **params):
+    rng, chosen = np.random.default_rng(1), ColumnGenerationParams(**params)
+    packing = pack_column_generation(
+        given_problem, params=chosen, rng=rng, stop=stop or Stop(), progress=silent
+    )
+    assert check_packing(given_problem, packing) == []
+    return packing
+
+
+def stacked(*kinds):
+    """A column of given kinds; where they stand is of no matter to a cover."""
+    return Column(np.array(kinds), np.zeros(len(kinds), np.int64), np.zeros((len(kinds), 3)))
+
+
+side = st.integers(1, 4)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(st.tuples(side, side, side), min_size=1, max_size=8))
+def test_bound_and_builds_enclose_the_fewest_builds_that_the_program_proves(sizes):
+    given_problem = problem(sizes)
+    rng = np.random.default_rng(1)
+    exact = pack_ip(given_problem, params=IpParams(effort=10.0), rng=rng, stop=Stop(), progress=silent)
+    assert exact.status == "optimal"
+    packing = run(given_problem, effort=1.0)
+    assert packing.bound <= len(exact.builds) <= len(packing.builds)
+
+
+def test_pricing_proves_what_volume_does_not():
+    # cubes of 3 in a room of 5 fit one by one, though nearly half the room stays free: 2.16 builds by volume
+    packing = run(problem([(3, 3, 3)] * 10, room=5))
+    assert (len(packing.builds), packing.bound, packing.status) == (10, 10.0, "optimal")
+
+
+def test_a_fractional_cover_of_a_triangle_prices_each_item_at_a_half():
+    # builds hold any two of three items: half of each build is enough, so each item costs a half
+    cover = fractional_cover([stacked(0, 1), stacked(1, 2), stacked(0, 2)], np.ones(3, int), IpParams())
+    assert np.allclose(cover.share, 0.5)
+    assert np.allclose(cover.price, 0.5)
+
+
+def test_a_whole_cover_counts_items_of_a_kind():
+    # five of a kind in builds of two: three builds, whatever the single ones
+    chosen = whole_cover([stacked(0), stacked(0, 0)], np.array([5]), IpParams(), Stop())
+    assert len(chosen) == 3
+    assert sum(len(column.kind) for column in chosen) >= 5
+
+
+def test_what_is_covered_twice_is_placed_once_and_idle_builds_are_dropped():
+    scene = prepare(problem([(1, 1, 1), (2, 1, 1), (3, 1, 1)]))
+    columns = [stacked(0, 1), stacked(1), stacked(1, 2)]
+    assert [column.kind.tolist() for column in useful(scene, columns)] == [[0, 1], [1, 2]]
+    assert arrangement_from(scene, columns).build.tolist() == [0, 0, 1]
+
+
+def test_prices_of_one_build_each_leave_nothing_worth_more_than_it_costs():
+    # items that exclude each other, each at price 1: no build is worth more than 1, and pricing proves it
+    scene = prepare(problem([(3, 3, 3), (3, 3, 4), (4, 3, 3)]))
+    cover = fractional_cover(single_columns(scene), demand_of(scene), ColumnGenerationParams())
+    assert np.allclose(cover.price, 1.0)
+    rng = np.random.default_rng(1)
+    priced = price_builds(scene, cover.price, ColumnGenerationParams(effort=1.0), rng, Stop())
+    assert priced.columns == []
+    assert 1.0 <= priced.bound <= 1.0 + 1e-5
+
+
+def test_turned_items_and_zones_are_packed():
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    turns = Orientations(matrices=np.array([np.eye(3), turn]))
+    items = tuple(Item(i, 0, Boxes(np.zeros((1, 3)), np.array([[4.0, 2, 3]])), 1.0, turns) for i in range(5))
+    space = BuildVolume(np.full(3, 4.0), "box", np.array([[0.0, 0, 3]]), np.array([[4.0, 2, 4]]))
+    # two side by side are 3 high and fill the room below the zone
+    packing = run(PackingProblem(items, space, "builds"))
+    assert (len(packing.builds), packing.status) == (3, "optimal")
+
+
+def test_an_item_that_fits_no_build_is_named_and_the_rest_packed():
+    packing = run(problem([(5, 1, 1), (4, 4, 3), (4, 4, 2), (4, 4, 2), (4, 4, 1)]))
+    assert (packing.status, len(packing.builds)) == ("infeasible", 2)
+    assert [(u.item, u.reason) for u in packing.unplaced] == [(0, "too large")]
+
+
+def test_the_same_problem_gives_the_same_packing():
+    given_problem = problem(np.random.default_rng(5).integers(2, 6, (16, 3)).tolist(), room=9)
+    one, other = run(given_problem, rounds=5), run(given_problem, rounds=5)
+    assert [[p.matrix.tolist() for p in b] for b in one.builds] == [
+        [p.matrix.tolist() for p in b] for b in other.builds
+    ]
+
+
+@pytest.mark.parametrize("wrong", [{"rounds": -1}, {"restarts": -1}, {"roundings": -1}, {"threads": 0}])
+def test_a_parameter_out_of_bounds_is_refused_by_name(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        ColumnGenerationParams(**wrong)

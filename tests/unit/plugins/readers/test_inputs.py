@@ -1,0 +1,75 @@
+"""What the user names: files, folders, counts; unique names; the promise of every part read."""
+
+import pytest
+import trimesh
+
+from amprep.errors import InputError
+from amprep.model import Mesh, Part
+from amprep.pipeline.reading import expand_inputs, read_all, with_unique_names
+from amprep.plugins.readers.files import read_mesh_file
+
+SUFFIXES = {".stl", ".3mf"}
+
+
+def named(*names):
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    return [Part(name, mesh, 0.0) for name in names]
+
+
+def test_files_stay_in_the_order_given(tmp_path):
+    for name in ("b.stl", "a.stl"):
+        (tmp_path / name).write_text("x")
+    inputs = [(tmp_path / "b.stl", None), (tmp_path / "a.stl", 2)]
+    assert expand_inputs(inputs, SUFFIXES) == inputs
+
+
+def test_a_folder_stands_for_the_files_in_it_that_can_be_read_by_name(tmp_path):
+    for name in ("b.STL", "a.stl", "notes.txt", "c.3mf", ".hidden.stl"):
+        (tmp_path / name).write_text("x")
+    (tmp_path / "deeper.stl").mkdir()
+    assert [path.name for path, _ in expand_inputs([(tmp_path, None)], SUFFIXES)] == [
+        "a.stl",
+        "b.STL",
+        "c.3mf",
+    ]
+
+
+def test_the_count_of_a_folder_holds_for_each_file_in_it(tmp_path):
+    (tmp_path / "a.stl").write_text("x")
+    (tmp_path / "b.stl").write_text("x")
+    expected = [(tmp_path / "a.stl", 2), (tmp_path / "b.stl", 2)]
+    assert expand_inputs([(tmp_path, 2)], SUFFIXES) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("none.stl", "no such file"),
+        ("empty", "no file to read"),
+        ("\0", "not a usable"),
+        ("x" * 5000, "too long"),
+    ],
+)
+def test_what_is_not_there_is_refused_in_one_line(tmp_path, name, words):
+    (tmp_path / "a.stl").write_text("x")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match=words) as caught:
+        expand_inputs([(tmp_path / name, None)], SUFFIXES)
+    assert "\n" not in str(caught.value)
+
+
+def test_equal_names_get_numbers_and_no_number_is_taken_twice():
+    parts = with_unique_names(named("a", "b", "a", "a-2", "a"))
+    assert [part.name for part in parts] == ["a", "b", "a-3", "a-2", "a-4"]
+
+
+def test_reading_settles_counts_and_reports(tmp_path):
+    path = tmp_path / "cube.stl"
+    trimesh.creation.box((1, 2, 3)).export(path)
+    heard = []
+    parts = read_all([(path, 3), (path, None)], read_mesh_file, progress=lambda *said: heard.append(said))
+    assert [(part.name, part.quantity, part.volume_mm3) for part in parts] == [
+        ("cube", 3, 6.0),
+        ("cube-2", 1, 6.0),
+    ]
+    assert heard == [(0.0, "cube.stl"), (0.5, "cube.stl"), (1.0, "2 parts")]

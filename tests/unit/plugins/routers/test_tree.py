@@ -1,0 +1,102 @@
+"""The routers `tree` and `auto`: never more material than the routers they start from; reasons that are told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from amprep.bench.routing.scenes import scene
+from amprep.checks.supports.plan import check_plan, check_raises
+from amprep.geometry.voxels.grid import Grid
+from amprep.host import Host
+from amprep.model.control import Stop, silent
+from amprep.model.supports import SupportProblem, Voxel
+from amprep.plugins.routers import auto
+from amprep.plugins.routers.params import TreeParams
+
+HOST = Host.load()
+
+
+def route(router, task, stop=None, **table):
+    listed, rng = HOST.choose("router", router), np.random.default_rng(3)
+    params = HOST.params(listed, table)
+    plan = HOST.call(listed, task, params=params, rng=rng, stop=stop or Stop(), progress=silent)
+    assert check_plan(task, plan) == []
+    return plan
+
+
+def material(task, plan):
+    return float(np.array(task.material)[np.minimum(plan.direction, 1)].sum())
+
+
+@pytest.mark.parametrize("name", ["ball", "two-balls", "plate"])
+@pytest.mark.parametrize("rules", [{}, {"edge_capacity": 3}, {"material": (1.0, 3.0)}], ids=str)
+def test_it_takes_no_more_material_than_the_routers_it_starts_from(name, rules):
+    task = replace(scene(name, 30), **rules)
+    plan = route("tree", task)
+    assert plan.objective == material(task, plan)
+    for other in ("shortest-paths", "min-cost-flow"):
+        assert plan.objective <= material(task, route(other, task))
+    assert "shortest-paths" in plan.notes[0]
+
+
+def test_four_columns_in_a_square_become_one_trunk():
+    """Apart 4 * 20 edges; the least known joins them by 3 sideways steps and goes down as one."""
+    voxels = np.zeros((21, 6, 6), np.uint8)
+    red = np.array([(20, y, x) for y in (2, 3) for x in (2, 3)])
+    voxels[tuple(red.T)] = Voxel.OCCUPIED
+    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    task = SupportProblem(frame, voxels, red, np.zeros(4), np.zeros(4), voxels[0] == Voxel.FREE)
+    assert route("tree", task).objective <= 24
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 100_000))
+def test_it_connects_as_many_as_the_exact_routers(seed):
+    rng = np.random.default_rng(seed)
+    voxels = (rng.random((7, 5, 5)) < rng.uniform(0.1, 0.5)).astype(np.uint8)
+    red = np.array([(p, y, x) for p, y, x in np.argwhere(voxels) if p > 0 and not voxels[p - 1, y, x]])
+    nothing = np.zeros(len(red), np.int32)
+    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    edge, node = (int(each) for each in rng.integers(0, 3, 2))
+    task = SupportProblem(
+        frame, voxels, red.reshape(-1, 3), nothing, nothing, voxels[0] == Voxel.FREE, edge, node
+    )
+    for escalation in ("none", "cut", "uniform"):
+        again = replace(task, escalation=escalation)
+        plan = route("tree", again, rounds=5)
+        assert check_raises(again, plan) == []
+        assert len(plan.unconnected) == len(route("push-relabel", again).unconnected)
+
+
+def test_a_stopped_search_is_a_legal_plan():
+    stop = Stop()
+    stop.cancelled.set()
+    assert route("tree", scene("ball", 20), stop).stop_reason == "interrupted"
+
+
+@pytest.mark.parametrize("wrong", [{"rounds": -1}, {"neighbours": 0}, {"seconds": 0.0}])
+def test_parameters_out_of_bounds_are_refused(wrong):
+    with pytest.raises(ValueError, match="must be"):
+        TreeParams(**wrong)
+
+
+@pytest.mark.parametrize(
+    ("rules", "small", "jam", "expected"),
+    [
+        ({}, 10**6, 10**6, "tree"),
+        ({}, 10, 10**6, "shortest-paths"),
+        ({"node_capacity": 1}, 10**6, 10**6, "min-cost-flow"),
+        ({"edge_capacity": 2}, 10**6, 10, "push-relabel"),
+        ({"edge_capacity": 3}, 10**6, 10**6, "tree"),
+    ],
+)
+def test_auto_picks_by_size_and_capacity_and_says_so(monkeypatch, rules, small, jam, expected):
+    monkeypatch.setattr(auto, "SMALL", small)
+    monkeypatch.setattr(auto, "LARGE_JAM", jam)
+    task = replace(scene("ball", 16), **rules)
+    plan, chosen = route("auto", task), route(expected, task)
+    assert plan.notes[0].startswith(f"auto chose the router {expected}: ")
+    assert plan.flow.tolist() == chosen.flow.tolist()

@@ -1,0 +1,282 @@
+"""Connectors of every kind hold true surfaces exactly; teeth, points, necks and windows measure what they should."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from manifold3d import CrossSection, Manifold
+
+from amprep.checks.supports.bodies import check_bodies
+from amprep.checks.supports.contacts import check_contacts
+from amprep.checks.supports.coverage import check_coverage, find_unsupported
+from amprep.errors import JobError
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.supports.contact_area import contact_corners, measure_contact
+from amprep.host import Host
+from amprep.job.loading import make_job
+from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
+from amprep.model.contacts import Connector
+from amprep.supports.plan import Wishes, plan_supports
+from amprep.supports.solids.build import build_supports
+
+SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
+PITCH, OVERLAP = 2.0, 0.1
+KINDS = {
+    "full": Connector(),
+    "teeth": Connector("teeth"),
+    "point": Connector("point", None, 0.5, 1.0),
+    "points": Connector("point", 1.0, 0.4, 0.8, neck=0.25),
+    "neck": Connector("full", neck=0.5),
+    "necked teeth": Connector("teeth", neck=0.3),
+    "windows": Connector("full", window=0.5),
+    "extend": Connector("extend"),
+}
+
+
+def slab(side=8.0, bottom=8.0):
+    return Manifold.cube((side, side, 2.0)).translate((16.0, 16.0, bottom))
+
+
+def ball():
+    return Manifold.sphere(6.0, 48).translate((15.3, 14.9, 9.1))
+
+
+def tilted():
+    return Manifold.cube((12.0, 7.0, 2.0)).rotate((0.0, -25.0, 10.0)).translate((14.0, 11.0, 9.0))
+
+
+def bracket():
+    """A wall on the plate with a shelf that has a hole in it, and a rib with a sharp lower edge."""
+    shelf = Manifold.cube((10.0, 8.0, 2.0)).translate((13.0, 11.0, 9.3))
+    rib = CrossSection([[(0, 0), (1.5, 4), (-1.5, 4)]]).extrude(6.0).rotate((90, 0, 0))
+    return (
+        Manifold.cube((3.0, 8.0, 12.0)).translate((10.0, 11.0, 0.0))
+        + shelf
+        + rib.translate((20.0, 18.0, 6.4))
+        - Manifold.cylinder(5.0, 1.6).translate((16.0, 15.0, 8.0))
+    )
+
+
+SHAPES = {"slab": slab, "ball": ball, "tilted": tilted, "bracket": bracket}
+
+
+def placed(solid, name="part"):
+    mesh = solid.to_mesh64()
+    whole = Mesh(np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts, np.int32))
+    return PlacedPart(name, Part(name, whole, whole.signed_volume), np.eye(4))
+
+
+def solid_of(mesh):
+    return as_manifold(mesh.vertices, mesh.triangles)
+
+
+@cache
+def host():
+    return Host.load(plugins_enabled=False)
+
+
+@cache
+def scene(shape):
+    part = placed(SHAPES[shape]())
+    router = host().choose("router", "shortest-paths")
+
+    def route(problem, stop, progress):
+        rng = np.random.default_rng(0)
+        return host().call(
+            router, problem, params=host().params(router, {}), rng=rng, stop=stop, progress=progress
+        )
+
+    return part, plan_supports((part,), SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), progress=silent)
+
+
+def supports(shape, connector, cell="prism", **more):
+    part, layout = scene(shape)
+    emitter = host().choose("cell", cell)
+    params = host().params(emitter, {})
+    return build_supports(
+        layout,
+        (part,),
+        lambda request: host().call(emitter, request, params=params, stop=Stop(), progress=silent),
+        overlap=OVERLAP,
+        connector=connector,
+        allow_surface=False,
+        stop=Stop(),
+        progress=silent,
+        **more,
+    )
+
+
+@cache
+def body(shape, kind):
+    """Return the one support of a shape as a solid."""
+    (support,) = supports(shape, KINDS[kind])
+    return solid_of(support.mesh)
+
+
+def judged(shape, bodies):
+    part, layout = scene(shape)
+    settings = BuildSettings("b", SPACE, overlap=OVERLAP, reach=1.5 * PITCH)
+    unsupported = find_unsupported((part,), bodies, settings, layout.reason_at)
+    build = Build(settings, (part,), bodies, unsupported)
+    frame, (plane, y, x) = layout.frame, layout.red[layout.connected].T.astype(float)
+    size = np.array([frame.pitch, frame.pitch, frame.step])
+    lo = frame.origin + np.column_stack([x, y, plane]) * size
+    hi = lo + np.column_stack([x * 0 + 1, x * 0 + 1, layout.red_rise[layout.connected]]) * size
+    contacts = check_contacts(build, lo, hi, layout.red_part[layout.connected])
+    return [*check_bodies(build, Stop()), *check_coverage(build), *contacts]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_connectors_of_every_kind_keep_every_promise(shape, kind):
+    """Closed, on the plate, nowhere deeper than the overlap, in reach of all, in contact above every red square."""
+    assert judged(shape, supports(shape, KINDS[kind])) == []
+
+
+def test_the_judge_finds_a_red_square_without_contact():
+    bodies = supports("slab", Connector())
+    cut = solid_of(bodies[0].mesh) - Manifold.cube((2.0, 2.0, 3.0)).translate((18.0, 18.0, 7.0))
+    (support,) = (placed(cut),)
+    found = judged("slab", (bodies[0].__class__("cut", support.part.mesh, (0,)),))
+    assert [each.promise for each in found] == ["connector touches its part"]
+
+
+@pytest.mark.parametrize(
+    ("cell", "shape"), [("x-wall", "bracket"), ("strut", "bracket"), ("bcc", "slab"), ("hatch", "slab")]
+)
+def test_teeth_and_points_stand_on_every_cell(cell, shape):
+    for kind in ("necked teeth", "point") if cell != "hatch" else ("point",):
+        assert judged(shape, supports(shape, KINDS[kind], cell)) == []
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_contact_shrinks_from_full_to_teeth_to_points(shape):
+    part, _ = scene(shape)
+    areas, volumes = [], []
+    for kind in ("full", "teeth", "point"):
+        (support,) = supports(shape, KINDS[kind])
+        areas.append(measure_contact((support.mesh.vertices, support.mesh.triangles),
+                                     (part.mesh.vertices, part.mesh.triangles)).area)  # fmt: skip
+        volumes.append(support.mesh.signed_volume)
+    assert areas[0] > 1.5 * areas[1] > 1.5 * areas[2] > 0.0
+    assert volumes[0] > volumes[1] > 0.0
+
+
+@pytest.mark.parametrize("kind", ["teeth", "points", "neck"])
+def test_contacts_follow_the_true_surface_to_the_overlap(kind):
+    """On slopes without steps the volume in the part is the contact in plan times the overlap."""
+    part = solid_of(scene("tilted")[0].mesh)
+    common = body("tilted", kind) ^ part
+    corners = contact_corners(body("tilted", kind), part)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    flat = -normal[normal[:, 2] < 0.0, 2].sum() / 2.0
+    assert common.volume() == pytest.approx(OVERLAP * flat, rel=0.05)
+
+
+def sections(solid, height):
+    """Return bounds and areas of the pieces of a level cut."""
+    pieces = solid.slice(height).decompose()
+    return np.array([piece.bounds() for piece in pieces]), np.array([piece.area() for piece in pieces])
+
+
+def flat(connector):
+    """Return supports of a level slab, 8 x 8 mm on the grid, its underside at 9.9 mm."""
+    SHAPES["flat"] = lambda: slab(8.0, 9.9)
+    (support,) = supports("flat", connector)
+    return solid_of(support.mesh)
+
+
+def test_teeth_have_the_pitch_and_width_asked_and_stand_on_shoulders():
+    teeth = flat(Connector("teeth", 1.0, 0.4, 0.7))
+    bounds, areas = sections(teeth, 9.9)
+    assert len(areas) == 64
+    assert areas == pytest.approx(np.full(64, 0.16), rel=1e-3)
+    middles = np.unique(np.round((bounds[:, 0] + bounds[:, 2]) / 2, 3))
+    assert np.diff(middles) == pytest.approx(np.ones(7), abs=1e-3)
+    _, areas = sections(teeth, 9.9 - 0.71)
+    assert areas == pytest.approx([64.0], rel=1e-3)
+    _, halfway = sections(teeth, 9.9 - 0.35)
+    assert (halfway > 0.3).all()
+    assert (halfway < 0.6).all()
+
+
+@pytest.mark.parametrize(
+    ("connector", "count"),
+    [
+        (Connector("teeth", 1.0, 0.5, 0.8, neck=0.25, neck_height=0.2), 64),
+        (Connector("full", neck=0.6, neck_height=0.4), 16),
+        (Connector("point", None, 0.6, 1.0, neck=0.3, neck_height=0.3), 16),
+    ],
+)
+def test_necks_have_the_diameter_asked_at_the_height_asked(connector, count):
+    solid = flat(connector)
+    bounds, areas = sections(solid, 9.9 - connector.neck_height)
+    assert len(areas) == count
+    wide = bounds[:, 2:] - bounds[:, :2]
+    assert wide == pytest.approx(np.full((count, 2), connector.neck), rel=0.04)  # a circle has 12 sides
+    for other in (0.1, -0.1):
+        _, around = sections(solid, 9.9 - connector.neck_height + other)
+        assert around.min() > 1.1 * areas.max()
+
+
+def test_points_are_round_and_as_many_as_asked():
+    for pitch, count in ((None, 16), (1.0, 64)):
+        _, areas = sections(flat(Connector("point", pitch, 0.5, 0.8)), 9.9)
+        assert areas == pytest.approx(np.full(count, 3.0 * 0.25**2), rel=1e-3)  # of twelve sides
+
+
+def test_windows_go_straight_through_and_leave_posts():
+    """Two rows of diamonds fit below the slab; lines through their middles meet nothing."""
+    whole, pierced = flat(Connector()), flat(Connector(window=0.6))
+    tall = 0.6 * np.tan(np.radians(55.0))
+    crossing = 0.6 * tall / 2.0
+    assert pierced.volume() < whole.volume() - 7.0 * crossing
+    middle = 8.0 + 0.2 + tall / 2.0
+    for row in range(3):
+        line = Manifold.cube((0.1, 12.0, 0.1), center=True).translate((17.0 + 2 * row, 20.0, middle))
+        assert (pierced ^ line).is_empty()
+        assert (pierced ^ line.translate((1.0, 0.0, 0.0))).volume() > 0.05
+    assert pierced.slice(9.8).area() == pytest.approx(64.0, rel=1e-3)
+    assert len(pierced.decompose()) == len(whole.decompose())
+
+
+def test_a_point_stands_at_the_lowest_spot_of_its_square():
+    """Below a ball that hangs over the middle of a square, not over its centre."""
+    low = body("ball", "point") ^ Manifold.cube((4.0, 4.0, 0.2)).translate((13.3, 12.9, 3.02))
+    middle = np.array(low.bounding_box()).reshape(2, 3).mean(axis=0)[:2]
+    assert np.linalg.norm(middle - (15.3, 14.9)) < 0.4
+
+
+def test_struts_as_beams_carry_teeth():
+    part, _ = scene("slab")
+    (support,) = supports("slab", KINDS["teeth"], "strut", beams=True, space=SPACE)
+    assert support.lattice is not None
+    assert judged("slab", (support,)) == []
+    contact = solid_of(support.lattice.solids) ^ solid_of(part.mesh)
+    assert contact.volume() == pytest.approx(64 * 0.25 * OVERLAP, rel=0.02)
+
+
+def test_a_neck_as_wide_as_its_tooth_is_refused():
+    with pytest.raises(JobError, match="neck_mm"):
+        supports("slab", Connector("full", neck=1.9))
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"connector": "teath"}, "'teeth'"),
+        ({"tooth_width_mm": 0.0}, "tooth_width_mm is at least 0.05"),
+        ({"tooth_pitch_mm": 0.4}, "tooth_pitch_mm is above the width, 0.5"),
+        ({"connector": "teeth", "neck_mm": 0.5}, "neck_mm is below the width of 0.5"),
+        ({"connector": "point", "neck_mm": 0.3, "neck_height_mm": 1.0}, "neck_height_mm is below the height"),
+        ({"connector": "extend", "neck_mm": 0.3}, "neck_mm and window_mm are for connectors"),
+        ({"window_mm": 0.01}, "window_mm is 0 or at least 0.05"),
+        ({"base": "pad"}, "'raft'"),
+        ({"raft_height_mm": 0.0}, "raft_height_mm is 0.05 to 50"),
+    ],
+)
+def test_wrong_endings_are_refused_in_one_line(table, words):
+    with pytest.raises(JobError) as error:
+        make_job({"inputs": ["a.stl"], "cells": table}, name="a", folder=None, source="job")
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
