@@ -1,6 +1,6 @@
 """The plugin host: loads plugins, lists their offers, chooses by name, guards every call."""
 
-from amprep.host.host import Host
+from amprep.host.manager import Host
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 RUN_SLACK = 1e-6
 """mm; faces this little outside a column's run of cubes still count as in it."""
 
-_LOWEST = 1e-4
+LOWEST = 1e-4
 """mm; walls are not cut closer than this to their upper ends."""
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
-from amprep.geometry.connectors.columns import _LOWEST, Patches
+from amprep.geometry.connectors.columns import LOWEST, Patches
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
 from amprep.geometry.meshes.repair import as_manifold
 from amprep.geometry.meshes.welding import kept, weld
@@ -37,7 +37,7 @@ def prisms_between(
     points[:, 2] += np.repeat(np.broadcast_to(rise, len(sizes)), sizes)
     points = kept(points) * (1.0, 1.0, -1.0 if hang else 1.0)
     colour = np.empty(len(sizes), np.int64)
-    patch_kernels.colour_patches(points, start, _LOWEST, colour)
+    patch_kernels.colour_patches(points, start, LOWEST, colour)
     nowhere = np.zeros((len(sizes), 2), np.int64)
     patches = Patches(points, start, nowhere, np.array([0, len(sizes)]))
     for each in range(int(colour.max(initial=-1)) + 1):
@@ -87,7 +87,7 @@ def _walls(left: Floats, right: Floats, levels: Floats, begins: Int64s) -> Itera
         Heights in ascending order, and ``(n,)`` at which of them each wall begins.
     """
     forth = (left[:, 0] < right[:, 0]) | ((left[:, 0] == right[:, 0]) & (left[:, 1] < right[:, 1]))
-    last = [np.maximum(np.searchsorted(levels, each[:, 2] - _LOWEST) - 1, begins) for each in (left, right)]
+    last = [np.maximum(np.searchsorted(levels, each[:, 2] - LOWEST) - 1, begins) for each in (left, right)]
     shared = np.minimum(*last)
 
     def at(ends: Floats, chosen: Bools, level: Int64s) -> Floats:

@@ -165,7 +165,7 @@ class IpParams:
         A model with more direction variables is not built; the heuristic's packing is the answer then.
     sharing
         The alternative copies of an item, one per orientation, share one position and one set of directions;
-        off: each copy has its own (thesis 2.1).
+        off: each copy has its own (thesis 2.2).
     symmetry
         Equal items, builds and mirror images are put in one order.
     tighten

@@ -111,7 +111,7 @@ def with_rows(scene: Scene, found: Solution) -> Solution:
 def pack_sweep(
     problem: PackingProblem, *, params: SweepParams, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
-    """Pack by slicing builds along two axes, which leaves one-dimensional packing (Sweep 2003, thesis 2.1).
+    """Pack by slicing builds along two axes, which leaves one-dimensional packing (Sweep 2003, thesis 2.2).
 
     Boxes come by decreasing height; each goes first fit into a row that is deep and high enough, else starts
     a row in the first layer that is high enough, else a layer in the first build with room, else a build. All

@@ -32,7 +32,7 @@ def pack_ip(
     stop: Stop,
     progress: Progress,
 ) -> Packing:
-    """Pack by the integer program of thesis 2.1, boxes of one item by substitution (2.3).
+    """Pack by the integer program of thesis 2.2, boxes of one item by substitution (2.3).
 
     The packing by extreme points comes first. In a fill problem the solver starts from it; in a builds
     problem it is asked for one build fewer, so that *infeasible* is the proof. Bounds of the program are

@@ -33,7 +33,7 @@ FAMILIES: tuple[Family, ...] = (
 def make_program(
     ground: Ground, params: IpParams, further: Sequence[Family] = ()
 ) -> tuple[pulp.LpProblem, Variables]:
-    """Return the program of thesis 2.1 for the most value in one build, or the fewest builds.
+    """Return the program of thesis 2.2 for the most value in one build, or the fewest builds.
 
     `further` families narrow it, as a local search does. With clearance, pieces are that far apart along an
     axis, which is more than the judge asks for at corners.

@@ -1,0 +1,148 @@
+"""The layout of the source: folders, file names, imports, class names, and citations of the thesis."""
+
+import ast
+import re
+from collections import Counter, defaultdict
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "amprep"
+FILES = sorted(SOURCE.rglob("*.py"))
+FOLDERS = sorted({path.parent for path in FILES})
+
+MOST_FILES = 15
+MOST_LINES = 400
+
+SECTIONS = {
+    "2.1": "Introduction of the Packing Problem",
+    "2.2": "Solutions for the packing problem",
+    "2.3": "Coverings with boxes",
+    "2.4": "A heuristic algorithm for boxpacking",
+    "2.5": "Mesh simplification, and collision based on nearly convex decomposition",
+    "2.6": "Collision detection for packing meshes",
+    "3.1": "Introduction of support planning",
+    "3.2": "Problem formulation",
+    "3.3": "Flow algorithms",
+    "3.4": "Shortest paths algorithm",
+    "3.5": "Support structures",
+    "4": "Computational Experiments",
+}
+"""Table of contents of the thesis."""
+
+SECTIONS_OF = {
+    "plugins/packers/integer_program": {"2.2", "2.3"},
+    "plugins/packers/sweep.py": {"2.2"},
+    "plugins/packers/tabu.py": {"2.4"},
+    "plugins/routers/shortest_paths.py": {"3.4"},
+    "plugins/routers/min_cost_flow.py": {"3.3"},
+    "plugins/routers/push_relabel.py": {"3.3"},
+}
+"""Sections that a file or folder may cite, because it implements just these."""
+
+USED_TWICE: set[str] = {
+    "Bins", "Body", "Carried", "Cells", "Choice", "Columns", "Instance", "Item", "Limits", "Needs", "Network",
+    "Paint", "Part", "Piece", "Prices", "Profile", "Result", "Role", "Room", "Samples", "Scene", "Scratch",
+    "Search", "Shape", "Surface", "Trial", "Variant", "Volume", "Walls", "Ways", "Window", "Wishes", "Work",
+}  # fmt: skip
+"""Class names that still mean two things; the list may only shrink."""
+
+
+def name_of(path):
+    return path.relative_to(SOURCE).as_posix()
+
+
+@cache
+def tree(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def imported(path):
+    """Names of the modules that a file imports, wherever in the file."""
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+
+
+def modules(folder):
+    return [path.stem for path in FILES if path.parent == folder and path.stem != "__init__"]
+
+
+def test_no_folder_has_more_than_fifteen_files():
+    counts = {name_of(folder): len(list(folder.glob("*.py"))) for folder in FOLDERS}
+    assert {name: count for name, count in counts.items() if count > MOST_FILES} == {}
+
+
+def test_no_file_name_begins_with_the_name_of_its_folder():
+    assert [name_of(path) for path in FILES if path.stem.startswith(path.parent.name)] == []
+
+
+def test_a_prefix_that_three_files_share_is_a_folder():
+    shared = {}
+    for folder in FOLDERS:
+        counts = Counter(stem.split("_")[0] for stem in modules(folder) if "_" in stem)
+        shared |= {f"{name_of(folder)}/{prefix}_": count for prefix, count in counts.items() if count >= 3}
+    assert shared == {}
+
+
+def test_no_file_is_longer_than_four_hundred_lines():
+    lengths = {name_of(path): path.read_text(encoding="utf-8").count("\n") for path in FILES}
+    assert {name: length for name, length in lengths.items() if length > MOST_LINES} == {}
+
+
+@pytest.mark.parametrize(("package", "room"), [("numba", "kernels"), ("lib3mf", "threemf")])
+def test_a_package_stays_in_its_room(package, room):
+    users = {name_of(path) for path in FILES if package in {name.split(".")[0] for name in imported(path)}}
+    assert users, f"nothing imports {package}: the test looks in the wrong place"
+    strangers = sorted(name for name in users if not name.startswith(f"{room}/"))
+    assert strangers == [], f"wrap what you need of {package} in amprep.{room}"
+
+
+def test_no_private_name_is_imported_from_another_module():
+    found = [
+        f"{name_of(path)}: {node.module}.{alias.name}"
+        for path in FILES
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("amprep")
+        for alias in node.names
+        if alias.name.startswith("_") and not alias.name.startswith("__")
+    ]
+    assert found == []
+
+
+def test_a_class_name_means_one_thing():
+    places = defaultdict(list)
+    for path in FILES:
+        for node in ast.walk(tree(path)):
+            if isinstance(node, ast.ClassDef):
+                places[node.name.lstrip("_")].append(name_of(path))
+    twice = {name: where for name, where in places.items() if len(where) > 1}
+    assert {name: where for name, where in twice.items() if name not in USED_TWICE} == {}
+    assert set(twice) >= USED_TWICE, f"delete from the list: {sorted(USED_TWICE - set(twice))}"
+
+
+def cited(text):
+    """Sections in citations such as "thesis 3.2", "thesis 2.1 and 2.4"."""
+    for match in re.finditer(r"[Tt]hesis(?:'s)? (\d(?:\.\d)?(?:(?:, | and )\d\.\d)*)", text):
+        yield from re.findall(r"\d(?:\.\d)?", match.group(1))
+
+
+def test_every_citation_of_the_thesis_is_in_its_table_of_contents():
+    texts = [*FILES, *(ROOT / "docs").rglob("*.md")]
+    pages = {
+        path.relative_to(ROOT).as_posix(): set(cited(path.read_text(encoding="utf-8"))) for path in texts
+    }
+    chapters = {"2", "3", *SECTIONS}
+    assert {page: found - chapters for page, found in pages.items() if found - chapters} == {}
+
+
+@pytest.mark.parametrize("place", SECTIONS_OF)
+def test_an_algorithm_cites_its_own_section(place):
+    files = [path for path in FILES if name_of(path).startswith(place)]
+    found = {section for path in files for section in cited(path.read_text(encoding="utf-8"))}
+    assert found <= SECTIONS_OF[place]
+    assert found, f"{place} does not name its source"
