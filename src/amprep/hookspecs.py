@@ -28,6 +28,33 @@ from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.validation import require_bounds
+
+__all__ = [
+    "API_VERSION",
+    "ENTRY_POINT_GROUP",
+    "CellEmitter",
+    "EmitCells",
+    "MakeVolume",
+    "MeshReader",
+    "NoParams",
+    "Offer",
+    "Pack",
+    "Packer",
+    "PackerAccepts",
+    "ReadMeshes",
+    "RouteSupports",
+    "SupportRouter",
+    "VolumeMaker",
+    "amprep_cell_emitters",
+    "amprep_mesh_readers",
+    "amprep_packers",
+    "amprep_support_routers",
+    "amprep_volume_makers",
+    "hookimpl",
+    "later",
+    "require_bounds",
+]
 
 API_VERSION = 1
 """Version of the hooks and offer records; a plugin states the one it was written for as ``amprep_api``."""

@@ -1,4 +1,4 @@
-"""Reads a TOML file into a table, within limits, and says in one line what is wrong with it."""
+"""Check bounds of settings and read TOML files within limits; one style of message: rule, value, what to do."""
 
 import tomllib
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 from amprep.errors import JobError
 
 LARGEST_FILE = 4 * 1024 * 1024
-"""bytes; a job or printer file is written by hand."""
+"""Largest job or printer file (bytes); such files are written by hand."""
 
 
 def read_table(path: Path, what: str) -> dict[str, Any]:
@@ -24,7 +24,7 @@ def read_table(path: Path, what: str) -> dict[str, Any]:
         )
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise JobError(f"{path}: a {what} file may have {LARGEST_FILE} bytes, this one has more")
+            raise JobError(f"{path}: a {what} file must have at most {LARGEST_FILE} bytes")
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise JobError(f"{path}: cannot be read ({error.strerror or error})") from error
@@ -33,10 +33,75 @@ def read_table(path: Path, what: str) -> dict[str, Any]:
         raise JobError(f"{path}: not a TOML file ({reason})") from error
 
 
-def require(holds: bool, rule: str, value: object) -> None:
-    """Raise `ValueError` with the rule and the value that breaks it."""
+def require(holds: bool, rule: str, value: object, advice: str = "") -> None:
+    """Raise `ValueError` unless the rule holds: ``RULE, got VALUE``, followed by the advice.
+
+    Parameters
+    ----------
+    holds
+        Whether the value satisfies the rule.
+    rule
+        Sentence without a full stop that says what is allowed, for example ``count must be at least 1``.
+    value
+        The value that was given.
+    advice
+        What the user can do, if the rule alone does not say it.
+    """
     if not holds:
-        raise ValueError(f"{rule}, got {value}")
+        raise ValueError(f"{rule}, got {value}" + (f"; {advice}" if advice else ""))
+
+
+def require_bounds(
+    record: object,
+    *names: str,
+    at_least: float | None = None,
+    above: float | None = None,
+    at_most: float | None = None,
+    below: float | None = None,
+) -> None:
+    """Check that numeric fields of a record are within bounds; a field that is None is not checked.
+
+    Parameters
+    ----------
+    record
+        Object whose attributes are checked, usually ``self`` in ``__post_init__``.
+    names
+        Names of the attributes; the same bounds apply to each.
+    at_least, above
+        Lower bound, included or excluded; None for no lower bound.
+    at_most, below
+        Upper bound, included or excluded; None for no upper bound.
+
+    Raises
+    ------
+    ValueError
+        For the first attribute outside the bounds or not a number, with the rule and the value.
+
+    Examples
+    --------
+    >>> class Box:
+    ...     width_mm = -1.0
+    >>> require_bounds(Box(), "width_mm", above=0)
+    Traceback (most recent call last):
+    ValueError: width_mm must be above 0, got -1.0
+    """
+    for name in names:
+        value = getattr(record, name)
+        within = value is None or (
+            (at_least is None or value >= at_least)
+            and (above is None or value > above)
+            and (at_most is None or value <= at_most)
+            and (below is None or value < below)
+            and value == value  # noqa: PLR0124 - false for NaN only
+        )
+        require(within, f"{name} must be {_bounds(at_least, above, at_most, below)}", value)
+
+
+def _bounds(at_least: float | None, above: float | None, at_most: float | None, below: float | None) -> str:
+    if at_least is not None and at_most is not None:
+        return f"between {at_least} and {at_most}"
+    named = (("at least", at_least), ("above", above), ("at most", at_most), ("below", below))
+    return " and ".join(f"{word} {bound}" for word, bound in named if bound is not None)
 
 
 LARGEST_COUNT = 1_000_000

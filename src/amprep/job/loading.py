@@ -138,7 +138,7 @@ def _printer(value: Any, folder: Path | None, source: str) -> Printer:
 def _seed(table: Mapping[str, Any], source: str) -> int:
     seed: int = convert(table.get("seed", 0), int, f"{source}: seed")
     if not 0 <= seed < 2**63:
-        raise JobError(f"{source}: seed is between 0 and 2**63 - 1, got {seed}")
+        raise JobError(f"{source}: seed must be between 0 and 2**63 - 1, got {seed}")
     return seed
 
 

@@ -36,9 +36,9 @@ class ReadingSettings:
     def __post_init__(self) -> None:
         for suffix, name in self.readers.items():
             valid = suffix.startswith(".") and suffix == suffix.lower() and isinstance(name, str)
-            require(valid, "readers maps a lower-case suffix with its dot to a reader's name", {suffix: name})
+            require(valid, "readers must map suffixes such as '.stl' to names of readers", {suffix: name})
         for name, table in self.params.items():
-            require(isinstance(table, Mapping), "params holds one table per reader", {name: table})
+            require(isinstance(table, Mapping), "params must hold one table per reader", {name: table})
 
 
 @dataclass(frozen=True, eq=False)

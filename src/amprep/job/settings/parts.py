@@ -9,7 +9,7 @@ from amprep.errors import JobError
 from amprep.job.settings.bounds import require_overhang, require_quantity
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
-from amprep.validation import require
+from amprep.validation import require, require_bounds
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 Box = tuple[float, float, float, float, float, float]
@@ -34,11 +34,11 @@ class PartSettings:
 
     def __post_init__(self) -> None:
         for file in (*self.blockers, *self.enforcers):
-            require(bool(file) and "\0" not in file, "blockers and enforcers are paths", repr(file))
-        require(bool(self.file or self.name), "a part is named by file or name", "neither")
-        require("\0" not in (self.file or ""), "file is a path", repr(self.file))
+            require(bool(file) and "\0" not in file, "blockers and enforcers must be paths", repr(file))
+        require(bool(self.file or self.name), "a [[part]] entry must have a file or a name", "neither")
+        require("\0" not in (self.file or ""), "file must be a path", repr(self.file))
         require_quantity(self.quantity)
-        require(self.value is None or self.value >= 0, "value is at least 0", self.value)
+        require_bounds(self, "value", at_least=0)
         if self.overhang_angle_deg is not None:
             require_overhang(self.overhang_angle_deg)
         self._require_boxes()
@@ -60,7 +60,9 @@ class PartSettings:
         return None if self.boxes is None else frozen(self.boxes, np.float64, 6)
 
     def _require_boxes(self) -> None:
-        require(self.boxes is None or len(self.boxes) > 0, "boxes holds at least one box", "none")
+        require(self.boxes is None or len(self.boxes) > 0, "boxes must have at least one box", "none")
         for box in self.boxes or ():
             ordered = all(lo < hi for lo, hi in zip(box[:3], box[3:], strict=True))
-            require(ordered, "boxes are x0, y0, z0, x1, y1, z1 with each 0 below its 1", list(box))
+            require(
+                ordered, "a box must be [x0, y0, z0, x1, y1, z1] with x0 < x1, y0 < y1 and z0 < z1", list(box)
+            )
