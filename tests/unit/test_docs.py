@@ -99,6 +99,7 @@ def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
 def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell
+    from amprep.pipeline.choose_cell import cell_named
 
     text = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
     (source,) = [
@@ -108,7 +109,7 @@ def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
     path.write_text(source, encoding="utf-8")
     host = Host.load_one(str(path))
     for name in ("footed-pin", "schwarz-p"):
-        assert check_cell(host, host.choose("cell", name), {}, steps=16).violations == ()
+        assert check_cell(cell_named(host, name), steps=16).violations == ()
 
 
 def test_the_cell_in_the_page_about_cells_passes_its_check(tmp_path):
@@ -123,7 +124,7 @@ def test_the_cell_in_the_page_about_cells_passes_its_check(tmp_path):
     path = tmp_path / "tripod.toml"
     path.write_text(source, encoding="utf-8")
     host = Host.load(plugins_enabled=False)
-    assert check_cell(host, cell_named(host, str(path))[0], {}, steps=16).violations == ()
+    assert check_cell(cell_named(host, str(path)), steps=16).violations == ()
 
 
 def test_every_parameter_of_a_built_in_cell_is_on_the_page():

@@ -9,6 +9,7 @@ from amprep.checks.cells.ports import port_areas
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.pipeline.check_cell import check_cell
+from amprep.pipeline.choose_cell import cell_named
 from amprep.testing.conformance import try_plugin
 
 
@@ -72,7 +73,7 @@ def test_the_gradient_is_the_slope_of_the_function():
 
 
 def test_it_can_be_printed_and_emptied(host):
-    report = check_cell(host, host.choose("cell", "gyroid"), {}, pitch=4.0)
+    report = check_cell(cell_named(host, "gyroid"), pitch=4.0)
     assert (report.kinds, report.violations) == (("implicit",), ())
     assert report.measures.hole > 0.5
 

@@ -36,20 +36,15 @@ def test_every_promise_holds_on_the_sample_problems(host, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_it_can_be_printed_and_emptied(host, name):
-    assert check_cell(host, host.choose("cell", name), {}).violations == ()
+    assert check_cell(cell_named(host, name)).violations == ()
 
 
 @pytest.mark.parametrize("file", ["honeycomb.stl", "honeycomb.toml", "honeycomb-frame.toml"])
 def test_the_files_are_cells_without_the_package(file):
     bare = Host.load(plugins_enabled=False)
-    listed, table = cell_named(bare, str(FOLDER / file))
-    assert listed.offer.name == file.partition(".")[0]
-    assert host_material(bare, listed, table)
-
-
-def host_material(host, listed, table):
-    vertical, oblique = host.material(listed, 2.0, 2.0, host.params(listed, table))
-    return 0.0 < vertical < 8.0 and 0.0 < oblique < 8.0
+    cell = cell_named(bare, str(FOLDER / file))
+    assert cell.name == file.partition(".")[0]
+    assert all(0.0 < volume < 8.0 for volume in cell.material(2.0, 2.0))
 
 
 def test_the_honeycomb_has_the_area_of_its_walls_in_plan():

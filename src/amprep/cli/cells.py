@@ -1,7 +1,7 @@
-"""``amprep cells``: list the lattice cells on offer, and judge one by itself."""
+"""``amprep cells``: list the available lattice cells, and check one by itself."""
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,9 +10,8 @@ import typer
 from amprep import cli
 
 if TYPE_CHECKING:
-    from amprep.hookspecs import CellEmitter
-    from amprep.host import Host, Listed
     from amprep.pipeline.check_cell import CellReport
+    from amprep.pipeline.choose_cell import ChosenCell
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Modules = Annotated[
@@ -20,16 +19,17 @@ Modules = Annotated[
     typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
 ]
 
-app = typer.Typer(no_args_is_help=True, help="Lattice cells: list what is on offer, judge one by itself.")
+app = typer.Typer(no_args_is_help=True, help="List the available lattice cells, or check one by itself.")
 
 
 @app.command("list")
 def list_all(as_json: AsJson = False, modules: Modules = None) -> None:
-    """List every lattice cell with its kind, its parameters and the plugin it comes from."""
+    """List every lattice cell with its kind, its parameters and the plugin that provides it."""
     from amprep.host import Host
+    from amprep.pipeline.choose_cell import cell_named
 
     host = Host.load(modules=modules or [])
-    rows = [_offered(host, host.choose("cell", name)) for name in host.offers("cell")]
+    rows = [_row(cell_named(host, name)) for name in host.offers("cell")]
     for warning in host.warnings:
         typer.echo(f"amprep: warning: {warning}", err=True)
     if as_json:
@@ -40,54 +40,48 @@ def list_all(as_json: AsJson = False, modules: Modules = None) -> None:
 
 @app.command("check")
 def check(
-    cell: Annotated[str, typer.Argument(help="Name of a cell, or the path of a file: TOML, STL, OBJ, 3MF.")],
+    cell: Annotated[str, typer.Argument(help="Name of a cell, or path of a TOML, STL, OBJ or 3MF file.")],
     sets: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="A parameter of the cell.")
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter of the cell.")
     ] = None,
     pitch: Annotated[float, typer.Option("--pitch", metavar="MM", help="Pitch of the grid.")] = 2.0,
     strut_angle: Annotated[
-        float, typer.Option("--strut-angle", metavar="DEG", help="Steepness of oblique edges.")
+        float, typer.Option("--strut-angle", metavar="DEG", help="Angle of oblique edges to the horizontal.")
     ] = 45.0,
     angle: Annotated[
-        float | None, typer.Option(metavar="DEG", help="Least steepness of struts and faces; default 30.")
+        float | None,
+        typer.Option(metavar="DEG", help="Smallest allowed angle to the horizontal; default 30."),
     ] = None,
     feature: Annotated[
-        float | None, typer.Option(metavar="MM", help="Thinnest the machine prints; default 0.15.")
+        float | None,
+        typer.Option(metavar="MM", help="Smallest feature that the machine can print; default 0.15."),
     ] = None,
     hole: Annotated[
-        float | None, typer.Option(metavar="MM", help="Narrowest hole that powder leaves; default 0.2.")
+        float | None,
+        typer.Option(metavar="MM", help="Smallest hole through which powder escapes; default 0.2."),
     ] = None,
-    picture: Annotated[Path | None, typer.Option(metavar="PNG", help="Draw the cell into this file.")] = None,
+    picture: Annotated[Path | None, typer.Option(metavar="PNG", help="Write a picture to this file.")] = None,
     as_json: AsJson = False,
     modules: Modules = None,
 ) -> None:
-    """Judge a lattice cell: closed, in the cube, ports that match, steep, thick and open enough.
+    """Check that a lattice cell is closed, stays in the unit cube, joins its neighbours and can be printed.
 
-    A block of upright edges and columns of oblique ones are made of it. What the cell promises about itself
-    (least_angle_deg, smallest_feature_mm) counts unless an option says otherwise. Exit code 0: every promise
-    holds; 1: some do not; 2: there is no such cell, or it cannot be made in this grid.
+    The check fills a block of upright edges and columns of oblique edges with the cell. The limits that the cell
+    promises (least_angle_deg, smallest_feature_mm) apply unless an option replaces them. Exit code 0: every promise
+    holds; 1: a promise is broken; 2: the cell does not exist, or it cannot be made in this grid.
     """
     from amprep.host import Host
-    from amprep.pipeline.check_cell import check_cell, limits_of
+    from amprep.pipeline.check_cell import check_cell
     from amprep.pipeline.choose_cell import cell_named
 
-    host = Host.load(modules=modules or [])
-    listed, table = cell_named(host, cell, sets or [])
-    limits = limits_of(
-        host,
-        listed,
-        table,
-        pitch=pitch,
-        strut_angle_deg=strut_angle,
-        angle_deg=angle,
-        feature=feature,
-        hole=hole,
+    chosen = cell_named(Host.load(modules=modules or []), cell, sets or [])
+    report = check_cell(
+        chosen, pitch=pitch, strut_angle_deg=strut_angle, angle_deg=angle, feature=feature, hole=hole
     )
-    report = check_cell(host, listed, table, pitch=pitch, strut_angle_deg=strut_angle, limits=limits)
     if picture is not None:
         from amprep.report.cell_picture import draw_cell
 
-        draw_cell(host, listed, table, picture, pitch=pitch, strut_angle_deg=strut_angle)
+        draw_cell(chosen.emit, picture, pitch=pitch, strut_angle_deg=strut_angle)
     if as_json:
         typer.echo(json.dumps(_record(report), indent=2))
     else:
@@ -95,32 +89,24 @@ def check(
     raise typer.Exit(cli.INCOMPLETE if report.violations else cli.DONE)
 
 
-def _offered(host: "Host", listed: "Listed[CellEmitter]") -> dict[str, Any]:
-    from dataclasses import fields
-
-    from amprep.pipeline.check_cell import declared_cell
-
-    declared = declared_cell(host, listed)
-    defaults = listed.offer.params()
+def _row(cell: "ChosenCell") -> dict[str, Any]:
+    listed, params = cell.listed, cell.params
+    declared = cell.declared(2.0, 2.0)
     return {
-        "name": listed.offer.name,
+        "name": cell.name,
         "kinds": list(declared.kinds) if declared else ["code"],
         "summary": listed.offer.summary,
         "origin": listed.origin,
         "builtin": listed.builtin,
         "author": declared.author if declared else "",
         "licence": declared.licence if declared else "",
-        "params": {field.name: getattr(defaults, field.name) for field in fields(defaults) if field.init},
+        "params": {field.name: getattr(params, field.name) for field in fields(params) if field.init},
     }
 
 
 def _record(report: "CellReport") -> dict[str, Any]:
     return {
-        **{
-            key: value
-            for key, value in vars(report).items()
-            if key not in ("limits", "measures", "violations")
-        },
+        **vars(report),
         "limits": report.limits._asdict(),
         "measures": report.measures._asdict(),
         "violations": [asdict(violation) for violation in report.violations],
@@ -132,7 +118,7 @@ def _print_cells(rows: list[dict[str, Any]]) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table("name", "kind", "what it is", "from", box=None)
+    table = Table("name", "kind", "description", "from", box=None)
     for row in rows:
         origin = f"[dim]{row['origin']}" if row["builtin"] else escape(row["origin"])
         table.add_row(escape(row["name"]), ", ".join(row["kinds"]), escape(row["summary"]), origin)
@@ -146,11 +132,11 @@ def _print_report(report: "CellReport", picture: Path | None) -> None:
 
     measures, limits = report.measures, report.limits
     table = Table(box=None, show_header=False)
-    table.add_row("cell", f"{escape(report.name)} ({', '.join(report.kinds)}) of {escape(report.origin)}")
+    table.add_row("cell", f"{escape(report.name)} ({', '.join(report.kinds)}) from {escape(report.origin)}")
     if report.author or report.licence:
         table.add_row("author, licence", escape(f"{report.author or '-'}, {report.licence or '-'}"))
     table.add_row("grid", f"pitch {report.pitch:g} mm, step {report.step:.4g} mm")
-    table.add_row("templates", f"{report.templates}, at most {report.triangles} triangles")
+    table.add_row("templates", f"{report.templates}, with at most {report.triangles} triangles")
     table.add_row("relative density", f"{measures.density:.1%}")
     table.add_row("smallest feature", _length(measures.feature, limits.feature))
     table.add_row("hole for powder", _length(measures.hole, limits.hole))
@@ -166,4 +152,4 @@ def _print_report(report: "CellReport", picture: Path | None) -> None:
 
 
 def _length(value: float | None, least: float) -> str:
-    return "none to measure" if value is None else f"{value:.2g} mm, at least {least:g} mm wanted"
+    return "none to measure" if value is None else f"{value:.2g} mm, limit {least:g} mm"

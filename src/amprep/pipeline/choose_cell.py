@@ -1,8 +1,8 @@
-"""Chooses the job's lattice cell: by name, or from a file that declares one."""
+"""Choose the job's lattice cell: by name, or from a file that declares one."""
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,62 @@ from amprep.errors import InputError, MeshError
 from amprep.hookspecs import CellEmitter
 from amprep.host import Host, Listed
 from amprep.job import Job, apply_sets, job_from_inputs
-from amprep.model import Mesh
+from amprep.model import CellRequest, Cells, DeclaredCell, Mesh, Progress, Stop, silent
 
 
-def choose_cell(host: Host, job: Job) -> Listed[CellEmitter]:
-    """Return the lattice cell that the job names, or the one that the file it names declares.
+@dataclass(frozen=True, eq=False)
+class ChosenCell:
+    """A lattice cell and its checked parameters, ready to be called.
+
+    Attributes
+    ----------
+    listed
+        The offer, and the plugin or file that it comes from.
+    params
+        Instance of the parameter class of the offer.
+    """
+
+    host: Host
+    listed: Listed[CellEmitter]
+    params: Any
+
+    @classmethod
+    def of(cls, host: Host, listed: Listed[CellEmitter], table: Mapping[str, Any]) -> "ChosenCell":
+        """Check the parameters in `table` and return the cell with them.
+
+        Raises
+        ------
+        JobError
+            When a parameter is unknown or has a wrong value.
+        """
+        return cls(host, listed, host.params(listed, table))
+
+    @property
+    def name(self) -> str:
+        """Name of the offer."""
+        return self.listed.offer.name
+
+    def emit(self, request: CellRequest, *, stop: Stop | None = None, progress: Progress = silent) -> Cells:
+        """Replace the edges of the request by geometry."""
+        return self.host.call(
+            self.listed, request, params=self.params, stop=stop or Stop(), progress=progress
+        )
+
+    def material(self, pitch: float, step: float) -> tuple[float, float]:
+        """Estimate the volume (mm3) of a vertical and of an oblique edge in a grid of this pitch and step (mm)."""
+        return self.host.material(self.listed, pitch, step, self.params)
+
+    def declared(self, pitch: float, step: float) -> DeclaredCell | None:
+        """Return the declaration of the cell for a grid of this pitch and step (mm); None if it is code alone."""
+        if self.listed.offer.declare is None:
+            return None
+        return self.host.declared(self.listed, pitch, step, self.params)
+
+
+def choose_cell(host: Host, job: Job) -> ChosenCell:
+    """Return the lattice cell that the job names, or the cell that its file declares.
+
+    The file is read here. A run therefore calls this function once and passes the result on.
 
     Raises
     ------
@@ -23,33 +74,45 @@ def choose_cell(host: Host, job: Job) -> Listed[CellEmitter]:
         When no cell has that name.
     InputError
         When the file declares no cell.
+    JobError
+        When a parameter is unknown or has a wrong value.
     """
-    if job.cells.file is None:
-        return host.choose("cell", job.cells.strategy)
-    path = job.cells.file
-
-    def read(file: Path) -> Mesh:
-        return _one_mesh(host, file, job.reading.readers, job.reading.params)
-
-    found = read_cell(path, read)
-    return Listed("cell", cell_offer(found.name, found.summary, found.cell), str(path))
+    return ChosenCell.of(host, _listed(host, job), job.cells.params)
 
 
-def cell_named(host: Host, cell: str, sets: Sequence[str] = ()) -> tuple[Listed[CellEmitter], dict[str, Any]]:
-    """Return the cell of a name or path, and its parameters given as ``key=value``.
+def cell_named(host: Host, cell: str, sets: Sequence[str] = ()) -> ChosenCell:
+    """Return the cell with a name or path.
+
+    Parameters
+    ----------
+    cell
+        Name of an offer, or path of a TOML or mesh file.
+    sets
+        Parameters of the cell, each as ``key=value``.
 
     Raises
     ------
     PluginError, InputError, JobError
-        As for a job that names the cell.
+        As `choose_cell` does for a job that names the cell.
     """
     job = job_from_inputs(["part.stl"])
     path = replace(job.cells, strategy=cell).file
     if path is not None and not path.is_file():
         raise InputError(f"{cell}: no such file; expected the name of a lattice cell, or a TOML or mesh file")
     wanted = [f"cells.strategy={json.dumps(cell)}", *(f"cells.params.{each}" for each in sets)]
-    job = apply_sets(job, wanted)
-    return choose_cell(host, job), dict(job.cells.params)
+    return choose_cell(host, apply_sets(job, wanted))
+
+
+def _listed(host: Host, job: Job) -> Listed[CellEmitter]:
+    path = job.cells.file
+    if path is None:
+        return host.choose("cell", job.cells.strategy)
+
+    def read(file: Path) -> Mesh:
+        return _one_mesh(host, file, job.reading.readers, job.reading.params)
+
+    found = read_cell(path, read)
+    return Listed("cell", cell_offer(found.name, found.summary, found.cell), str(path))
 
 
 def _one_mesh(
@@ -60,7 +123,7 @@ def _one_mesh(
     Raises
     ------
     InputError
-        When it cannot be read or holds several.
+        When the file cannot be read or holds several meshes.
     """
     reader = host.reader_for(path, readers)
     parts = host.call(reader, path, params=host.params(reader, params.get(reader.offer.name, {})))

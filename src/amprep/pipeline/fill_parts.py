@@ -10,8 +10,7 @@ from amprep.cells.instances import arrays
 from amprep.checks.infill import check_filled
 from amprep.errors import JobError
 from amprep.geometry.meshes.offset import inset
-from amprep.hookspecs import CellEmitter
-from amprep.host import Host, Listed
+from amprep.host import Host
 from amprep.infill.block import usual_size
 from amprep.infill.fill_region import Filled, fill_region, meets
 from amprep.infill.regions import KIND, chosen, positions, with_files, without
@@ -95,7 +94,6 @@ def fill_lattice(
     _check(options)
     clock = Clock(watcher)
     cell = choose_cell(host, job)
-    params = host.params(cell, job.cells.params)
     with clock.stage("read") as progress:
         parts = _read(job, host, options, progress)
     with clock.stage("regions") as progress:
@@ -108,7 +106,7 @@ def fill_lattice(
         with clock.stage("fill") as progress:
 
             def emit(request: CellRequest, progress: Progress = progress) -> Cells:
-                return host.call(cell, request, params=params, stop=stop, progress=progress)
+                return cell.emit(request, stop=stop, progress=progress)
 
             done.append(_filled(each, emit, job, size, height, progress))
     records = []
@@ -118,7 +116,7 @@ def fill_lattice(
     record = LatticeRecord(
         job.name,
         __version__,
-        _name(cell),
+        cell.name,
         size,
         height,
         job.cells.powder_hole_mm,
@@ -277,7 +275,3 @@ def _written(
     write_json(record, outputs.path("report.json"))
     outputs.publish()
     return record
-
-
-def _name(cell: Listed[CellEmitter]) -> str:
-    return cell.offer.name

@@ -9,7 +9,7 @@ from amprep.hookspecs import Packer
 from amprep.host import Host, Listed
 from amprep.job import Job, apply_part_settings
 from amprep.model import BoundingVolume, Packing, PackingProblem, Part, Progress, Stop
-from amprep.pipeline.choose_cell import choose_cell
+from amprep.pipeline.choose_cell import ChosenCell, choose_cell
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import make_volumes, packing_problem, placed_builds
 from amprep.pipeline.reading import expand_inputs, read_all, with_region_files
@@ -55,7 +55,7 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
         For wrong input, an unknown or failing plugin, or when nothing fits the build volume.
     """
     clock, limit = Clock(watcher), stop.within(options.time_limit)
-    check_choices(job, host)
+    cell = check_choices(job, host)
     with clock.stage("read") as progress:
         parts = read_job(job, host, options.allow_surface, progress)
     with clock.stage("bound") as progress:
@@ -65,7 +65,7 @@ def run(job: Job, host: Host, options: RunOptions, *, watcher: Watcher, stop: St
     placed = placed_builds(parts, problem, packing)
     with OutputFolder(options.folder, job.name) as outputs:
         supported = [
-            support_build(job, host, build, number, clock, limit, build_id=f"{job.name}.build-{number}")
+            support_build(job, host, cell, build, number, clock, limit, build_id=f"{job.name}.build-{number}")
             for number, build in enumerate(placed, start=1)
         ]
         records = [
@@ -87,16 +87,16 @@ def published(record: RunRecord, outputs: OutputFolder, options: RunOptions, clo
     return record
 
 
-def check_choices(job: Job, host: Host) -> None:
-    """Raise for an unknown strategy or parameter before anything long begins."""
+def check_choices(job: Job, host: Host) -> ChosenCell:
+    """Raise for an unknown strategy or parameter before anything long begins; return the lattice cell of the run."""
     chosen = (
         (host.choose("packer", job.packing.strategy), job.packing.params),
         (host.choose("router", job.supports.strategy), job.supports.params),
-        (choose_cell(host, job), job.cells.params),
         (host.choose("volume", job.packing.volumes), job.packing.volume_params),
     )
     for listed, params in chosen:
         host.params(listed, params)
+    return choose_cell(host, job)
 
 
 def read_job(job: Job, host: Host, allow_surface: bool, progress: Progress) -> list[Part]:

@@ -48,13 +48,13 @@ def support(
         supports=replace(job.supports, enabled=True),
     )
     clock, limit = Clock(watcher), stop.within(options.time_limit)
-    check_choices(job, host)
+    cell = check_choices(job, host)
     with clock.stage("read") as progress:
         parts = [_once_each(part) for part in read_job(job, host, options.allow_surface, progress)]
     placed = placed_as_they_lie(parts, job.printer.space, center=center)
     name = f"{job.name}.supported"
     with OutputFolder(options.folder, name, numbered=False) as outputs:
-        supported = support_build(job, host, placed, 1, clock, limit, build_id=name)
+        supported = support_build(job, host, cell, placed, 1, clock, limit, build_id=name)
         build = finish_build(supported, 1, outputs, options.dry_run, options.stl, clock, stop)
         as_it_lies = Packing((), stop_reason="as it lies")
         record = run_record(job, host, parts, [build], outputs, as_it_lies)

@@ -18,7 +18,7 @@ from amprep.model import (
     SupportProblem,
 )
 from amprep.pipeline.advice import advice_for
-from amprep.pipeline.choose_cell import choose_cell
+from amprep.pipeline.choose_cell import ChosenCell
 from amprep.pipeline.stages import Clock
 from amprep.supports.plan import SupportLayout, Wishes, choose_pitch, plan_supports
 from amprep.supports.solids.build import build_supports
@@ -40,6 +40,7 @@ class SupportedBuild:
 def support_build(
     job: Job,
     host: Host,
+    cell: ChosenCell,
     parts: tuple[PlacedPart, ...],
     number: int,
     clock: Clock,
@@ -56,15 +57,12 @@ def support_build(
     )
     settings = build_settings(job, build_id, pitch)
     with clock.stage("route") as progress:
-        layout = _plan(job, host, parts, number, pitch, stop, progress)
+        layout = _plan(job, host, cell, parts, number, pitch, stop, progress)
     with clock.stage("cells") as progress:
-        emitter = choose_cell(host, job)
         bodies = build_supports(
             layout,
             parts,
-            lambda request: host.call(
-                emitter, request, params=host.params(emitter, job.cells.params), stop=stop, progress=progress
-            ),
+            lambda request: cell.emit(request, stop=stop, progress=progress),
             overlap=settings.overlap,
             connector=job.cells.ending,
             base=job.cells.footing,
@@ -115,6 +113,7 @@ def _beams(job: Job) -> bool | None:
 def _plan(
     job: Job,
     host: Host,
+    cell: ChosenCell,
     parts: tuple[PlacedPart, ...],
     number: int,
     pitch: float,
@@ -122,16 +121,14 @@ def _plan(
     progress: Progress,
 ) -> SupportLayout:
     wishes, angle = job.supports, job.supports.strut_angle_deg
-    router, emitter = host.choose("router", wishes.strategy), choose_cell(host, job)
+    router = host.choose("router", wishes.strategy)
     params, stop = host.params(router, wishes.params), stop.within(wishes.time_limit_s)
     rng = np.random.default_rng([job.seed, number])
 
     def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
         return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
 
-    material = host.material(
-        emitter, pitch, pitch * float(np.tan(np.radians(angle))), host.params(emitter, job.cells.params)
-    )
+    material = cell.material(pitch, pitch * float(np.tan(np.radians(angle))))
     return plan_supports(
         parts, job.printer.space, _wishes(job, pitch, material), route=route, stop=stop, progress=progress
     )

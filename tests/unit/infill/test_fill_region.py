@@ -84,19 +84,11 @@ def test_cells_of_files_fill_a_core(tmp_path):
     )
     volumes = {}
     for file in ("post.stl", "pin.toml"):
-        listed, _ = cell_named(HOST, str(tmp_path / file))
-        emit = offered_by(listed)
-        filled = fill_region(BLOCK, [CORE], emit, size=4.0)
+        filled = fill_region(BLOCK, [CORE], cell_named(HOST, str(tmp_path / file)).emit, size=4.0)
         assert judged(BLOCK, [CORE], filled) == []
         volumes[file] = filled.cells_mm3
     assert volumes["post.stl"] == pytest.approx(4 * 2 * 2 * 8)
     assert volumes["pin.toml"] == pytest.approx(4 * np.pi / 4 * 8, rel=0.1)
-
-
-def offered_by(listed):
-    return lambda request: HOST.call(
-        listed, request, params=HOST.params(listed, {}), stop=Stop(), progress=silent
-    )
 
 
 def test_a_region_of_whole_cells_holds_whole_cells_that_reach_over_its_faces():

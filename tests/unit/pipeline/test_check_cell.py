@@ -8,12 +8,13 @@ from typer.testing import CliRunner
 
 from amprep.cells import cell_offer
 from amprep.checks.cells.ports import PORTS
-from amprep.checks.cells.printability import FEATURE, HOLE, POCKET, STEEP, Limits
+from amprep.checks.cells.printability import FEATURE, HOLE, POCKET, STEEP
 from amprep.cli.cells import app
 from amprep.geometry.cells.metrology import feature, way_out
 from amprep.host import Host, Listed
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
 from amprep.pipeline.check_cell import check_cell
+from amprep.pipeline.choose_cell import ChosenCell, cell_named
 from amprep.testing.problems import box_mesh
 
 HOST = Host.load(plugins_enabled=False)
@@ -36,20 +37,18 @@ def hollow(lo, hi):
 
 def broken(cell, steps=12, **options):
     listed = Listed("cell", cell_offer("x", "A cell.", cell), "test")
-    return {
-        violation.promise for violation in check_cell(HOST, listed, {}, steps=steps, **options).violations
-    }
+    report = check_cell(ChosenCell.of(HOST, listed, {}), steps=steps, **options)
+    return {violation.promise for violation in report.violations}
 
 
 @pytest.mark.parametrize("name", ["prism", "x-wall", "strut", "bcc", "hatch"])
 def test_built_in_cells_keep_every_promise(name):
-    assert check_cell(HOST, HOST.choose("cell", name), {}).violations == ()
+    assert check_cell(cell_named(HOST, name)).violations == ()
 
 
 def test_a_wall_without_gap_traps_powder_and_one_with_gap_does_not():
     """Thesis 3.5: walls that touch their neighbours all the way up leave powder no way out."""
-    listed = HOST.choose("cell", "x-wall")
-    closed = check_cell(HOST, listed, {"join_every": 1}, steps=12)
+    closed = check_cell(cell_named(HOST, "x-wall", ["join_every=1"]), steps=12)
     assert {violation.promise for violation in closed.violations} == {POCKET, HOLE}
     assert closed.measures.pocket > 0.3
 
@@ -83,8 +82,8 @@ def test_struts_that_shear_makes_too_flat_are_found():
     """A strut at 45 degrees against the way of an oblique edge is at atan(1 / 2) on it."""
     points = [[0.5, 0.5, 0], [0.5, 0.5, 1], [0.0, 0.5, 0.5], [1.0, 0.5, 0.5]]
     cell = GraphCell(points, [[0, 1], [0, 2], [0, 3]], 0.2)
-    assert broken(cell, limits=Limits(angle_deg=40)) == {STEEP}
-    assert broken(cell, limits=Limits(angle_deg=26)) == set()
+    assert broken(cell, angle_deg=40) == {STEEP}
+    assert broken(cell, angle_deg=26) == set()
 
 
 def test_wide_ceilings_are_found_and_narrow_ones_are_not():
@@ -101,8 +100,8 @@ def test_wide_ceilings_are_found_and_narrow_ones_are_not():
 
 
 def test_thin_walls_and_narrow_gaps_are_found():
-    assert FEATURE in broken(MeshCell(box((0.48, 0, 0), (0.52, 1, 1))), limits=Limits(feature=0.2))
-    assert HOLE in broken(MeshCell(box((0.03, 0.0, 0), (0.97, 1.0, 1))), limits=Limits(hole=0.4), steps=24)
+    assert FEATURE in broken(MeshCell(box((0.48, 0, 0), (0.52, 1, 1))), feature=0.2)
+    assert HOLE in broken(MeshCell(box((0.03, 0.0, 0), (0.97, 1.0, 1))), hole=0.4, steps=24)
 
 
 def test_what_a_cell_promises_about_itself_counts():

@@ -9,8 +9,8 @@ from amprep.checks.cells.templates import check_cells, check_template
 from amprep.errors import JobError, MeshError
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
-from amprep.model import CellRequest, Cells, Grid, Mesh, Stop, Template, silent
-from amprep.pipeline.choose_cell import choose_cell
+from amprep.model import CellRequest, Cells, Grid, Mesh, Template
+from amprep.pipeline.choose_cell import cell_named, choose_cell
 from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))
@@ -35,19 +35,18 @@ def saved(mesh, path):
 
 
 def test_a_name_chooses_the_cell_of_a_plugin(host):
-    assert choose_cell(host, job_with("prism")) is host.choose("cell", "prism")
+    assert choose_cell(host, job_with("prism")).listed is host.choose("cell", "prism")
 
 
 def test_a_mesh_file_is_repeated_under_the_map_of_every_edge(host, tmp_path):
-    listed = choose_cell(host, job_with(saved(POST, tmp_path / "post.stl")))
-    params = host.params(listed, {})
-    cells = host.call(listed, REQUEST, params=params, stop=Stop(), progress=silent)
+    cell = choose_cell(host, job_with(saved(POST, tmp_path / "post.stl")))
+    cells = cell.emit(REQUEST)
     assert check_cells(REQUEST, cells) == []
-    assert (cells.edge.tolist(), listed.offer.name) == ([0, 1], "post")
+    assert (cells.edge.tolist(), cell.name) == ([0, 1], "post")
     # a quarter of the square: 0.25 * 2 * 2 * 4
-    assert host.material(listed, 2.0, 4.0, params) == pytest.approx((4.0, 4.0))
+    assert cell.material(2.0, 4.0) == pytest.approx((4.0, 4.0))
     with pytest.raises(JobError, match="unknown key 'size'"):
-        host.params(listed, {"size": 3})
+        cell_named(host, str(tmp_path / "post.stl"), ["size=3"])
 
 
 @pytest.mark.parametrize(
@@ -239,13 +238,11 @@ def hexagon_column():
 def test_a_cell_drawn_in_openscad_passes_its_check(tmp_path):
     from amprep.cells.emission import emit_declared
     from amprep.pipeline.check_cell import check_cell
-    from amprep.pipeline.choose_cell import cell_named
 
     path = tmp_path / "hexagon.stl"
     path.write_text(openscad_stl(hexagon_column()))
     host = Host.load(plugins_enabled=False)
-    listed, _ = cell_named(host, str(path))
-    assert check_cell(host, listed, {}, steps=12).violations == ()
+    assert check_cell(cell_named(host, str(path)), steps=12).violations == ()
     mesh = emit_declared(read(path).cell, REQUEST).templates[0].mesh
     # bottom and top are cut into the same triangles, so that copies weld
     ends = [

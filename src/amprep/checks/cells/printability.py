@@ -22,7 +22,7 @@ FINER = 2
 """How much finer the voxels are on which the smallest feature is measured, on a part of the block."""
 
 
-class Limits(NamedTuple):
+class PrintLimits(NamedTuple):
     """What a machine can do: least steepness in degrees, thinnest feature and narrowest hole, mm."""
 
     angle_deg: float = 30.0
@@ -30,7 +30,7 @@ class Limits(NamedTuple):
     hole: float = 0.2
 
 
-class Measures(NamedTuple):
+class CellMeasures(NamedTuple):
     """What was measured on a block of the cell's upright edges.
 
     Attributes
@@ -51,7 +51,7 @@ class Measures(NamedTuple):
     pocket: float
 
 
-def check_struts(graph: GraphCell, linear: Floats, limits: Limits, where: str) -> list[Violation]:
+def check_struts(graph: GraphCell, linear: Floats, limits: PrintLimits, where: str) -> list[Violation]:
     """Judge the steepness of each strut and wall of a graph under a map's linear part ``(3, 3)``."""
     found = []
     for number, angle in enumerate(angles_deg(graph.points, graph.struts, linear).tolist()):
@@ -71,7 +71,7 @@ def check_struts(graph: GraphCell, linear: Floats, limits: Limits, where: str) -
     return found
 
 
-def check_overhangs(template: Template, linear: Floats, limits: Limits, where: str) -> list[Violation]:
+def check_overhangs(template: Template, linear: Floats, limits: PrintLimits, where: str) -> list[Violation]:
     """Judge what looks down flatter than the limit, wider than a bridge, and does not stand on the cell below."""
     points = snapped(template.mesh.vertices)
     triangles = template.mesh.triangles.astype(np.int64)
@@ -91,7 +91,7 @@ def check_overhangs(template: Template, linear: Floats, limits: Limits, where: s
     return [Violation(STEEP, where, f"expected at least {limits.angle_deg:g}; {message} on {where}")]
 
 
-def measure(request: CellRequest, cells: Cells, steps: int) -> Measures:
+def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
     """Measure a block of upright edges, made of cubes with `steps` voxels along each side; features finer."""
     frame = request.frame
     size = np.array([frame.pitch, frame.pitch, frame.step])
@@ -104,7 +104,7 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> Measures:
     )
     density = float(volume[cells.template].sum()) / len(request.plane)
     if not any(solids):
-        return Measures(0.0, None, None, 0.0)
+        return CellMeasures(0.0, None, None, 0.0)
     place = np.column_stack([request.x, request.y, request.plane])[cells.edge]
     place = (place - place.min(axis=0)).astype(np.int64)
     meshes = [
@@ -116,10 +116,10 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> Measures:
     few = chosen & (place < (2, 2, 3)).all(axis=1)
     thinnest = feature(meshes, template[few], place[few], size, FINER * steps)
     # what no voxel's middle lies in is thinner than a voxel
-    return Measures(density, thinnest or 0.0, hole, pocket)
+    return CellMeasures(density, thinnest or 0.0, hole, pocket)
 
 
-def check_measures(measures: Measures, limits: Limits, accuracy: float) -> list[Violation]:
+def check_measures(measures: CellMeasures, limits: PrintLimits, accuracy: float) -> list[Violation]:
     """Judge what was measured to within `accuracy` mm; features more accurately than holes."""
     found = []
     if measures.feature is not None and measures.feature + accuracy / FINER < limits.feature:
