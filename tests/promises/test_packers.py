@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.host import Host
@@ -82,7 +83,7 @@ def run(packer, problem, stop=None):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@settings(deadline=None, max_examples=80)
+@examples(80)
 @given(data=st.data())
 def test_a_packing_keeps_its_promise(packer, data):
     problem = data.draw(problems(HOST.choose("packer", packer).offer.accepts))
@@ -90,7 +91,7 @@ def test_a_packing_keeps_its_promise(packer, data):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@settings(deadline=None, max_examples=30)
+@examples(30)
 @given(data=st.data())
 def test_what_stands_already_stays_and_is_avoided(packer, data):
     accepts = HOST.choose("packer", packer).offer.accepts

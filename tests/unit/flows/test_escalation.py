@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 from tests.shared.grids import Late, floor_with_holes, random_problem, route
 
 from amprep.checks.supports.plan import check_plan, check_raises
@@ -58,7 +59,7 @@ def test_a_stopped_escalation_is_a_legal_plan(router):
     assert plan.stop_reason != "finished"
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 100_000), st.sampled_from(["cut", "uniform"]))
 def test_every_red_square_with_a_way_is_served_and_what_was_raised_was_needed(seed, escalation):
     task = random_problem(seed, escalation=escalation)

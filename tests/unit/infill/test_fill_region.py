@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.builds import box_mesh
+from tests.shared.examples import examples
 
 from amprep.cells import cell_offer
 from amprep.checks.infill import CELLS, CLOSED, OUTSIDE, WHOLE, check_filled
@@ -101,7 +102,7 @@ def test_a_region_of_whole_cells_holds_whole_cells_that_reach_over_its_faces():
 
 
 @given(st.floats(1.0, 3.0), st.floats(3.0, 5.0), st.floats(3.0, 5.0), st.integers(0, 3))
-@settings(deadline=None, max_examples=5)
+@examples(5)
 def test_promises_hold_wherever_the_region_and_the_grid_lie(corner, size, height, turns):
     region = Mesh(
         *arrays_of(Manifold.cube([7.3, 6.1, 13.0]).rotate([11 * turns, 7, 0]).translate([corner] * 3))

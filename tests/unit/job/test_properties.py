@@ -2,8 +2,9 @@
 
 import contextlib
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.errors import JobError
 from amprep.job import apply_sets, job_from_inputs, make_job
@@ -45,7 +46,7 @@ TABLES = st.dictionaries(
 
 
 @given(TABLES)
-@settings(deadline=None, max_examples=100)
+@examples(100)
 def test_any_table_is_a_job_or_a_job_error(table):
     with contextlib.suppress(JobError):
         job = make_job({"inputs": ["a.stl"], **table}, name="x", folder=None, source="x.toml")
@@ -55,14 +56,14 @@ def test_any_table_is_a_job_or_a_job_error(table):
 @given(
     st.text(max_size=30) | st.tuples(st.sampled_from(["seed", "supports.pitch_mm"]), st.text()).map("=".join)
 )
-@settings(deadline=None, max_examples=100)
+@examples(100)
 def test_any_set_is_a_job_or_a_job_error(text):
     with contextlib.suppress(JobError):
         apply_sets(job_from_inputs(["a.stl"]), [text])
 
 
 @given(st.lists(st.text(max_size=10), max_size=3))
-@settings(deadline=None, max_examples=60)
+@examples(60)
 def test_any_inputs_are_a_job_or_a_job_error(inputs):
     with contextlib.suppress(JobError):
         job_from_inputs(inputs)

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.builds import box_mesh
+from tests.shared.examples import examples
 
 from amprep.geometry.meshes.subdivision import refine
 from amprep.model import Mesh, Part, PlacedPart, Region
@@ -45,7 +46,7 @@ def blocked_area(*regions, mesh=SLAB, matrix=None):
 
 
 @given(x=st.floats(5, 60), y=st.floats(5, 30), size=st.floats(3, 25))
-@settings(deadline=None, max_examples=15)
+@examples(15)
 def test_a_blocker_box_blocks_its_own_area_of_a_large_triangle(x, y, size):
     found = blocked_area(Region("blocker", "b", mesh=box_mesh((x, y, 9), (size, size, 2))))
     assert found == pytest.approx(size * size, abs=4 * size * FINEST)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes, union_volume
 
@@ -65,7 +66,7 @@ def test_without_stacking_the_item_must_stand_on_the_plate():
     assert find_home(*box(5, 5, 5), space(zones=below, flat=True)) is None
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(st.data())
 def test_whatever_dense_sampling_finds_is_found(data):
     number = st.integers(1, 19)

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from tests.shared.examples import examples
 
 from amprep.geometry.connectors import connect as connectors
 from amprep.geometry.connectors.columns import Columns, Patches, clip_into
@@ -64,7 +65,7 @@ def test_columns_crowded_with_hidden_layers_hold_the_lowest():
     assert volume_of(layers) == pytest.approx(4.0 * (1.0 + OVERLAP), rel=1e-5)
 
 
-@settings(deadline=None, max_examples=15)
+@examples(15)
 @given(
     st.lists(
         st.tuples(st.integers(1, 4), st.floats(1.0, 8.0), st.floats(0.5, 2.0), st.floats(-0.4, 0.4)),

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.bench.merging import barrel, random_layout, run_merging
 from amprep.cells import instances as cell_trunks
@@ -97,7 +98,7 @@ def star(radii, turn):
 
 
 @given(RADII, RADII, st.floats(0.0, 1.0))
-@settings(deadline=None, max_examples=40)
+@examples(40)
 def test_what_is_left_of_two_regions_has_the_area_that_clipping_gives(ours, theirs, turn):
     from manifold3d import CrossSection, FillRule
 
@@ -120,7 +121,7 @@ def test_a_straight_and_an_oblique_cube_with_a_common_square_overlap_by_half():
 
 
 @given(ROWS)
-@settings(deadline=None, max_examples=25)
+@examples(25)
 def test_junctions_of_random_cells_have_the_volume_and_genus_of_the_union(rows):
     cell = [barrel(5, 4)]
     ours, theirs = (make(cell, *layout(rows)) for make in (joined, united))

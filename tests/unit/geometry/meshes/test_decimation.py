@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
+from tests.shared.examples import examples
 
 from amprep.checks.cells.ports import port_areas
 from amprep.geometry.cells.implicit import implicit_solid
@@ -26,7 +27,7 @@ def test_of_a_finely_cut_box_hardly_more_than_its_corners_stay():
 
 
 @given(st.floats(0.002, 0.05), st.integers(24, 48))
-@settings(deadline=None, max_examples=6)
+@examples(6)
 def test_a_ring_stays_a_ring_of_about_its_volume(tolerance, segments):
     ring = Manifold.cylinder(0.5, 1.0, 1.0, segments) - Manifold.cylinder(0.5, 0.5, 0.5, segments)
     points, triangles = arrays_of(ring.refine(2))

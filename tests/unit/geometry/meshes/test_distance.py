@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
+from tests.shared.examples import examples
 
 from amprep.geometry.meshes.distance import (
     box_gap,
@@ -48,7 +49,7 @@ def test_solids_are_as_far_apart_as_known():
     assert solid_gap(ball, ball.translate([9, 0, 0]), 1.0) < -0.1
 
 
-@settings(deadline=None, max_examples=40)
+@examples(40)
 @given(st.integers(0, 10**6))
 def test_triangle_gap_agrees_with_manifold3d_on_solids_that_are_apart(seed):
     rng = np.random.default_rng(seed)

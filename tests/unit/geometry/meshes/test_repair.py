@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold, Mesh64
+from tests.shared.examples import examples
 
 from amprep.checks.meshes import check_part
 from amprep.errors import MeshError
@@ -118,7 +119,7 @@ def test_a_cavity_where_only_one_shell_is_is_hollow():
     assert settled.volume == pytest.approx(1.5 - 0.008)
 
 
-@settings(deadline=None, max_examples=30)
+@examples(30)
 @given(
     st.lists(st.tuples(*[st.integers(0, 6)] * 3, st.integers(1, 4), st.booleans()), min_size=1, max_size=6)
 )
@@ -201,7 +202,7 @@ def test_the_place_of_a_hole_is_named():
     assert "first near (" in settle(CUBE[0], CUBE[1][1:]).problem
 
 
-@settings(deadline=None, max_examples=200)
+@examples(200)
 @given(
     st.lists(st.permutations(range(6)), min_size=1, max_size=4),
     st.lists(st.lists(st.integers(0, 5), min_size=3, max_size=3), max_size=1),

@@ -3,8 +3,9 @@
 import manifold3d
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.geometry.overhangs.find import Marks, find_overhangs
 
@@ -190,7 +191,7 @@ def test_what_lies_on_the_plate_is_held_by_it_even_when_support_is_enforced():
     assert find_overhangs(vertices, triangles, angle_deg=45, marks=marks).regions == ()
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.lists(st.tuples(*[st.floats(0, 20)] * 3), min_size=5, max_size=12), st.floats(10, 80))
 def test_the_lowest_point_of_a_lifted_convex_solid_is_always_among_its_needs(points, angle_deg):
     hull = Solid.hull_points(np.array(points))

@@ -3,8 +3,9 @@
 import manifold3d
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.overhangs.find import find_overhangs
@@ -92,7 +93,7 @@ def judge_by_volume(solid, found, pitch, step):
             assert found[k, y, x] == (volume > 0), (k, y, x, volume)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(st.integers(0, 10_000), st.sampled_from([(1.0, 1.0), (0.8, 1.3), (1.1, 0.7)]))
 def test_met_voxels_are_those_with_a_common_volume(seed, sizes):
     pitch, step = sizes
@@ -140,7 +141,7 @@ def test_near_voxels_reach_sideways_by_the_gap_only():
     assert marked(near_voxels(whole((8, 7, 7)), vertices, triangles, 1.0)) == block((3, 4), (2, 5), (2, 5))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(st.integers(0, 10_000))
 def test_inside_agrees_with_the_solid_angle(seed):
     vertices, triangles = arrays(random_solid(seed))

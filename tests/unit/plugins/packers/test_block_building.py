@@ -4,9 +4,10 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem, cut
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
@@ -138,7 +139,7 @@ def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
     assert run(problem([(11, 1, 1)])).builds == ()
 
 
-@settings(deadline=None, max_examples=40)
+@examples(40)
 @given(
     st.lists(st.tuples(*[st.integers(1, 6)] * 3), min_size=1, max_size=8), st.sampled_from([0.9, 0.98, 1.0])
 )

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
@@ -42,7 +43,7 @@ def stacked(*kinds):
 side = st.integers(1, 4)
 
 
-@settings(deadline=None, max_examples=40)
+@examples(40)
 @given(st.lists(st.tuples(side, side, side), min_size=1, max_size=8))
 def test_bound_and_builds_enclose_the_fewest_builds_that_the_program_proves(sizes):
     given_problem = problem(sizes)

@@ -4,9 +4,10 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
@@ -288,7 +289,7 @@ ROOM = (4, 3, 3)
 tiny_sizes = st.lists(st.tuples(*(st.integers(1, r) for r in ROOM)), min_size=1, max_size=4)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(tiny_sizes)
 def test_bound_and_packing_enclose_the_brute_force_optimum(sizes):
     packing, best = pack(boxes_problem(sizes, ROOM)), fewest_builds(sizes, ROOM)
@@ -296,13 +297,13 @@ def test_bound_and_packing_enclose_the_brute_force_optimum(sizes):
     assert len(packing.builds) == best or packing.status != "optimal"
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(tiny_sizes.filter(lambda sizes: len(sizes) <= 2))
 def test_two_boxes_are_packed_optimally(sizes):
     assert len(pack(boxes_problem(sizes, ROOM)).builds) == fewest_builds(sizes, ROOM)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(tiny_sizes, st.data())
 def test_the_fill_bound_is_no_less_than_the_brute_force_optimum(sizes, data):
     values = [float(data.draw(st.integers(0, 9))) for _ in sizes]

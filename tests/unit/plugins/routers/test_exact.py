@@ -5,9 +5,10 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.shared import grids
+from tests.shared.examples import examples
 from tests.shared.grids import Late, hanging, random_problem
 
 from amprep.bench.routing.rivals import RIVALS
@@ -106,7 +107,7 @@ def test_costs_that_cannot_be_counted_are_refused():
     )
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 100_000))
 @example(14383)  # a unit ends, for nothing, at a red square that is itself yet to be left out
 def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
@@ -208,7 +209,7 @@ def test_a_stopped_run_is_a_legal_plan(monkeypatch):
     assert (plan.status, plan.stop_reason, plan.bound) == ("feasible", "interrupted", None)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 100_000), st.sampled_from([6, 0.05]))
 def test_as_many_are_connected_as_networkx_connects(seed, effort):
     task = random_problem(seed)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 from tests.shared.grids import hanging, problem
 
 from amprep.checks.supports.plan import check_plan
@@ -154,7 +155,7 @@ def test_parameters_out_of_bounds_are_refused(wrong):
         ShortestPathsParams(**wrong)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 100_000), st.sampled_from([(0, 0), (1, 0), (0, 1), (2, 0), (0, 2), (1, 2)]))
 def test_as_many_are_connected_as_a_maximum_flow_allows(seed, capacities):
     rng = np.random.default_rng(seed)

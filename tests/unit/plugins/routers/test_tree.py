@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.bench.routing.scenes import scene
 from amprep.checks.supports.plan import check_plan, check_raises
@@ -52,7 +53,7 @@ def test_four_columns_in_a_square_become_one_trunk():
     assert route("tree", task).objective <= 24
 
 
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(st.integers(0, 100_000))
 def test_it_connects_as_many_as_the_exact_routers(seed):
     rng = np.random.default_rng(seed)

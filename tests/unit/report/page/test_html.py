@@ -11,8 +11,9 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh
@@ -115,7 +116,7 @@ def test_names_from_files_are_text_wherever_they_stand(make_build):
     assert json.loads(evil.raw_text("model"))["builds"][0]["parts"][0]["name"] == EVIL
 
 
-@settings(deadline=None, max_examples=25)
+@examples(25)
 @given(st.text(st.characters(exclude_categories=()), max_size=30))
 def test_no_name_whatsoever_changes_the_structure_of_the_page(name):
     empty = Build(BuildSettings(name, BuildVolume((10, 10, 10)), printer=name), ())
@@ -147,7 +148,7 @@ def test_geometry_comes_back_from_the_page_and_copies_share_it(make_build):
         np.testing.assert_array_equal(triangles, placed.part.mesh.triangles)
 
 
-@settings(deadline=None, max_examples=50)
+@examples(50)
 @given(st.integers(1, 40), st.integers(0, 60), st.integers(0, 2**32 - 1))
 def test_any_mesh_survives_packing_to_half_a_grid_step(corners, faces, seed):
     rng = np.random.default_rng(seed)

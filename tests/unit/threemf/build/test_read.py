@@ -8,9 +8,10 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from tests.shared.examples import examples
 
 from amprep.errors import InputError
 from amprep.model import (
@@ -102,7 +103,7 @@ wild = (
 
 
 @pytest.mark.parametrize("target", ["generic", "prusaslicer"])
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(40, suppress=(HealthCheck.function_scoped_fixture,))
 @given(
     vertices=arrays(float, (60, 3), elements=wild),
     shift=arrays(float, 3, elements=st.floats(-400, 400)),
@@ -142,7 +143,7 @@ def test_wild_coordinates_keep_their_digest(round_trip, target, vertices, shift,
         },
     )
 )
-@settings(deadline=None, max_examples=50)
+@examples(50)
 def test_settings_survive_their_record_exactly(rules):
     volume = from_json(to_json(record.volume_record(rules.space)))
     text = to_json(record.settings_record(rules))

@@ -4,9 +4,10 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem as problem
+from tests.shared.examples import examples
 
 from amprep.bench.packing.instances import mpv_instance
 from amprep.kernels.boxes.relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_together, relation_scratch
@@ -28,7 +29,7 @@ def proved(task, work=50e6):
     return bound.builds
 
 
-@settings(deadline=None, max_examples=200)
+@examples(200)
 @given(st.lists(st.integers(1, 60), min_size=1, max_size=12))
 def test_lengths_that_fit_a_row_keep_fitting_under_every_measure(lengths):
     row = [n for n, total in zip(lengths, itertools.accumulate(lengths), strict=True) if total <= 60]
@@ -54,7 +55,7 @@ def fits_by_trial(sizes, room):
     return place(sizes)
 
 
-@settings(deadline=None, max_examples=150)
+@examples(150)
 @given(st.lists(st.tuples(*[st.integers(1, 4)] * 3), min_size=1, max_size=5))
 def test_relations_agree_with_trying_every_place(sizes):
     room, scratch = (4, 4, 3), relation_scratch(5)
@@ -90,7 +91,7 @@ def test_the_first_scale_is_the_volume_and_no_two_are_alike():
         assert np.abs(one - other).max() > 0.08
 
 
-@settings(deadline=None, max_examples=15)
+@examples(15)
 @given(st.lists(st.tuples(*[st.integers(2, 8)] * 3), min_size=4, max_size=14))
 def test_the_cover_never_proves_more_than_a_packing_needs(sizes):
     task = problem(sizes)

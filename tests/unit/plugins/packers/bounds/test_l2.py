@@ -4,8 +4,9 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem
 from amprep.plugins.packers.bounds.l2 import l2_bound
@@ -127,7 +128,7 @@ def test_the_fill_bound_is_the_fractional_knapsack():
     )
 
 
-@settings(deadline=None, max_examples=80)
+@examples(80)
 @given(st.data())
 def test_boxes_cut_from_whole_rooms_never_have_a_bound_above_the_number_of_rooms(data):
     # cutting with the clearance as saw width gives a packing of known size

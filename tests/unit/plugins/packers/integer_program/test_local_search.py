@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Stop, silent
@@ -48,7 +49,7 @@ side = st.integers(1, 4)
 some_sizes = st.lists(st.tuples(side, side, side), min_size=2, max_size=6)
 
 
-@settings(deadline=None, max_examples=40)
+@examples(40)
 @given(some_sizes, st.integers(1, 3), st.integers(0, 12), st.booleans())
 def test_one_step_changes_no_more_than_the_distances_allow(sizes, used_distance, direction_distance, tighten):
     given_problem = problem(sizes, 5)
@@ -71,7 +72,7 @@ def test_one_step_changes_no_more_than_the_distances_allow(sizes, used_distance,
     assert moved <= direction_distance
 
 
-@settings(deadline=None, max_examples=25)
+@examples(25)
 @given(some_sizes)
 def test_neighbourhoods_that_grow_to_everything_end_at_the_optimum(sizes):
     given_problem = problem(sizes, 5)

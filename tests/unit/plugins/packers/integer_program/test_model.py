@@ -5,8 +5,9 @@ from itertools import combinations, product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
@@ -91,7 +92,7 @@ some_sizes = st.lists(st.tuples(side, side, side), min_size=1, max_size=5)
 switches = st.fixed_dictionaries({name: st.booleans() for name in ("sharing", "symmetry", "tighten")})
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(some_sizes, st.lists(st.integers(0, 9), min_size=5, max_size=5), switches)
 def test_a_fill_problem_is_solved_to_the_greatest_value_whatever_the_options(sizes, values, options):
     given_problem = problem(sizes, values=[float(v) for v in values])
@@ -100,7 +101,7 @@ def test_a_fill_problem_is_solved_to_the_greatest_value_whatever_the_options(siz
     assert value(given_problem, packing) == greatest_value(sizes, values)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(some_sizes, switches)
 def test_a_builds_problem_is_solved_to_the_fewest_builds_whatever_the_options(sizes, options):
     packing = run(problem(sizes, "builds"), effort=10.0, **options)
@@ -190,7 +191,7 @@ def test_the_plain_model_has_the_size_that_the_thesis_counts():
     assert program.numConstraints() == 7 * 10 + n
 
 
-@settings(deadline=None, max_examples=40)
+@examples(40)
 @given(some_sizes, switches, st.booleans())
 def test_a_heuristics_packing_satisfies_the_program_as_its_start(sizes, options, equal):
     given_problem = problem(sizes * 2 if equal else sizes)

@@ -1,0 +1,16 @@
+"""The number of examples of a property test, scaled by the chosen hypothesis profile."""
+
+from hypothesis import HealthCheck, settings
+
+USUAL = 100
+"""Examples of a test that does not say how many it needs, in the usual profile."""
+
+
+def examples(number: int, *, suppress: tuple[HealthCheck, ...] = ()) -> settings:
+    """Try `number` examples in the usual run, and in the nightly one as many times more as its profile asks for.
+
+    A number below 100 says that an example is expensive, one above 100 that a fault would be rare.
+    """
+    return settings(
+        max_examples=max(1, number * settings.default.max_examples // USUAL), suppress_health_check=suppress
+    )
