@@ -6,7 +6,7 @@ import pytest
 import trimesh
 from manifold3d import Manifold
 
-from amprep.checks.supports.gap import PROMISE
+from amprep.checks.supports.xy_distance import PROMISE
 from amprep.pipeline.verify import verify_build
 from amprep.threemf import read_build
 

@@ -170,10 +170,10 @@ def _plain_mesh(path: Path) -> Mesh:
     """Read a mesh file of an installed package."""
     import trimesh
 
-    from amprep.geometry.meshes.topology import merge_equal
+    from amprep.geometry.meshes.topology import merge_equal_vertices
 
     loaded = trimesh.load_mesh(path, process=False)
-    points, triangles = merge_equal(
+    points, triangles = merge_equal_vertices(
         np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     )
     return Mesh(points, triangles.astype(np.int32))

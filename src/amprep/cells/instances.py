@@ -11,7 +11,7 @@ from amprep.geometry.merging.merge_cells import join_cells
 from amprep.geometry.merging.prisms import join_prisms
 from amprep.geometry.merging.union import is_solid
 from amprep.geometry.merging.voxel_contents import Pieces
-from amprep.geometry.meshes.welding import kept
+from amprep.geometry.meshes.welding import round_as_stored
 from amprep.model import DIRECTIONS, CellRequest, Cells, Grid, Mesh, Role, Template
 
 
@@ -98,7 +98,7 @@ def trunks(
     if len(template):
         joined = join_cells(emitted.pieces, template, square, shift, frame.origin, size)
         yield from (
-            [(kept(joined[0]), joined[1])]
+            [(round_as_stored(joined[0]), joined[1])]
             if joined
             else _by_direction(emitted.pieces, template, square, shift, frame)
         )

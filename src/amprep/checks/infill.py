@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from amprep.checks.supports.bodies import NEGLIGIBLE_VOLUME
 from amprep.checks.violation import Violation
 from amprep.geometry.merging.union import FILE_STEP, arrays_of, evaluated, union
-from amprep.geometry.meshes.islands import pieces_of
+from amprep.geometry.meshes.components import count_components
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model import Mesh
 
@@ -47,7 +47,7 @@ def check_filled(
     if abs(now.volume() - expected) > allowed:
         message = f"expected {expected:.6g} mm3 of part and cells, found {now.volume():.6g} mm3"
         found.append(Violation(CELLS, name, message))
-    pieces, most = pieces_of(*arrays_of(now)), max(pieces_of(*arrays_of(was)), 1)
+    pieces, most = count_components(*arrays_of(now)), max(count_components(*arrays_of(was)), 1)
     if pieces > most:
         message = f"expected {most}, found {pieces}: the cells do not hold the part together"
         found.append(Violation(WHOLE, name, message))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.checks.violation import Violation
-from amprep.geometry.meshes.repair import find_defect, settle
+from amprep.geometry.meshes.repair import find_defect, repair_mesh
 from amprep.model.part import Part
 
 
@@ -21,13 +21,13 @@ def check_part(part: Part) -> list[Violation]:
     found = _check_records(part)
     if not part.is_solid:
         return found
-    settled = settle(vertices, triangles)
-    if settled.problem:
-        return [*found, Violation("solid", part.name, f"expected a solid; {settled.problem}")]
-    if settled.turned.any():
-        found.append(Violation("orientation", part.name, f"expected outward normals; {settled.notes[-1]}"))
-    if not np.isclose(part.volume_mm3, settled.volume, rtol=1e-6):
-        message = f"expected {settled.volume:.6g} mm3, the record says {part.volume_mm3:.6g} mm3"
+    repaired = repair_mesh(vertices, triangles)
+    if repaired.problem:
+        return [*found, Violation("solid", part.name, f"expected a solid; {repaired.problem}")]
+    if repaired.turned.any():
+        found.append(Violation("orientation", part.name, f"expected outward normals; {repaired.notes[-1]}"))
+    if not np.isclose(part.volume_mm3, repaired.volume, rtol=1e-6):
+        message = f"expected {repaired.volume:.6g} mm3, the record says {part.volume_mm3:.6g} mm3"
         found.append(Violation("volume", part.name, message))
     return found
 

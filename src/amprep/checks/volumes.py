@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.distance import box_solids, convex_solid, thickness
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
 from amprep.model.part import Part
 

@@ -8,7 +8,7 @@ from amprep.errors import JobError
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.supports.beams import near_surface, sample
 from amprep.model import Beams, CellRequest, Lattice, Mesh
-from amprep.model.build import MOST_STOOD_IN
+from amprep.model.build import MAX_STAND_IN_TRIANGLES
 
 
 def beams_of(request: CellRequest, emit: Emit) -> Beams | None:
@@ -52,5 +52,5 @@ def lattice_of(beams: Beams, part: Mesh, islands: Mesh, *, shell: Mesh, whole: M
     used, local = np.unique(beams.struts[kept], return_inverse=True)
     struts = local.reshape(-1, 2).astype(np.int32)
     nodes, radii = np.round(beams.nodes[used], 6), np.round(beams.radii[kept], 6)
-    stand_in = whole if len(whole.triangles) <= MOST_STOOD_IN else part
+    stand_in = whole if len(whole.triangles) <= MAX_STAND_IN_TRIANGLES else part
     return Lattice(nodes, struts, radii, shell, stand_in, None)

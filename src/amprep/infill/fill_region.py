@@ -10,7 +10,7 @@ from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import arrays, sort_out, trunks
 from amprep.errors import JobError, MeshError
 from amprep.geometry.merging.union import arrays_of, evaluated, finish, union
-from amprep.geometry.meshes.islands import CRUMB, drop_islands, handles_of
+from amprep.geometry.meshes.components import CRUMB, drop_detached, genus_of
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.infill.beams import beams_of, lattice_of
 from amprep.infill.block import block_over
@@ -109,7 +109,7 @@ def fill_region(
     progress(0.4, "trimming the cells")
     points, triangles = finish([evaluated(solid - evaluated(hole - cells))])
     progress(0.8, "looking for loose pieces")
-    parted = drop_islands(points, triangles, arrays_of(hole), arrays(part))
+    parted = drop_detached(points, triangles, arrays_of(hole), arrays(part))
     mesh, islands = Mesh(*parted.kept), Mesh(*parted.islands)
     loose = abs(islands.signed_volume) if len(islands.triangles) else 0.0
     around = evaluated(solid - hole)
@@ -124,7 +124,7 @@ def fill_region(
         max(mesh.signed_volume - float(around.volume()), 0.0),
         parted.number,
         loose,
-        handles_of(*parted.kept),
+        genus_of(*parted.kept),
         lattice,
     )
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from amprep.errors import InputError, JobError, MeshError, nearest_hint
-from amprep.geometry.meshes.repair import settle
+from amprep.geometry.meshes.repair import repair_mesh
 from amprep.model import Mesh, Part, Region
 from amprep.model.part import RegionKind
 from amprep.threemf import modifier_note
@@ -114,7 +114,7 @@ def _at(region: Region, part: Part) -> Region:
 def _closed(region: Region, part: Part) -> Region:
     if region.mesh is None:
         return region
-    settled = settle(region.mesh.vertices, region.mesh.triangles)
-    if settled.problem:
-        raise MeshError(f"{part.name}: the region {region.name!r} is no closed mesh: {settled.problem}")
-    return replace(region, mesh=Mesh(settled.vertices, settled.triangles))
+    repaired = repair_mesh(region.mesh.vertices, region.mesh.triangles)
+    if repaired.problem:
+        raise MeshError(f"{part.name}: the region {region.name!r} is no closed mesh: {repaired.problem}")
+    return replace(region, mesh=Mesh(repaired.vertices, repaired.triangles))

@@ -6,13 +6,13 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.geometry.meshes.shells import label_shells
-from amprep.geometry.meshes.topology import merge_equal
+from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model import SupportBody
 
 _DIRECTIONS = 36
 
 
-class Columns(NamedTuple):
+class Slenderness(NamedTuple):
     """The connected pieces of a support body, by its most slender one.
 
     Attributes
@@ -33,9 +33,9 @@ class Columns(NamedTuple):
     position_mm: tuple[float, float, float]
 
 
-def measure_columns(body: SupportBody) -> Columns:
+def measure_slenderness(body: SupportBody) -> Slenderness:
     """Return how slender a support body is."""
-    points, triangles = merge_equal(np.round(body.mesh.vertices, 4), body.mesh.triangles)
+    points, triangles = merge_equal_vertices(np.round(body.mesh.vertices, 4), body.mesh.triangles)
     count, shell = label_shells(triangles, len(points))
     corners = points[triangles]
     volume = np.bincount(
@@ -43,7 +43,7 @@ def measure_columns(body: SupportBody) -> Columns:
     )
     pieces = np.flatnonzero((volume > 0.0) | body.surface)  # the others bound voids inside pieces
     if not len(pieces):
-        return Columns(0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+        return Slenderness(0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
     piece = np.zeros(len(points), np.int64)
     piece[triangles] = shell[:, None]
     low, high = _extremes(points, piece, count)
@@ -55,7 +55,9 @@ def measure_columns(body: SupportBody) -> Columns:
     ratio = heights / np.maximum(widths, 1e-6)
     first = int(pieces[ratio[pieces].argmax()])
     x, y, z = ((low + high) / 2)[first].tolist()
-    return Columns(len(pieces), float(ratio[first]), float(heights[first]), float(widths[first]), (x, y, z))
+    return Slenderness(
+        len(pieces), float(ratio[first]), float(heights[first]), float(widths[first]), (x, y, z)
+    )
 
 
 def _extremes(values: Floats, piece: np.ndarray, count: int) -> tuple[Floats, Floats]:

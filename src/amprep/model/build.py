@@ -184,5 +184,5 @@ class Build:
     unsupported: tuple[Unsupported, ...] = ()
 
 
-MOST_STOOD_IN = 100_000
+MAX_STAND_IN_TRIANGLES = 100_000
 """Triangles of a body that its file shows to readers that know no beams; larger ones get a coarser mesh."""

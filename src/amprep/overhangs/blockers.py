@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.subdivision import refine
+from amprep.geometry.meshes.subdivision import subdivide
 from amprep.geometry.overhangs.find import Marks
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
@@ -96,7 +96,7 @@ def mark(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> Marked:
             wanted[large] |= _painted_in_part(paint, corners[large], parent[large])
         return wanted
 
-    fine = refine(mesh.vertices, mesh.triangles, wish)
+    fine = subdivide(mesh.vertices, mesh.triangles, wish)
     finer = mesh if len(fine.triangles) == len(mesh.triangles) else Mesh(fine.vertices, fine.triangles)
     blocked = blockers.mark(finer, fine.parent)
     vertices = np.isin(np.arange(len(finer.vertices)), finer.triangles[blocked])

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
-from amprep.geometry.meshes.sampling import Samples
+from amprep.geometry.meshes.sampling import OverhangSamples
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import BuildSettings, Unsupported
 
@@ -15,7 +15,7 @@ ReasonsOf = Callable[[Floats], Sequence[str]]
 def list_bare(
     part: int,
     label: str,
-    samples: Samples,
+    samples: OverhangSamples,
     regions: Sequence[OverhangRegion],
     covered: Bools,
     settings: BuildSettings,
@@ -49,7 +49,7 @@ def region_name(region: int, label: str) -> str:
 
 
 def _minor(
-    bare: Ints, samples: Samples, region: OverhangRegion, covered: Bools, settings: BuildSettings
+    bare: Ints, samples: OverhangSamples, region: OverhangRegion, covered: Bools, settings: BuildSettings
 ) -> Bools:
     """Tell which of the bare samples of one region are minor."""
     least = {"face": settings.least_area, "edge": settings.least_length, "tip": 0.0}[region.kind]
@@ -65,7 +65,7 @@ def _minor(
     return minor
 
 
-def _measure(chosen: Ints, samples: Samples, region: OverhangRegion) -> float:
+def _measure(chosen: Ints, samples: OverhangSamples, region: OverhangRegion) -> float:
     """Return the share of the region's area or length that the chosen samples stand for."""
     own = samples.region == samples.region[chosen[0]]
     weight = samples.inner if samples.inner[own].any() else np.ones(len(own), np.bool_)

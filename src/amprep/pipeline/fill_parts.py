@@ -9,7 +9,7 @@ from amprep.cells.answers import Emit
 from amprep.cells.instances import arrays
 from amprep.checks.infill import check_filled
 from amprep.errors import JobError
-from amprep.geometry.meshes.offset import inset
+from amprep.geometry.meshes.offset import offset_inwards
 from amprep.host import Host
 from amprep.infill.block import usual_size
 from amprep.infill.fill_region import Filled, fill_region, meets
@@ -57,7 +57,7 @@ class LatticeOptions:
 
 
 @dataclass(frozen=True, eq=False)
-class _Work:
+class _PartFill:
     """A part as it was read, the regions that meet it, and what has become of it."""
 
     part: Part
@@ -149,14 +149,14 @@ def _read(job: Job, host: Host, options: LatticeOptions, progress: Progress) -> 
     return with_files(read_all(files, read, progress=progress), options.regions, read)
 
 
-def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress) -> list[_Work]:
+def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress) -> list[_PartFill]:
     """Return every part with the regions that meet it."""
     if options.shell is not None:
-        return [_Work(part, _inside(part, options.shell, progress)) for part in parts]
+        return [_PartFill(part, _inside(part, options.shell, progress)) for part in parts]
     work = []
     for part, regions in zip(parts, chosen(parts, options.names), strict=True):
         met = tuple(each for each in regions if each.mesh and meets(part.mesh, each.mesh))
-        work.append(_Work(part, met))
+        work.append(_PartFill(part, met))
     if not any(each.regions for each in work):
         raise JobError("the regions lie outside the parts: nothing of them can be filled with cells")
     return work
@@ -164,7 +164,7 @@ def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress)
 
 def _inside(part: Part, shell: float, progress: Progress) -> tuple[Region, ...]:
     progress(0.1, f"looking for the inside of {part.name}")
-    points, triangles = inset(*arrays(part.mesh), shell, shell / 2.0)
+    points, triangles = offset_inwards(*arrays(part.mesh), shell, shell / 2.0)
     if not len(triangles):
         raise JobError(
             f"{part.name} is nowhere thicker than twice the shell of {shell:g} mm; choose a thinner --shell"
@@ -172,7 +172,9 @@ def _inside(part: Part, shell: float, progress: Progress) -> tuple[Region, ...]:
     return (Region(KIND, f"inside of {part.name}", mesh=Mesh(points, triangles)),)
 
 
-def _filled(each: _Work, emit: Emit, job: Job, size: float, height: float, progress: Progress) -> _Work:
+def _filled(
+    each: _PartFill, emit: Emit, job: Job, size: float, height: float, progress: Progress
+) -> _PartFill:
     if not each.regions:
         return each
     filled = fill_region(
@@ -195,7 +197,7 @@ def _beams(job: Job) -> bool | None:
     return True if job.cells.lattice == "beams" else None
 
 
-def _measured(each: _Work, filled: Filled, job: Job, clock: Clock) -> FilledRecord:
+def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> FilledRecord:
     """Judge a filled part and measure it."""
     part, wishes = each.part, job.cells
     regions = [region.mesh for region in each.regions if region.mesh]
@@ -228,7 +230,7 @@ def _measured(each: _Work, filled: Filled, job: Job, clock: Clock) -> FilledReco
     )
 
 
-def _notes(done: Sequence[_Work], job: Job) -> list[str]:
+def _notes(done: Sequence[_PartFill], job: Job) -> list[str]:
     """Say what was mended in reading, and what of a part is lost by filling it."""
     notes = []
     for each in done:
@@ -247,7 +249,7 @@ def _notes(done: Sequence[_Work], job: Job) -> list[str]:
 
 def _written(
     record: LatticeRecord,
-    done: Sequence[_Work],
+    done: Sequence[_PartFill],
     job: Job,
     options: LatticeOptions,
     outputs: OutputFolder,

@@ -1,4 +1,4 @@
-"""From what the user names to parts: folders and counts expanded, meshes settled, names made unique."""
+"""From what the user names to parts: folders and counts expanded, meshes repaired, names made unique."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from amprep.errors import InputError, JobError, MeshError
-from amprep.geometry.meshes.repair import Settled, find_defect, settle
+from amprep.geometry.meshes.repair import RepairedMesh, find_defect, repair_mesh
 from amprep.job import Job, PartSettings, names_part
 from amprep.model.control import Progress, silent
 from amprep.model.mesh import Mesh
@@ -55,13 +55,13 @@ def read_all(
     for done, (path, count) in enumerate(files):
         progress(done / len(files), path.name)
         for part in read(path):
-            settled = settle_part(part, allow_surface=allow_surface)
-            parts.append(replace(settled, quantity=settled.quantity * (count or 1)))
+            repaired = repair_part(part, allow_surface=allow_surface)
+            parts.append(replace(repaired, quantity=repaired.quantity * (count or 1)))
     progress(1.0, f"{len(parts)} parts")
     return with_unique_names(parts)
 
 
-def settle_part(part: Part, *, allow_surface: bool) -> Part:
+def repair_part(part: Part, *, allow_surface: bool) -> Part:
     """Return the part as manifold3d accepts it, with its volume and notes on what was mended.
 
     Raises
@@ -72,11 +72,11 @@ def settle_part(part: Part, *, allow_surface: bool) -> Part:
     defect = find_defect(part.mesh.vertices, part.mesh.triangles)
     if defect:
         raise MeshError(f"{_where(part)}: {defect}; export it again from the program it was drawn in")
-    settled = settle(part.mesh.vertices, part.mesh.triangles)
-    if settled.problem and (not allow_surface or len(settled.triangles) == 0):
+    repaired = repair_mesh(part.mesh.vertices, part.mesh.triangles)
+    if repaired.problem and (not allow_surface or len(repaired.triangles) == 0):
         advice = "repair it, or use --allow-surface to take it as it is"
-        raise MeshError(f"{_where(part)} is not a solid: {settled.problem}; {advice}")
-    return _with_mesh(part, settled)
+        raise MeshError(f"{_where(part)} is not a solid: {repaired.problem}; {advice}")
+    return _with_mesh(part, repaired)
 
 
 def with_unique_names(parts: Sequence[Part]) -> list[Part]:
@@ -124,38 +124,38 @@ def _where(part: Part) -> str:
     return f"{part.source}: {part.name}" if part.source else part.name
 
 
-def _with_mesh(part: Part, settled: Settled) -> Part:
-    """Return the part with the settled mesh; what belongs to triangles follows them."""
-    same = np.array_equal(settled.vertices, part.mesh.vertices) and np.array_equal(
-        settled.triangles, part.mesh.triangles
+def _with_mesh(part: Part, repaired: RepairedMesh) -> Part:
+    """Return the part with the repaired mesh; what belongs to triangles follows them."""
+    same = np.array_equal(repaired.vertices, part.mesh.vertices) and np.array_equal(
+        repaired.triangles, part.mesh.triangles
     )
-    note = (f"not a solid: {settled.problem}; taken as a surface",) if settled.problem else ()
+    note = (f"not a solid: {repaired.problem}; taken as a surface",) if repaired.problem else ()
     return replace(
         part,
-        mesh=part.mesh if same else Mesh(settled.vertices, settled.triangles),
-        volume_mm3=settled.volume,
-        is_solid=not settled.problem,
-        notes=(*part.notes, *settled.notes, *note),
-        regions=tuple(_follow(region, settled, len(part.mesh.triangles)) for region in part.regions),
-        appearance=_recoloured(part.appearance, settled),
+        mesh=part.mesh if same else Mesh(repaired.vertices, repaired.triangles),
+        volume_mm3=repaired.volume,
+        is_solid=not repaired.problem,
+        notes=(*part.notes, *repaired.notes, *note),
+        regions=tuple(_follow(region, repaired, len(part.mesh.triangles)) for region in part.regions),
+        appearance=_recoloured(part.appearance, repaired),
     )
 
 
-def _follow(region: Region, settled: Settled, triangles_before: int) -> Region:
+def _follow(region: Region, repaired: RepairedMesh, triangles_before: int) -> Region:
     if region.triangles is None:
         return region
     after = np.full(triangles_before, -1, np.int32)
-    after[settled.kept] = np.arange(len(settled.kept))
+    after[repaired.kept] = np.arange(len(repaired.kept))
     triangles = after[region.triangles]
     mesh = region.mesh and Mesh(region.mesh.vertices, region.mesh.triangles[triangles >= 0])
     return replace(region, triangles=triangles[triangles >= 0], mesh=mesh)
 
 
-def _recoloured(appearance: Appearance, settled: Settled) -> Appearance:
+def _recoloured(appearance: Appearance, repaired: RepairedMesh) -> Appearance:
     if appearance.triangle_colours is None:
         return appearance
-    colours = np.asarray(appearance.triangle_colours)[settled.kept]
-    colours = np.where(settled.turned[:, None], colours[:, ::-1], colours)
+    colours = np.asarray(appearance.triangle_colours)[repaired.kept]
+    colours = np.where(repaired.turned[:, None], colours[:, ::-1], colours)
     return replace(appearance, triangle_colours=colours)
 
 
@@ -204,8 +204,10 @@ def _read(file: str, job: Job, read: Read) -> list[Part]:
 
 def _closed(part: Part, kind: RegionKind, file: str) -> list[Mesh]:
     """Return the part's solid once for each of its positions."""
-    settled = settle(part.mesh.vertices, part.mesh.triangles)
-    if settled.problem:
-        raise MeshError(f"{file}: expected closed meshes for {kind}s, {part.name} is none: {settled.problem}")
+    repaired = repair_mesh(part.mesh.vertices, part.mesh.triangles)
+    if repaired.problem:
+        raise MeshError(
+            f"{file}: expected closed meshes for {kind}s, {part.name} is none: {repaired.problem}"
+        )
     positions = np.zeros((1, 3)) if part.positions is None else part.positions
-    return [Mesh(settled.vertices + position, settled.triangles) for position in positions]
+    return [Mesh(repaired.vertices + position, repaired.triangles) for position in positions]

@@ -10,7 +10,7 @@ from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.host import Host
 from amprep.job import Job
 from amprep.measures.density import build_density, build_height, support_volume
-from amprep.measures.slenderness import measure_columns
+from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
@@ -29,7 +29,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         support_volume_mm3=support_volume(build),
         advice=supported.advice,
         removal=supported.removal,
-        columns=tuple(measure_columns(body) for body in build.supports),
+        columns=tuple(measure_slenderness(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         red=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),

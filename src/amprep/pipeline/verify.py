@@ -5,10 +5,10 @@ from pathlib import Path
 
 from amprep.checks.packing.parts_placed import check_placed
 from amprep.checks.supports import bodies as cells
-from amprep.checks.supports import coverage, gap
+from amprep.checks.supports import coverage, xy_distance
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
-from amprep.checks.supports.gap import check_gap
+from amprep.checks.supports.xy_distance import check_gap
 from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, silent
 
@@ -24,7 +24,7 @@ PROMISES = (
     cells.INSIDE,
     cells.STANDING,
     cells.PENETRATION,
-    gap.PROMISE,
+    xy_distance.PROMISE,
     coverage.PROMISE,
 )
 """The names of all promises, in the order they are judged."""

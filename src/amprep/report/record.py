@@ -6,7 +6,7 @@ from typing import Any
 
 from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
-from amprep.measures.slenderness import Columns
+from amprep.measures.slenderness import Slenderness
 from amprep.model import Build, Unsupported
 
 
@@ -127,7 +127,7 @@ class BuildRecord:
     shared: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
-    columns: tuple[Columns, ...] = ()
+    columns: tuple[Slenderness, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
 

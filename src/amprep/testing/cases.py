@@ -16,7 +16,7 @@ from amprep.hookspecs import CellEmitter, MeshReader, Packer, SupportRouter, Vol
 from amprep.host import Host, Listed
 from amprep.host.mismatch import fits, volume_word
 from amprep.model import PackingProblem, Part, Stop, SupportProblem, silent
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 from amprep.testing.case import SEED, Case
 from amprep.testing.problems import packing_problems, sample_parts, support_problems, written_samples
 
@@ -101,7 +101,7 @@ def _reader_cases(
 def _judge_parts(parts: list[Part]) -> list[Violation]:
     if not parts:
         return [Violation("reads parts", "file", "expected at least one part, got none")]
-    settled = [settle_part(part, allow_surface=False) for part in parts]
+    settled = [repair_part(part, allow_surface=False) for part in parts]
     return [violation for part in settled for violation in check_part(part)]
 
 

@@ -15,7 +15,7 @@ from amprep.checks.infill import CELLS, CLOSED, OUTSIDE, WHOLE, check_filled
 from amprep.errors import JobError, MeshError
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.meshes.offset import inset
+from amprep.geometry.meshes.offset import offset_inwards
 from amprep.host import Host
 from amprep.infill.fill_region import fill_region
 from amprep.measures.filled_part import pockets_of
@@ -198,14 +198,14 @@ def test_beams_are_those_struts_as_solids():
 
 
 def test_the_inside_of_a_box_is_a_smaller_box_nowhere_nearer_than_the_shell():
-    points, triangles = inset(np.array(BLOCK.vertices), BLOCK.triangles.astype(np.int64), 1.5, 0.75)
+    points, triangles = offset_inwards(np.array(BLOCK.vertices), BLOCK.triangles.astype(np.int64), 1.5, 0.75)
     depth = np.minimum(points.min(axis=1), (12 - points).min(axis=1))
     assert depth.min() > 1.5 - 1e-6
     assert as_manifold(points, triangles).volume() == pytest.approx(9**3, rel=0.03)
 
 
 def test_what_is_thinner_than_two_shells_has_no_inside():
-    _, triangles = inset(np.array(BLOCK.vertices), BLOCK.triangles.astype(np.int64), 6.5, 2.0)
+    _, triangles = offset_inwards(np.array(BLOCK.vertices), BLOCK.triangles.astype(np.int64), 6.5, 2.0)
     assert len(triangles) == 0
 
 

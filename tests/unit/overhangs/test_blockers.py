@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.shared.builds import box_mesh
 from tests.shared.examples import examples
 
-from amprep.geometry.meshes.subdivision import refine
+from amprep.geometry.meshes.subdivision import subdivide
 from amprep.model import Mesh, Part, PlacedPart, Region
 from amprep.overhangs.blockers import FINEST, mark
 from amprep.overhangs.of_part import needs_of
@@ -81,7 +81,7 @@ def test_needs_lose_what_is_blocked_and_gain_what_is_enforced():
 
 
 def test_refining_ends_where_nothing_is_wanted_and_names_the_parents():
-    fine = refine(
+    fine = subdivide(
         SLAB.vertices, SLAB.triangles, lambda corners, parent: (parent == 3) & (_size(corners) > 10)
     )
     assert _size(fine.vertices[fine.triangles[fine.parent == 3]]).max() <= 10

@@ -9,8 +9,8 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
-from amprep.geometry.meshes.distance import box_solids, near_pairs, solid_gap, triangle_gap
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.distance import box_solids, near_pairs, solid_distance, triangle_distance
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.build import BuildSettings, PlacedPart
 from amprep.model.control import Stop
 from amprep.model.mesh import Mesh
@@ -53,8 +53,8 @@ class Body:
     def gap(self, other: "Body", limit: float) -> float:
         """Return the distance to the other body, at most `limit`; negative when they overlap."""
         if self.is_solid and other.is_solid:
-            return solid_gap(self.solid, other.solid, limit)
-        return triangle_gap(self.corners, other.corners, limit)
+            return solid_distance(self.solid, other.solid, limit)
+        return triangle_distance(self.corners, other.corners, limit)
 
 
 def check_placed(parts: Sequence[PlacedPart], settings: BuildSettings, stop: Stop) -> list[Violation]:
@@ -134,9 +134,9 @@ def _zones(bodies: Sequence[Body], settings: BuildSettings) -> list[Violation]:
                 continue
             zone = box_solids(lo[None], hi[None])
             depth = (
-                -solid_gap(body.solid, zone, 0.0)
+                -solid_distance(body.solid, zone, 0.0)
                 if body.is_solid
-                else -triangle_gap(body.corners, _faces(zone), 0.0)
+                else -triangle_distance(body.corners, _faces(zone), 0.0)
             )
             if depth > TOLERANCE or (not body.is_solid and _any_inside(body, lo, hi)):
                 message = f"it reaches into forbidden zone {number}"

@@ -12,8 +12,8 @@ from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
 from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes
-from amprep.geometry.meshes.distance import box_gap, box_solids, convex_solid, near_pairs, solid_gap
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.distance import box_distance, box_solids, convex_solid, near_pairs, solid_distance
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.bounding_volume import Boxes, ConvexPieces
 from amprep.model.packing import Packing, PackingProblem, Placement
 
@@ -78,8 +78,8 @@ class PlacedVolume:
     def gap(self, other: "PlacedVolume", limit: float) -> float:
         """Return the distance to another volume, at most about `limit`; negative when they overlap."""
         if self.boxes is not None and other.boxes is not None:
-            return box_gap(*self.boxes, *other.boxes)
-        return solid_gap(self.solid, other.solid, limit)
+            return box_distance(*self.boxes, *other.boxes)
+        return solid_distance(self.solid, other.solid, limit)
 
 
 def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
@@ -194,9 +194,9 @@ def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
         if (least >= hi - TOLERANCE).any() or (most <= lo + TOLERANCE).any():
             continue
         if volume.boxes is not None:
-            gap = box_gap(*volume.boxes, lo[None], hi[None])
+            gap = box_distance(*volume.boxes, lo[None], hi[None])
         else:
-            gap = solid_gap(volume.solid, box_solids(lo[None], hi[None]), 0.0)
+            gap = solid_distance(volume.solid, box_solids(lo[None], hi[None]), 0.0)
         if gap < -TOLERANCE:
             faults.append(
                 Violation(

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
-from amprep.geometry.supports.beams import balls_too_deep, carried, sample, sphere
+from amprep.geometry.supports.beams import balls_too_deep, find_grounded, sample, sphere
 from amprep.model.build import Lattice
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
@@ -74,7 +74,7 @@ def hanging_pieces(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
         Tells which vertices of the solids rest on something.
     """
     solids = lattice.solids
-    stands = carried(
+    stands = find_grounded(
         lattice.nodes,
         lattice.struts.astype(np.int64),
         lattice.radii,

@@ -12,9 +12,9 @@ from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.checks.supports import beams
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
-from amprep.geometry.meshes.topology import merge_equal
+from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Stop
@@ -31,7 +31,7 @@ NEGLIGIBLE_VOLUME = 1e-4
 """mm3; booleans on coordinates of 1e-5 mm leave slivers up to about 10 mm2 times that."""
 
 
-class Body:
+class JudgedBody:
     """A support body, its solid made when it is first needed."""
 
     def __init__(self, support: SupportBody) -> None:
@@ -53,7 +53,7 @@ def check_bodies(build: Build, stop: Stop) -> list[Violation]:
     found: list[Violation] = []
     for support in build.supports:
         solids = None if support.lattice is None else support.lattice.solids
-        body = Body(support if solids is None else replace(support, mesh=solids))
+        body = JudgedBody(support if solids is None else replace(support, mesh=solids))
         faults = _unsound(support) if support.lattice else _closed(body)
         found += faults
         if faults:
@@ -66,7 +66,7 @@ def check_bodies(build: Build, stop: Stop) -> list[Violation]:
     return found
 
 
-def _closed(body: Body) -> list[Violation]:
+def _closed(body: JudgedBody) -> list[Violation]:
     """Judge a solid by manifold3d; a surface has only to be finite."""
     mesh = body.support.mesh
     if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
@@ -87,11 +87,11 @@ def _unsound(support: SupportBody) -> list[Violation]:
     found = [Violation(CLOSED, support.name, fault)] if fault else []
     for mesh in (support.lattice.solids, support.lattice.stand_in):
         if len(mesh.triangles):
-            found += _closed(Body(replace(support, mesh=mesh, lattice=None)))
+            found += _closed(JudgedBody(replace(support, mesh=mesh, lattice=None)))
     return found
 
 
-def _inside(body: Body, space: BuildVolume) -> list[Violation]:
+def _inside(body: JudgedBody, space: BuildVolume) -> list[Violation]:
     lattice = body.support.lattice
     excess = -np.inf if lattice is None else beams.excess_of(lattice, space)
     if len(body.support.mesh.vertices):
@@ -111,7 +111,7 @@ def _excess(points: Floats, space: BuildVolume) -> float:
     return float(max(below.max(), above.max()))
 
 
-def _zones(body: Body, space: BuildVolume) -> list[Violation]:
+def _zones(body: JudgedBody, space: BuildVolume) -> list[Violation]:
     found = []
     for lo, hi in zip(space.zone_lo + TOLERANCE, space.zone_hi - TOLERANCE, strict=True):
         lattice = body.support.lattice
@@ -120,7 +120,7 @@ def _zones(body: Body, space: BuildVolume) -> list[Violation]:
     return found
 
 
-def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
+def _volume_in_box(body: JudgedBody, lo: Floats, hi: Floats) -> bool:
     from manifold3d import Manifold
 
     corners = body.support.mesh.vertices[body.support.mesh.triangles]
@@ -131,7 +131,7 @@ def _volume_in_box(body: Body, lo: Floats, hi: Floats) -> bool:
     return bool(common.volume() > NEGLIGIBLE_VOLUME)
 
 
-def _standing(body: Body, build: Build) -> list[Violation]:
+def _standing(body: JudgedBody, build: Build) -> list[Violation]:
     """Judge that every connected piece reaches the plate; pieces that meet in a point are connected.
 
     A shell of negative volume bounds a void inside a piece and is none itself. Where the build allows it, a
@@ -139,7 +139,9 @@ def _standing(body: Body, build: Build) -> list[Violation]:
     """
     if body.support.lattice is not None:
         return _standing_beams(body, body.support.lattice, build)
-    points, triangles = merge_equal(np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles)
+    points, triangles = merge_equal_vertices(
+        np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles
+    )
     count, shell = label_shells(triangles, len(points))
     lowest = np.full(count, np.inf)
     np.minimum.at(lowest, shell, points[triangles, 2].min(axis=1))
@@ -160,7 +162,7 @@ def _standing(body: Body, build: Build) -> list[Violation]:
     return [Violation(STANDING, body.name, message)]
 
 
-def _standing_beams(body: Body, lattice: Lattice, build: Build) -> list[Violation]:
+def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Violation]:
     """Judge that beams, and the solids that touch them, reach the plate together."""
 
     def rests(points: Floats) -> Bools:
@@ -186,7 +188,9 @@ def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Boo
     return found
 
 
-def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, holds: bool) -> list[Violation]:
+def _penetration(
+    body: JudgedBody, placed: PlacedPart, settings: BuildSettings, *, holds: bool
+) -> list[Violation]:
     """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all.
 
     Where supports may stand on parts, those that the body holds may be entered downwards as well.
@@ -214,7 +218,7 @@ def _penetration(body: Body, placed: PlacedPart, settings: BuildSettings, *, hol
     return [Violation(PENETRATION, body.name, f"enters {placed.label}: {found}")] if found else []
 
 
-def _volume_deeper(body: Body, placed: PlacedPart, depth: float, *, feet: bool) -> float:
+def _volume_deeper(body: JudgedBody, placed: PlacedPart, depth: float, *, feet: bool) -> float:
     """Return the volume of the body's points in the part with the point `depth` below them in the part too.
 
     With `feet`, only of those with the point `depth` above them in the part as well.
@@ -233,7 +237,7 @@ def _thickness(solid: "Manifold") -> float:
     return float(2.0 * solid.volume() / max(solid.surface_area(), NEGLIGIBLE_VOLUME))
 
 
-def _sheet_enters(body: Body, placed: PlacedPart, depth: float) -> bool:
+def _sheet_enters(body: JudgedBody, placed: PlacedPart, depth: float) -> bool:
     """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too.
 
     Sideways it has to lie deeper than contact.

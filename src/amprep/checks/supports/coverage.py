@@ -9,7 +9,7 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.sampling import Samples, sample_overhangs, sample_segments
+from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs, sample_segments
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.mesh import Mesh
@@ -32,7 +32,7 @@ Reasons = Callable[[int, Floats], Sequence[str]]
 class _Covered(NamedTuple):
     """A part's samples, its regions, and which samples are within reach of a contact."""
 
-    samples: Samples
+    samples: OverhangSamples
     regions: tuple[OverhangRegion, ...]
     covered: Bools
 

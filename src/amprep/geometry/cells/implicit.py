@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Floats, MeshArrays
 from amprep.geometry.cells.ports import conform
-from amprep.geometry.meshes.decimation import thin_out
+from amprep.geometry.meshes.decimation import decimate
 
 _THINNED = 0.1
 """Of a step of the grid: how far the surface may move so that it has fewer triangles; the grid is no better."""
@@ -71,7 +71,7 @@ def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> Mes
     if not len(triangles):
         return points, triangles
     sides = np.column_stack([points == 0.0, points == 1.0]) @ (1 << np.arange(6))
-    return thin_out(points, triangles, _THINNED * step, sides)
+    return decimate(points, triangles, _THINNED * step, sides)
 
 
 def _on_halves(points: Floats) -> Floats:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats, Int64s, MeshArrays
-from amprep.geometry.meshes.topology import compact, degenerate, first_of_equal_rows
+from amprep.geometry.meshes.topology import degenerate, drop_unused_vertices, first_of_equal_rows
 
 SNAP = 1e-5
 """Share of the unit cube: files keep six digits, so what is this close is meant to be the same place."""
@@ -54,14 +54,14 @@ def conform(points: Floats, triangles: Int64s) -> MeshArrays:
     """
     points = snapped(points)
     triangles = first_of_equal_rows(points)[triangles]
-    points, triangles = compact(points, triangles[~degenerate(triangles)])
+    points, triangles = drop_unused_vertices(points, triangles[~degenerate(triangles)])
     for _ in range(_MOST_ROUNDS):
         points, triangles, changed = _share_corners(points, triangles)
         if not changed:
             break
     for axis in range(3):
         triangles = _recut(points, triangles, axis)
-    return compact(points, triangles)
+    return drop_unused_vertices(points, triangles)
 
 
 def _border(triangles: Int64s) -> Int64s:

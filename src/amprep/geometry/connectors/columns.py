@@ -18,7 +18,7 @@ LOWEST = 1e-4
 """mm; walls are not cut closer than this to their upper ends."""
 
 
-class Columns(NamedTuple):
+class ConnectorColumns(NamedTuple):
     """The spaces above red squares that connectors may pass.
 
     Attributes
@@ -75,7 +75,7 @@ class Patches(NamedTuple):
         return self.points[start[0] : start[-1]], start - start[0]
 
 
-def clip_into(columns: Columns, corners: Floats, number: Int64s, allowed: Bools) -> Patches:
+def clip_to_columns(columns: ConnectorColumns, corners: Floats, number: Int64s, allowed: Bools) -> Patches:
     """Cut triangles that look down to the columns they reach into.
 
     Parameters
@@ -99,7 +99,7 @@ def clip_into(columns: Columns, corners: Floats, number: Int64s, allowed: Bools)
             np.empty(room + 1, np.int64),
             np.empty((room, 2), np.int64),
         )
-        count = kernels.clip_into_columns(
+        count = kernels.clip_to_columns(
             corners, columns.grid, columns.shape, square_start, chosen[order], columns.lo, columns.hi,
             RUN_SLACK, points, start, owner,
         )  # fmt: skip

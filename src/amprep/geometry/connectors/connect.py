@@ -4,13 +4,13 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.connectors.columns import Patches
-from amprep.geometry.connectors.prisms import prisms_between, stand_on
+from amprep.geometry.connectors.prisms import prisms_below, prisms_between
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
 from amprep.geometry.merging.union import arrays_of, union
-from amprep.geometry.meshes.welding import kept, label_equal_rows
+from amprep.geometry.meshes.welding import label_equal_rows, round_as_stored
 from amprep.kernels.meshes import patches as patch_kernels
 
-CROWDED = 64
+MAX_PATCHES_UNCULLED = 64
 """In columns with more patches than this below others, those that are hidden are left out."""
 
 _SAMPLES = 64
@@ -61,7 +61,7 @@ def connect(
         walls between them lie in each other, and manifold3d joins them without fault, but tidies them badly.
     """
     rise = np.where(own, overlap, -overlap)
-    held, below = _without_hidden(held, surface, find_below(held, surface), overlap, rise)
+    held, below = _cull_hidden(held, surface, find_below(held, surface), overlap, rise)
     cutting, rise = surface.chosen(below), rise[below]
     covered = np.diff(cutting.of_column) > 0
     free = held.chosen(~covered[held.owner[:, 0]])
@@ -69,7 +69,7 @@ def connect(
     surface_of = _label_surfaces(free)
     for each in range(int(surface_of.max(initial=-1)) + 1):
         whole = free.chosen(surface_of == each)
-        meshes.append(separate_edges(*stand_on(whole, base[whole.owner[:, 0]], overlap)))
+        meshes.append(separate_edges(*prisms_below(whole, base[whole.owner[:, 0]], overlap)))
     for column in np.flatnonzero(covered).tolist():
         way = union(list(prisms_between(*held.in_column(column), overlap, base[column])))
         first, last = cutting.of_column[column : column + 2]
@@ -87,7 +87,7 @@ def _label_surfaces(patches: Patches) -> Int64s:
     from scipy.sparse.csgraph import connected_components
 
     count = len(patches.owner)
-    corner, _ = label_equal_rows(kept(patches.points).view(np.int64))
+    corner, _ = label_equal_rows(round_as_stored(patches.points).view(np.int64))
     patch = np.repeat(np.arange(count), np.diff(patches.start))
     here = np.arange(len(corner))
     after = np.where(here + 1 == patches.start[1:][patch], patches.start[:-1][patch], here + 1)
@@ -98,7 +98,7 @@ def _label_surfaces(patches: Patches) -> Int64s:
     return np.asarray(np.unique(label, return_inverse=True)[1], np.int64)
 
 
-def _without_hidden(
+def _cull_hidden(
     held: Patches, surface: Patches, below: Bools, overlap: float, rise: Floats
 ) -> tuple[Patches, Bools]:
     """Leave out what is hidden by other patches below it, where a column has many.
@@ -109,14 +109,14 @@ def _without_hidden(
         What stays of both.
     """
     keep, below = np.ones(len(held.owner), np.bool_), below.copy()
-    many = np.bincount(surface.owner[below, 0], minlength=len(held.of_column) - 1) > CROWDED
+    many = np.bincount(surface.owner[below, 0], minlength=len(held.of_column) - 1) > MAX_PATCHES_UNCULLED
     for column in np.flatnonzero(many).tolist():
         ours, theirs = (slice(*each.of_column[column : column + 2]) for each in (held, surface))
         around = *surface.in_column(column), rise[theirs]
         lift = np.full(ours.stop - ours.start, overlap)
         spacing = float(np.ptp(around[0][:, :2], axis=0).max()) / _SAMPLES
-        patch_kernels.find_seen(*held.in_column(column), lift, *around, spacing, keep[ours])
+        patch_kernels.find_visible(*held.in_column(column), lift, *around, spacing, keep[ours])
         seen = np.zeros(theirs.stop - theirs.start, np.bool_)
-        patch_kernels.find_seen(*around, *around, spacing, seen)
+        patch_kernels.find_visible(*around, *around, spacing, seen)
         below[theirs] &= seen
     return held.chosen(keep), below

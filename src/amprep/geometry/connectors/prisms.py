@@ -8,8 +8,8 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.connectors.columns import LOWEST, Patches
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
-from amprep.geometry.meshes.repair import as_manifold
-from amprep.geometry.meshes.welding import kept, weld
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.welding import round_as_stored, weld
 from amprep.kernels.meshes import patches as patch_kernels
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def prisms_between(
     sizes = np.diff(start)
     points = points.copy()
     points[:, 2] += np.repeat(np.broadcast_to(rise, len(sizes)), sizes)
-    points = kept(points) * (1.0, 1.0, -1.0 if hang else 1.0)
+    points = round_as_stored(points) * (1.0, 1.0, -1.0 if hang else 1.0)
     colour = np.empty(len(sizes), np.int64)
     patch_kernels.colour_patches(points, start, LOWEST, colour)
     nowhere = np.zeros((len(sizes), 2), np.int64)
@@ -43,13 +43,13 @@ def prisms_between(
     for each in range(int(colour.max(initial=-1)) + 1):
         chosen = patches.chosen(colour == each)
         base = np.full(len(chosen.owner), -level if hang else level)
-        corners, triangles = separate_edges(*stand_on(chosen, base, 0.0))
+        corners, triangles = separate_edges(*prisms_below(chosen, base, 0.0))
         yield as_manifold(
             *((corners * (1.0, 1.0, -1.0), triangles[:, ::-1]) if hang else (corners, triangles))
         )
 
 
-def stand_on(patches: Patches, base: Floats, rise: float) -> MeshArrays:
+def prisms_below(patches: Patches, base: Floats, rise: float) -> MeshArrays:
     """Return the union of the prisms from the patches, raised by `rise`, down to `base`, as one closed mesh.
 
     No two patches lie above one another. Neighbours share no walls: what both have cancels, because all
@@ -62,9 +62,9 @@ def stand_on(patches: Patches, base: Floats, rise: float) -> MeshArrays:
     """
     sizes = np.diff(patches.start)
     count = len(patches.points)
-    top = kept(patches.points + (0.0, 0.0, rise))
-    levels = np.unique(kept(base))
-    begins = np.repeat(np.searchsorted(levels, kept(base)), sizes)
+    top = round_as_stored(patches.points + (0.0, 0.0, rise))
+    levels = np.unique(round_as_stored(base))
+    begins = np.repeat(np.searchsorted(levels, round_as_stored(base)), sizes)
     first = np.repeat(patches.start[:-1], sizes)
     here = np.arange(count)
     following = np.where(here + 1 == np.repeat(patches.start[1:], sizes), first, here + 1)

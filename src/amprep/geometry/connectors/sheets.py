@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from amprep.arrays import Floats, Int64s, MeshArrays
-from amprep.geometry.connectors.columns import Columns, Patches
+from amprep.geometry.connectors.columns import ConnectorColumns, Patches
 from amprep.geometry.connectors.connect import find_covered
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import merge_vertices
 
 _SHORTEST = 1e-4
@@ -15,7 +15,13 @@ _SHORTEST = 1e-4
 
 
 def raise_sheets(
-    columns: Columns, column: Int64s, segments: Floats, held: Patches, surface: Patches, *, overlap: float
+    columns: ConnectorColumns,
+    column: Int64s,
+    segments: Floats,
+    held: Patches,
+    surface: Patches,
+    *,
+    overlap: float,
 ) -> MeshArrays:
     """Return upright sheets over segments in plan, from the red square up to the held faces and into them.
 
@@ -134,4 +140,4 @@ def join_sheets(sheets: Sequence[MeshArrays]) -> MeshArrays:
     flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
     triangles = triangles[~flat]
     _, first = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)
-    return compact(points, triangles[np.sort(first)])
+    return drop_unused_vertices(points, triangles[np.sort(first)])

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.connectors.columns import Columns, Patches, clip_into
+from amprep.geometry.connectors.columns import ConnectorColumns, Patches, clip_to_columns
 
 _LEAST = 1e-3
 """Share of a cell: less contact than that gets no site, unless its column has no more elsewhere."""
@@ -45,7 +45,7 @@ class Sites(NamedTuple):
     share: Floats
 
 
-def find_sites(contact: Floats, columns: Columns, count: int, width: float) -> Sites:
+def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: float) -> Sites:
     """Choose the sites of `columns`, each of whose squares is cut into `count` x `count` cells.
 
     Parameters
@@ -61,7 +61,7 @@ def find_sites(contact: Floats, columns: Columns, count: int, width: float) -> S
         `lowest` is that of the contact within `width` around the spot.
     """
     fine, owner, square = _subdivided(columns, count)
-    patches = clip_into(fine, contact, np.arange(len(contact)), np.ones(len(owner), np.bool_))
+    patches = clip_to_columns(fine, contact, np.arange(len(contact)), np.ones(len(owner), np.bool_))
     cells = _measured(patches, fine)
     area = cells.area / (fine.grid[2] * fine.grid[2])
     best = np.zeros(len(columns.lo))
@@ -73,7 +73,7 @@ def find_sites(contact: Floats, columns: Columns, count: int, width: float) -> S
     return Sites(owner[chosen], square[chosen], lo, hi, spot, lowest, cells.highest[chosen], area[chosen])
 
 
-def _subdivided(columns: Columns, count: int) -> tuple[Columns, Int64s, Int64s]:
+def _subdivided(columns: ConnectorColumns, count: int) -> tuple[ConnectorColumns, Int64s, Int64s]:
     """Return the cells of all columns, the column of each, and its place in the finer grid."""
     owner = np.repeat(np.arange(len(columns.lo)), count * count)
     within = np.tile(np.argwhere(np.ones((count, count))), (len(columns.lo), 1))
@@ -83,7 +83,7 @@ def _subdivided(columns: Columns, count: int) -> tuple[Columns, Int64s, Int64s]:
     lo, hi = columns.lo[owner].copy(), columns.hi[owner].copy()
     lo[:, :2], hi[:, :2] = (grid[:2] + (square[:, ::-1] + more) * side for more in (0, 1))
     ny, nx = columns.shape
-    return Columns(lo, hi, square, grid, (ny * count, nx * count)), owner, square
+    return ConnectorColumns(lo, hi, square, grid, (ny * count, nx * count)), owner, square
 
 
 class _Cells(NamedTuple):
@@ -96,7 +96,7 @@ class _Cells(NamedTuple):
     highest: Floats
 
 
-def _measured(patches: Patches, fine: Columns) -> _Cells:
+def _measured(patches: Patches, fine: ConnectorColumns) -> _Cells:
     count = len(fine.lo)
     area, middle = _plan(patches)
     cell = patches.owner[:, 0]
@@ -136,7 +136,7 @@ def _fans(patches: Patches) -> tuple[Int64s, Int64s, Int64s]:
     return patch[inner], here[inner], here[inner] + 1
 
 
-def _spots(patches: Patches, fine: Columns, cells: _Cells, width: float) -> Floats:
+def _spots(patches: Patches, fine: ConnectorColumns, cells: _Cells, width: float) -> Floats:
     """Return a place in the contact of every cell.
 
     The middle of the cell if contact is there, else the centroid of the contact, else that of the nearest of its
@@ -179,7 +179,7 @@ def _contains(patches: Patches, spot: Floats) -> Bools:
     return found
 
 
-def _lowest_inside(patches: Patches, fine: Columns, cells: _Cells) -> tuple[Int64s, Floats]:
+def _lowest_inside(patches: Patches, fine: ConnectorColumns, cells: _Cells) -> tuple[Int64s, Floats]:
     """Return cells whose contact slopes down to a spot inside them, and that spot ``(n, 2)``."""
     cell = np.repeat(patches.owner[:, 0], np.diff(patches.start))
     plan, height = patches.points[:, :2], patches.points[:, 2]
@@ -193,13 +193,13 @@ def _lowest_inside(patches: Patches, fine: Columns, cells: _Cells) -> tuple[Int6
 
 
 def _lowest_around(
-    spot: Floats, width: float, contact: Floats, fine: Columns, chosen: Int64s, otherwise: Floats
+    spot: Floats, width: float, contact: Floats, fine: ConnectorColumns, chosen: Int64s, otherwise: Floats
 ) -> Floats:
     """Return the least height of the contact within `width` around spots, in their cells."""
     low, high = fine.lo[chosen].copy(), fine.hi[chosen].copy()
     low[:, :2], high[:, :2] = within(spot, width, low[:, :2], high[:, :2])
-    around = Columns(low, high, fine.square[chosen], fine.grid, fine.shape)
-    patches = clip_into(around, contact, np.arange(len(contact)), np.ones(len(chosen), np.bool_))
+    around = ConnectorColumns(low, high, fine.square[chosen], fine.grid, fine.shape)
+    patches = clip_to_columns(around, contact, np.arange(len(contact)), np.ones(len(chosen), np.bool_))
     lowest = np.full(len(chosen), np.inf)
     np.minimum.at(lowest, np.repeat(patches.owner[:, 0], np.diff(patches.start)), patches.points[:, 2])
     return np.where(np.isfinite(lowest), lowest, otherwise)

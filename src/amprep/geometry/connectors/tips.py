@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.sites import Sites, within
 from amprep.geometry.merging.union import union
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -29,7 +29,7 @@ _DIP = 0.05
 """mm; how far shapes reach below the connectors' base and above their top, where those cut them off."""
 
 
-class Profile(NamedTuple):
+class TipProfile(NamedTuple):
     """Section of a tip from below: as wide as its cell, tapering to `width` over `height`, straight on up.
 
     Attributes
@@ -49,7 +49,7 @@ class Profile(NamedTuple):
     round: bool
 
 
-def tips(sites: Sites, profile: Profile, level: Floats, base: Floats, overlap: float) -> "Manifold":
+def tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> "Manifold":
     """Return a solid that leaves of connectors only teeth or points, on the shoulders that carry them.
 
     Each cell is filled up to its level; from there on the tip stands.
@@ -95,7 +95,7 @@ def prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) 
     return union(solids)
 
 
-def _rings(sites: Sites, profile: Profile, level: Floats, base: Floats, overlap: float) -> Floats:
+def _rings(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> Floats:
     """Return the corners of each tip's sections from below, ``(s, r, n, 3)`` mm."""
     lo, hi = sites.lo + _APART, sites.hi - _APART
     top = within(sites.spot, profile.width, lo, hi)

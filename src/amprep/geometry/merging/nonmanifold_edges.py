@@ -3,8 +3,8 @@
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.meshes.topology import compact
-from amprep.geometry.meshes.welding import kept, label_equal_rows
+from amprep.geometry.meshes.topology import drop_unused_vertices
+from amprep.geometry.meshes.welding import label_equal_rows, round_as_stored
 
 _SAME_ANGLE = 1e-3
 """Radians; what rounding to a build file's precision turns the faces of an edge at most."""
@@ -22,7 +22,7 @@ def separate_edges(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     if crowded is None or not len(crowded):
         return points, triangles
     added, triangles = part_at(points, triangles, crowded)
-    return compact(np.concatenate([points, added]), triangles)
+    return drop_unused_vertices(np.concatenate([points, added]), triangles)
 
 
 def part_at(points: Floats, triangles: Int64s, crowded: Int64s) -> tuple[Floats, Int64s]:
@@ -145,7 +145,7 @@ def _halve_doubled(
     count = len(points) + len(added)
     middle[first[doubled]] = middle[second[doubled]] = count + np.arange(len(doubled))
     low, high = added[start[doubled] - len(points)], added[end[doubled] - len(points)]
-    return kept((low + high) / 2), halved(triangles, middle.reshape(-1, 3))
+    return round_as_stored((low + high) / 2), halved(triangles, middle.reshape(-1, 3))
 
 
 def halved(triangles: Int64s, middle: Int64s) -> Int64s:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.merging.nonmanifold_edges import separate_edges
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
 
 _QUARTERS = ("bottom", "top", "left", "right")
@@ -50,7 +50,7 @@ def join_prisms(square: Int64s, shift: Int64s, origin: Floats, size: Floats) -> 
     matrix[:, :, 3] = origin + pieces[:, :3] * size
     points, triangles, _ = expand(_templates(), pieces[:, 3], matrix)
     merged, corners = merge_vertices(points, triangles)
-    return separate_edges(*compact(merged, corners[cancel_opposite(corners)]))
+    return separate_edges(*drop_unused_vertices(merged, corners[cancel_opposite(corners)]))
 
 
 def _packed(voxel: Int64s, extent: Int64s) -> Int64s:
@@ -82,7 +82,7 @@ def _templates() -> tuple[MeshArrays, ...]:
     offsets = np.cumsum([0] + [len(mesh[0]) for mesh in pieces[:-1]])
     triangles = np.vstack([mesh[1] + offset for mesh, offset in zip(pieces, offsets, strict=True)])
     merged, joined = merge_vertices(every, triangles)
-    return *pieces, compact(merged, joined[cancel_opposite(joined)])
+    return *pieces, drop_unused_vertices(merged, joined[cancel_opposite(joined)])
 
 
 def _in_quarter(points: Floats, axis: int, quarter: str) -> NDArray[np.bool_]:

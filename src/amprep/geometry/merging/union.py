@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.geometry.meshes.repair import as_manifold
-from amprep.geometry.meshes.welding import kept
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.welding import round_as_stored
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -57,6 +57,6 @@ def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Int64s]:
     """Unite solids to the arrays that a build file keeps: closed, no triangle without area."""
     whole = union(solids)
     points, triangles = arrays_of(whole)
-    again = as_manifold(kept(points), triangles).simplify(FILE_STEP)
+    again = as_manifold(round_as_stored(points), triangles).simplify(FILE_STEP)
     points, triangles = arrays_of(again)
-    return kept(points), triangles
+    return round_as_stored(points), triangles

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 
 Point = tuple[float, float, float]
 
@@ -24,7 +24,7 @@ class _Surface(NamedTuple):
     users: list[set[int]]
 
 
-def thin_out(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s) -> tuple[Floats, Int64s]:
+def decimate(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s) -> tuple[Floats, Int64s]:
     """Collapse edges of a closed mesh where the surface moves by at most `tolerance` each time.
 
     In each of a few rounds, vertices go in the order of their shortest edges; what lies around one that went stays
@@ -49,7 +49,7 @@ def thin_out(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s
     for _ in range(_ROUNDS):
         if not _round(surface, tolerance):
             break
-    return compact(points, np.array(list(surface.triangles.values()), np.int64).reshape(-1, 3))
+    return drop_unused_vertices(points, np.array(list(surface.triangles.values()), np.int64).reshape(-1, 3))
 
 
 def _round(surface: _Surface, tolerance: float) -> int:

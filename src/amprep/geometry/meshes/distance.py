@@ -22,7 +22,7 @@ def near_pairs(lo: Floats, hi: Floats, distance: float) -> list[tuple[int, int]]
     return pairs
 
 
-def box_gap(lo: Floats, hi: Floats, other_lo: Floats, other_hi: Floats) -> float:
+def box_distance(lo: Floats, hi: Floats, other_lo: Floats, other_hi: Floats) -> float:
     """Return the distance of two sets of boxes ``(k, 3)``, ``(m, 3)``; when they overlap, less the depth.
 
     The depth of an overlap is the shortest way along an axis that ends it.
@@ -60,7 +60,7 @@ def thickness(solid: "Manifold") -> float:
     return thickest
 
 
-def solid_gap(solid: "Manifold", other: "Manifold", limit: float) -> float:
+def solid_distance(solid: "Manifold", other: "Manifold", limit: float) -> float:
     """Return the distance of two solids, at most `limit`; if they overlap, less the `thickness` shared."""
     shared = thickness(solid ^ other)
     if shared > 0.0 or limit <= 0.0:
@@ -68,13 +68,13 @@ def solid_gap(solid: "Manifold", other: "Manifold", limit: float) -> float:
     return float(solid.min_gap(other, limit))
 
 
-def triangle_gap(corners: Floats, other: Floats, limit: float) -> float:
+def triangle_distance(corners: Floats, other: Floats, limit: float) -> float:
     """Return the distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; if crossing, less depth.
 
     The depth of a crossing is how far the edge would have to be drawn back, or the pierced triangle trimmed.
     Triangles that enclose others without touching them do not cross them.
     """
-    from amprep.kernels.meshes.distance import least_gap
+    from amprep.kernels.meshes.distance import least_distance
 
     lo, hi = corners.min(axis=1), corners.max(axis=1)
     other_lo, other_hi = other.min(axis=1), other.max(axis=1)
@@ -87,4 +87,4 @@ def triangle_gap(corners: Floats, other: Floats, limit: float) -> float:
     chosen = chosen[np.argsort(other_lo[chosen, 0], kind="stable")]
     widest = float((other_hi[chosen, 0] - other_lo[chosen, 0]).max())
     one, two = np.ascontiguousarray(corners[near]), np.ascontiguousarray(other[chosen])
-    return float(least_gap(one, two, widest, max(limit, 0.0)))
+    return float(least_distance(one, two, widest, max(limit, 0.0)))

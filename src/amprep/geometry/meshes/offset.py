@@ -19,7 +19,7 @@ _CLOSE = 6.0
 """Samples of the surface lie that many times closer than the depth, if there are not too many of them."""
 
 
-def inset(points: Floats, triangles: Int64s, depth: float, step: float) -> tuple[Floats, Int64s]:
+def offset_inwards(points: Floats, triangles: Int64s, depth: float, step: float) -> tuple[Floats, Int64s]:
     """Return a closed mesh of what lies at least `depth` mm below the surface of a solid.
 
     A level set of the distance to points sampled on the surface, on a grid of about `step` mm. It errs to the

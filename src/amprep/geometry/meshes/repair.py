@@ -10,9 +10,9 @@ from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.geometry.meshes.shells import MOST_UNITED, find_inside_out, measure_shells, solid_volume
 from amprep.geometry.meshes.topology import (
-    compact,
     count_edges,
     degenerate,
+    drop_unused_vertices,
     first_of_equal_rows,
     join_near,
     open_vertices,
@@ -22,15 +22,13 @@ from amprep.geometry.meshes.topology import (
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-__all__ = ["SEAM_TOLERANCE", "Settled", "as_manifold", "find_defect", "settle"]
-
 SEAM_TOLERANCE = 1e-3
 """mm; open edges closer than this may be sewn together, the distance at which the product counts contact."""
 
 _FLOAT32_STEP = 2.0**-22  # of a coordinate: files keep float32, and exporters round once or twice
 
 
-class Settled(NamedTuple):
+class RepairedMesh(NamedTuple):
     """A mesh that has been judged.
 
     Attributes
@@ -81,7 +79,7 @@ def find_defect(vertices: ArrayLike, triangles: ArrayLike) -> str:
     return ""
 
 
-def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
+def repair_mesh(vertices: ArrayLike, triangles: ArrayLike) -> RepairedMesh:
     """Judge a mesh by manifold3d, mending only what leaves its shape as it is.
 
     Equal vertices are merged; degenerate and repeated triangles dropped; seams narrower than
@@ -98,15 +96,15 @@ def settle(vertices: ArrayLike, triangles: ArrayLike) -> Settled:
     defect = find_defect(points, corners)
     if defect:
         whole = np.arange(len(corners))
-        return Settled(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
-    found: list[Settled] = []
+        return RepairedMesh(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
+    found: list[RepairedMesh] = []
     for candidate in _candidates(points, corners):
         solid = as_manifold(candidate.vertices, candidate.triangles)
         if accepted(solid):
             found.append(_oriented(candidate))
             if not found[-1].problem and _faithful(solid, candidate):
                 return found[-1]
-    solids = [settled for settled in found if not settled.problem]
+    solids = [repaired for repaired in found if not repaired.problem]
     return (solids or found or [_refused(_tidied(points, corners))])[0]
 
 
@@ -147,7 +145,7 @@ def _without(mesh: _Candidate, dropped: Bools, what: str) -> _Candidate:
     notes = mesh.notes
     if dropped.any():
         notes = (*notes, f"dropped {_count(int(dropped.sum()), what, what + 's')}")
-    vertices, triangles = compact(mesh.vertices, mesh.triangles[~dropped])
+    vertices, triangles = drop_unused_vertices(mesh.vertices, mesh.triangles[~dropped])
     return _Candidate(vertices, triangles, mesh.kept[~dropped], notes)
 
 
@@ -176,7 +174,7 @@ def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
     return bool(abs(solid.volume() - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
 
 
-def _oriented(mesh: _Candidate) -> Settled:
+def _oriented(mesh: _Candidate) -> RepairedMesh:
     """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
     shells = measure_shells(mesh.vertices, mesh.triangles)
     if shells.crowded.sum() > MOST_UNITED:
@@ -196,10 +194,10 @@ def _oriented(mesh: _Candidate) -> Settled:
     return _settled(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
 
 
-def _settled(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> Settled:
+def _settled(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> RepairedMesh:
     triangles = mesh.triangles.astype(np.int32)
     measured = 0.0 if problem else volume
-    return Settled(mesh.vertices, triangles, measured, mesh.notes, problem, mesh.kept, turned)
+    return RepairedMesh(mesh.vertices, triangles, measured, mesh.notes, problem, mesh.kept, turned)
 
 
 def _least_volume(mesh: _Candidate) -> float:
@@ -215,7 +213,7 @@ def _turning_note(whole: bool, count: int, shells: int) -> str:
     )
 
 
-def _refused(mesh: _Candidate) -> Settled:
+def _refused(mesh: _Candidate) -> RepairedMesh:
     problem = _describe_edges(mesh) if len(mesh.triangles) else "every triangle is without area"
     return _settled(mesh, 0.0, problem, np.zeros(len(mesh.triangles), np.bool_))
 

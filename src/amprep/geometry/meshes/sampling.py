@@ -8,7 +8,7 @@ from amprep.arrays import Bools, Floats, Int32s, Int64s
 from amprep.geometry.overhangs.regions import Overhangs
 
 
-class Samples(NamedTuple):
+class OverhangSamples(NamedTuple):
     """Points ``(n, 3)`` mm on what needs support, and the region ``(n,)`` of each.
 
     `inner` tells the points of a lattice over the faces, each of which stands for the same area in plan.
@@ -19,7 +19,9 @@ class Samples(NamedTuple):
     inner: Bools
 
 
-def sample_overhangs(vertices: Floats, triangles: Int32s, overhangs: Overhangs, spacing: float) -> Samples:
+def sample_overhangs(
+    vertices: Floats, triangles: Int32s, overhangs: Overhangs, spacing: float
+) -> OverhangSamples:
     """Return points on everything that needs support: lattices on faces, their rims, edges, tips.
 
     Every point of a face lies within ``spacing / sqrt(2)`` of a sample in plan, every point of a rim or an
@@ -38,7 +40,9 @@ def sample_overhangs(vertices: Floats, triangles: Int32s, overhangs: Overhangs, 
         overhangs.tip_region,
     ]
     points = np.concatenate([inner, rims, edges, vertices[overhangs.tips]])
-    return Samples(points, np.concatenate(region).astype(np.int64), np.arange(len(points)) < len(inner))
+    return OverhangSamples(
+        points, np.concatenate(region).astype(np.int64), np.arange(len(points)) < len(inner)
+    )
 
 
 def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Int64s]:

@@ -13,7 +13,7 @@ Wish = Callable[[Floats, Int64s], Bools]
 """Called with corners ``(m, 3, 3)`` and the original triangle of each ``(m,)``; says which are to be split."""
 
 
-class Refined(NamedTuple):
+class SubdividedMesh(NamedTuple):
     """A finer mesh of the same surface; `parent` ``(m,)`` is the original triangle of each."""
 
     vertices: Floats
@@ -21,14 +21,16 @@ class Refined(NamedTuple):
     parent: Int64s
 
 
-def refine(vertices: Floats, triangles: Int32s, wish: Wish) -> Refined:
+def subdivide(vertices: Floats, triangles: Int32s, wish: Wish) -> SubdividedMesh:
     """Halve the longest edges of triangles until none is wanted finer, or there are 2 million.
 
     A triangle next to a halved edge is split with it, its own longest edge first, so the mesh keeps neither
     gaps nor corners on edges, and angles stay bounded (M.-C. Rivara 1984, doi 10.1002/nme.1620200412). New
     vertices come after the old ones.
     """
-    refined = Refined(np.asarray(vertices, np.float64), np.asarray(triangles), np.arange(len(triangles)))
+    refined = SubdividedMesh(
+        np.asarray(vertices, np.float64), np.asarray(triangles), np.arange(len(triangles))
+    )
     while len(refined.triangles) < MOST_TRIANGLES:
         wanted = wish(refined.vertices[refined.triangles], refined.parent)
         if not wanted.any():
@@ -37,7 +39,7 @@ def refine(vertices: Floats, triangles: Int32s, wish: Wish) -> Refined:
     return refined
 
 
-def _halved(mesh: Refined, wanted: Bools) -> Refined:
+def _halved(mesh: SubdividedMesh, wanted: Bools) -> SubdividedMesh:
     """Split the longest edges of the wanted triangles, and what has to be split with them."""
     corners = _longest_first(mesh)
     ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2).astype(np.int64)
@@ -53,10 +55,10 @@ def _halved(mesh: Refined, wanted: Bools) -> Refined:
     middle[chosen] = len(mesh.vertices) + np.arange(len(chosen))
     points = np.concatenate([mesh.vertices, (mesh.vertices[start] + mesh.vertices[end]) / 2])
     pieces, parent = _pieces(corners, middle[edge], mesh.parent)
-    return Refined(points, pieces.astype(np.int32), parent)
+    return SubdividedMesh(points, pieces.astype(np.int32), parent)
 
 
-def _longest_first(mesh: Refined) -> Int32s:
+def _longest_first(mesh: SubdividedMesh) -> Int32s:
     """Return the corners of each triangle, turned so that its longest edge leads from the first to the second."""
     points = mesh.vertices[mesh.triangles]
     length = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=2)

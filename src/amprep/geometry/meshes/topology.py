@@ -18,7 +18,7 @@ def first_of_equal_rows(rows: NDArray[np.generic]) -> Int64s:
     return first
 
 
-def merge_equal(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
+def merge_equal_vertices(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     """Make vertices at equal places one, and forget those no triangle uses; the order stays.
 
     Parameters
@@ -31,10 +31,10 @@ def merge_equal(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     vertices, triangles
         The least list of vertices, and as many triangles as before.
     """
-    return compact(vertices, first_of_equal_rows(vertices)[triangles])
+    return drop_unused_vertices(vertices, first_of_equal_rows(vertices)[triangles])
 
 
-def compact(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
+def drop_unused_vertices(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
     """Forget vertices that no triangle uses; the order stays."""
     used = np.zeros(len(vertices), np.bool_)
     used[triangles] = True

@@ -4,14 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.kernels.meshes import clip_columns as kernels
 
 WELD_LATTICE = 1e-4
 """mm; cells that conform agree to about 1e-12 mm, a build file to 3e-5 mm, the finest wall is far thicker."""
 
 
-def kept(points: Floats) -> Floats:
+def round_as_stored(points: Floats) -> Floats:
     """Round coordinates to what 3MF keeps: six decimals, then float32; what is kept already stays."""
     return np.asarray(np.round(points, 6).astype(np.float32) + np.float32(0.0), np.float64)
 
@@ -41,7 +41,7 @@ def merge_vertices(
     points, triangles
         As many triangles as before, in their order; the first of each set of vertices stays.
     """
-    rounded = kept(points)
+    rounded = round_as_stored(points)
     keys = np.round(points / lattice).astype(np.int64) if lattice else rounded.view(np.int64)
     label, count = label_equal_rows(keys)
     merged = np.empty((count, 3))
@@ -82,4 +82,4 @@ def weld(points: Floats, triangles: Int64s, *, lattice: float = WELD_LATTICE) ->
         As for `merge_vertices`.
     """
     merged, corners = merge_vertices(points, triangles, lattice=lattice)
-    return compact(merged, corners[cancel_opposite(corners)])
+    return drop_unused_vertices(merged, corners[cancel_opposite(corners)])

@@ -32,7 +32,7 @@ _GRID, _MOST_CELLS = 128, 4_000_000
 """Cells along the longest side of the grid that tells what is near a surface; how many are marked at once."""
 
 
-class Samples(NamedTuple):
+class BeamSamples(NamedTuple):
     """Places along beams, end to end, at most `step` radii apart.
 
     Attributes
@@ -49,7 +49,7 @@ class Samples(NamedTuple):
     share: Floats
 
 
-def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> Samples:
+def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> BeamSamples:
     """Return places along beams, sorted by strut and share.
 
     Parameters
@@ -67,7 +67,7 @@ def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> Sam
     share = place / np.maximum(count - 1, 1)[strut]
     centres = start[strut] + share[:, None] * (end - start)[strut]
     radius = radii[strut, 0] + share * (radii[strut, 1] - radii[strut, 0])
-    return Samples(centres, radius, strut, share)
+    return BeamSamples(centres, radius, strut, share)
 
 
 def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) -> Bools:
@@ -117,7 +117,7 @@ def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints
     return near
 
 
-class Carried(NamedTuple):
+class GroundedBeams(NamedTuple):
     """What stands: ``(m,)`` struts, ``(t,)`` triangles of the solids; and how many pieces hang in the air."""
 
     struts: Bools
@@ -125,14 +125,14 @@ class Carried(NamedTuple):
     hanging: int
 
 
-def carried(
+def find_grounded(
     nodes: Floats,
     struts: Ints,
     radii: Floats,
     points: Floats,
     triangles: Ints,
     rests: Callable[[Floats], Bools],
-) -> Carried:
+) -> GroundedBeams:
     """Tell which beams and solids stand on the plate, or on one another down to it.
 
     Parameters
@@ -161,7 +161,7 @@ def carried(
     stands = label == label[plate]
     loose = np.concatenate([used, len(nodes) + np.arange(pieces)])
     hanging = len(np.unique(label[loose[~stands[loose]]]))
-    return Carried(stands[struts[:, 0]], stands[len(nodes) + piece], hanging)
+    return GroundedBeams(stands[struts[:, 0]], stands[len(nodes) + piece], hanging)
 
 
 def _touches(nodes: Floats, radius: Floats, used: Ints, points: Floats, triangles: Ints) -> Ints:

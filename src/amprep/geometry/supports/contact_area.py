@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from amprep.arrays import MeshArrays
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
-from amprep.geometry.meshes.topology import merge_equal
+from amprep.geometry.meshes.topology import merge_equal_vertices
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -30,7 +30,7 @@ def measure_contact(support: MeshArrays, part: MeshArrays) -> Contact:
     corners = contact_corners(*(as_manifold(*mesh) for mesh in (support, part)))
     if not len(corners):
         return Contact(0.0, 0)
-    points, own = merge_equal(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+    points, own = merge_equal_vertices(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
     sides = points[own[:, 1:]] - points[own[:, :1]]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2.0
     return Contact(float(area), label_shells(own, len(points))[0])

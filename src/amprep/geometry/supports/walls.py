@@ -24,7 +24,7 @@ _MOST_CELLS, _LONGEST, _FINEST = 2_000_000, 2000, 0.5
 """Cells of a grid over all and along its longest side; mm of a cell."""
 
 
-class Walls(NamedTuple):
+class PartWalls(NamedTuple):
     """Faces that look sideways.
 
     Attributes
@@ -38,14 +38,14 @@ class Walls(NamedTuple):
     corners: Floats
     outward: Floats
 
-    def chosen(self, keep: Bools) -> "Walls":
+    def chosen(self, keep: Bools) -> "PartWalls":
         """Return only the walls that `keep` ``(n,)`` names."""
-        return Walls(self.corners[keep], self.outward[keep])
+        return PartWalls(self.corners[keep], self.outward[keep])
 
 
 def walls_of(
     vertices: Floats, triangles: Ints, held: Overhangs, overlap: float, *, stood_on: bool = False
-) -> Walls:
+) -> PartWalls:
     """Return all faces of a mesh that are not level, but for what supports run up to.
 
     Parameters
@@ -70,7 +70,7 @@ def walls_of(
     clipped, owner = _clipped(vertices[triangles[cut]], begins[cut], overlap)
     number = np.concatenate([np.flatnonzero(keep & ~cut), np.flatnonzero(cut)[owner]])
     corners = np.concatenate([vertices[triangles[keep & ~cut]], clipped])
-    return Walls(corners, normal[number, :2] / aside[number, None])
+    return PartWalls(corners, normal[number, :2] / aside[number, None])
 
 
 def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDArray[np.int64]]:
@@ -98,7 +98,7 @@ def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDA
     return np.array(found).reshape(-1, 3, 3), np.array(owner, np.int64)
 
 
-class Occupied(NamedTuple):
+class OccupancyGrid(NamedTuple):
     """The cells of a grid that boxes lie in.
 
     Attributes
@@ -130,10 +130,10 @@ class Occupied(NamedTuple):
         return np.asarray(found > 0)
 
 
-def occupied(lo: Floats, hi: Floats) -> Occupied:
+def occupancy_of(lo: Floats, hi: Floats) -> OccupancyGrid:
     """Lay a grid over boxes from `lo` to `hi` ``(k, 3)`` mm, and mark the cells that they lie in."""
     if not len(lo):
-        return Occupied(np.zeros(3), 1.0, np.zeros((2, 2, 2), np.int64))
+        return OccupancyGrid(np.zeros(3), 1.0, np.zeros((2, 2, 2), np.int64))
     origin = lo.min(axis=0)
     extent = np.maximum(hi.max(axis=0) - origin, _FINEST)
     side = max(float(np.cbrt(extent.prod() / _MOST_CELLS)), float(extent.max()) / _LONGEST, _FINEST)
@@ -148,10 +148,10 @@ def occupied(lo: Floats, hi: Floats) -> Occupied:
     covers = change.reshape(shape + 1).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)[:-1, :-1, :-1]
     before = np.zeros(shape + 1, np.int64)
     before[1:, 1:, 1:] = (covers > 0.5).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
-    return Occupied(origin, side, before)
+    return OccupancyGrid(origin, side, before)
 
 
-def beside(walls: Walls, gap: float) -> list["Manifold"]:
+def spaces_beside(walls: PartWalls, gap: float) -> list["Manifold"]:
     """Return the space nearer than `gap` mm to walls on their outer side, measured sideways; one solid for each."""
     from manifold3d import Manifold
 
@@ -165,7 +165,7 @@ def beside(walls: Walls, gap: float) -> list["Manifold"]:
     return [Manifold.hull_points(np.ascontiguousarray(each.reshape(-1, 3))) for each in points]
 
 
-def wall_distance(points: Floats, walls: Walls, reach: float, slack: float) -> tuple[Floats, Floats]:
+def wall_distance(points: Floats, walls: PartWalls, reach: float, slack: float) -> tuple[Floats, Floats]:
     """Return how far each point ``(n, 3)`` is from the nearest wall on whose outer side it lies, sideways.
 
     Points less than `slack` mm out of a wall's plane are on neither side of it, and walls end `slack` before their

@@ -75,7 +75,7 @@ def _clip(points, count, axis, bound, above, out):
 
 
 @njit(cache=True)
-def clip_into_columns(corners, grid, shape, square_start, square_column, lo, hi, slack, points, start, owner):
+def clip_to_columns(corners, grid, shape, square_start, square_column, lo, hi, slack, points, start, owner):
     """Cut triangles that look down into the convex patches that lie in columns.
 
     Parameters

@@ -88,7 +88,7 @@ def _corners(triangles, i):
 
 
 @njit(cache=True)
-def least_gap(triangles, others, widest, limit):
+def least_distance(triangles, others, widest, limit):
     """Return the least distance of two sets of triangles ``(n, 3, 3)``, at most `limit`.
 
     When they cross, it is less the depth. `others` are sorted by their least x; `widest` is the greatest

@@ -168,7 +168,7 @@ def _seen(points, first, last, rise, x, y, others, start, box, other_rise):
 
 
 @njit(cache=True)
-def find_seen(points, start, rise, others, other_start, other_rise, spacing, seen):
+def find_visible(points, start, rise, others, other_start, other_rise, spacing, seen):
     """Find patches that are the lowest somewhere: near a corner, in the middle or at a point of a lattice.
 
     Parameters

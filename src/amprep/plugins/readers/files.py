@@ -10,7 +10,7 @@ import numpy as np
 
 from amprep.arrays import Floats, Int64s
 from amprep.errors import InputError
-from amprep.geometry.meshes.topology import merge_equal
+from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.plugins.readers.limits import check_gltf, check_off, check_ply, read_bounded
@@ -109,7 +109,7 @@ def _merged(mesh: _Named, path: Path) -> Mesh:
         raise InputError(f"{path}: has NaN or infinite coordinates; export it again")
     if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.vertices):
         raise InputError(f"{path}: a triangle names a vertex that does not exist; the file is damaged")
-    vertices, triangles = merge_equal(mesh.vertices, mesh.triangles)
+    vertices, triangles = merge_equal_vertices(mesh.vertices, mesh.triangles)
     return Mesh(vertices, triangles.astype(np.int32))
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.geometry.merging.union import finish
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports import footprints as bases
 from amprep.model import CONTACT_TOLERANCE, BuildVolume, Mesh, PlacedPart
 from amprep.model.contacts import Base

@@ -7,14 +7,14 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.repair import as_manifold
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.supports.beams import (
     DIRECTIONS,
-    Carried,
-    Samples,
+    BeamSamples,
+    GroundedBeams,
     balls_too_deep,
-    carried,
+    find_grounded,
     sample,
     sphere,
 )
@@ -47,7 +47,7 @@ _SLIVER = 1e-3
 _SIDEWAYS = DIRECTIONS[np.abs(DIRECTIONS[:, 2]) < 1e-9]
 
 
-def keep_out(
+def clip_beams(
     beams: Beams,
     parts: Sequence[PlacedPart],
     held: tuple[int, ...],
@@ -85,7 +85,7 @@ def keep_out(
     return _clear_stretches(beams, places.strut, places.share, blocked)
 
 
-def _out_of_bounds(places: Samples, space: BuildVolume) -> Bools:
+def _out_of_bounds(places: BeamSamples, space: BuildVolume) -> Bools:
     """Tell which balls reach into a forbidden zone or out of a round build volume; a box cuts them off."""
     centres, radii = places.centres, places.radii
     found = np.zeros(len(centres), np.bool_)
@@ -167,7 +167,7 @@ def lattice_of(
             found |= ((vertices >= low) & (vertices <= high)).all(axis=1)
         return np.asarray(found)
 
-    stands = carried(beams.nodes, struts, beams.radii, points, triangles, rests)
+    stands = find_grounded(beams.nodes, struts, beams.radii, points, triangles, rests)
     if not stands.struts.any() or _loses(stands, points, triangles, whole):
         return None
     kept = struts[stands.struts]
@@ -176,18 +176,18 @@ def lattice_of(
         np.round(beams.nodes[used], 6),
         local.reshape(-1, 2).astype(np.int32),
         np.round(beams.radii[stands.struts], 6),
-        Mesh(*compact(points, triangles[stands.triangles])),
+        Mesh(*drop_unused_vertices(points, triangles[stands.triangles])),
         whole if coarse is None else coarse,
         np.array([np.zeros(3), space.size]),
     )
 
 
-def _loses(stands: Carried, points: Floats, triangles: np.ndarray, whole: Mesh) -> bool:
+def _loses(stands: GroundedBeams, points: Floats, triangles: np.ndarray, whole: Mesh) -> bool:
     """Tell whether solids hang on nothing that the whole body has: as one solid, something carries them there."""
     hanging = triangles[~stands.triangles]
     if not len(hanging):
         return False
-    lost = as_manifold(*compact(points, hanging))
+    lost = as_manifold(*drop_unused_vertices(points, hanging))
     return any(
         piece.volume() > _SLIVER
         and bool(inside(_middles(piece), whole.vertices, whole.triangles.astype(np.int64)).any())

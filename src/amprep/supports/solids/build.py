@@ -8,14 +8,14 @@ from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import Emitted, sort_out
 from amprep.errors import JobError
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop, SupportBody
-from amprep.model.build import MOST_STOOD_IN
+from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import Base, Connector
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.bases import make_bases, with_base
-from amprep.supports.solids.beams import keep_out, lattice_of, of_group, prisms
-from amprep.supports.solids.connectors import Ways, find_ways, foot_boxes
-from amprep.supports.solids.drain_holes import drained
-from amprep.supports.solids.keep_out import Clearance, Obstacles
+from amprep.supports.solids.beams import clip_beams, lattice_of, of_group, prisms
+from amprep.supports.solids.connectors import ColumnSurfaces, find_column_surfaces, foot_boxes
+from amprep.supports.solids.drain_holes import cut_drain_holes
+from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.unite_group import sheet_of, solid_of
 
@@ -88,9 +88,9 @@ def build_supports(
     emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
     if emitted.sheet.any():
         _require_no_feet(layout, base)
-    clearance = Clearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
-    ways, obstacles = find_ways(layout, layout.meshes), Obstacles(parts, clearance)
-    work = _Work(layout, parts, ways, obstacles, overlap, connector, gap)
+    clearance = WallClearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
+    surfaces, obstacles = find_column_surfaces(layout, layout.meshes), PartObstacles(parts, clearance)
+    work = _SupportBuilder(layout, parts, surfaces, obstacles, overlap, connector, gap)
     solids, names = [], []
     for group, held in enumerate(layout.group_parts):
         if stop.cancelled.is_set():
@@ -103,7 +103,7 @@ def build_supports(
     for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
         held = layout.group_parts[group]
         whole = with_base(solid, stand)
-        sheet = sheet_of(group, emitted, layout, ways, overlap=overlap) if emitted.sheet.any() else None
+        sheet = sheet_of(group, emitted, layout, surfaces, overlap=overlap) if emitted.sheet.any() else None
         if whole is not None and len(whole.triangles):
             lattice = None
             if bare is not None and space is not None:
@@ -145,13 +145,13 @@ def _require_no_feet(layout: SupportLayout, base: Base) -> None:
         )
 
 
-class _Work(NamedTuple):
+class _SupportBuilder(NamedTuple):
     """What every support group is made from."""
 
     layout: SupportLayout
     parts: tuple[PlacedPart, ...]
-    ways: Ways
-    obstacles: Obstacles
+    surfaces: ColumnSurfaces
+    obstacles: PartObstacles
     overlap: float
     connector: Connector
     gap: float
@@ -162,7 +162,7 @@ class _Work(NamedTuple):
             group,
             emitted,
             self.layout,
-            self.ways,
+            self.surfaces,
             self.obstacles,
             overlap=self.overlap,
             connector=self.connector,
@@ -170,12 +170,12 @@ class _Work(NamedTuple):
         )
 
     def drained_solid(self, group: int, emitted: Emitted) -> Mesh | None:
-        """Return the solid of a group, with ways out for powder where the cell promises them."""
+        """Return the solid of a group, with surfaces out for powder where the cell promises them."""
         solid, hole = self.solid(group, emitted), emitted.cells.hole
         if solid is None or hole == 0.0:
             return solid
         held = [self.parts[part].mesh for part in self.layout.group_parts[group]]
-        return drained(
+        return cut_drain_holes(
             solid, held, hole, foot_boxes(self.layout, group, max(self.overlap, CONTACT_TOLERANCE))
         )
 
@@ -185,9 +185,9 @@ class _Work(NamedTuple):
         """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
         overlap, held = max(self.overlap, CONTACT_TOLERANCE), self.layout.group_parts[group]
         mine = of_group(bare.cells, group)
-        beams = keep_out(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
+        beams = clip_beams(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
         coarse = None
-        if len(whole.triangles) > MOST_STOOD_IN:
+        if len(whole.triangles) > MAX_STAND_IN_TRIANGLES:
             coarse = with_base(self.solid(group, sort_out(bare.request, prisms(bare.request))), stand)
         solids = with_base(self.solid(group, bare, on_beams=True), stand)
         return lattice_of(beams, solids, whole, coarse, foot_boxes(self.layout, group, overlap), space)

@@ -1,4 +1,4 @@
-"""Columns above the red squares of a layout, and the pieces of the parts' surfaces in them."""
+"""ConnectorColumns above the red squares of a layout, and the pieces of the parts' surfaces in them."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,7 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, MeshArrays
-from amprep.geometry.connectors.columns import Columns, Patches, clip_into, held_corners, join_patches
+from amprep.geometry.connectors.columns import (
+    ConnectorColumns,
+    Patches,
+    clip_to_columns,
+    held_corners,
+    join_patches,
+)
 from amprep.geometry.connectors.connect import connect
 from amprep.model import Mesh
 from amprep.supports.layout import SupportLayout
@@ -15,7 +21,7 @@ WIDEST_BAND = 1.0
 """mm; how wide the level band below a knife edge and the square below a tip may get."""
 
 
-class Ways(NamedTuple):
+class ColumnSurfaces(NamedTuple):
     """What connectors have to go by.
 
     Attributes
@@ -28,13 +34,13 @@ class Ways(NamedTuple):
         ``(n,)`` whether each patch of `surface` belongs to the part that its column holds.
     """
 
-    columns: Columns
+    columns: ConnectorColumns
     held: Patches
     surface: Patches
     own: Bools
 
 
-def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
+def find_column_surfaces(layout: SupportLayout, meshes: Sequence[Mesh]) -> ColumnSurfaces:
     """Cut the overhangs and all surfaces of the parts to the columns above connected red squares."""
     columns = _columns(layout)
     width = min(layout.frame.pitch, WIDEST_BAND)
@@ -46,9 +52,9 @@ def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
         added = -1 - np.arange(len(corners) - len(needs.faces))
         mine = layout.red_part == part
         number = np.concatenate([first + needs.faces, added]).astype(np.int64)
-        held.append(clip_into(columns, corners, number, layout.connected & mine))
+        held.append(clip_to_columns(columns, corners, number, layout.connected & mine))
         number = first + np.arange(len(mesh.triangles))
-        surface.append(clip_into(columns, mesh.vertices[mesh.triangles], number, layout.connected))
+        surface.append(clip_to_columns(columns, mesh.vertices[mesh.triangles], number, layout.connected))
         first += len(mesh.triangles)
     count = len(layout.red)
     all_surface = join_patches(surface, count)
@@ -56,17 +62,17 @@ def find_ways(layout: SupportLayout, meshes: Sequence[Mesh]) -> Ways:
     own = layout.red_part[all_surface.owner[:, 0]] == np.searchsorted(
         ends, all_surface.owner[:, 1], side="right"
     )
-    return Ways(columns, join_patches(held, count), all_surface, own)
+    return ColumnSurfaces(columns, join_patches(held, count), all_surface, own)
 
 
-def _columns(layout: SupportLayout) -> Columns:
+def _columns(layout: SupportLayout) -> ConnectorColumns:
     frame = layout.frame
     plane, y, x = layout.red.T.astype(np.int64)
     size = (frame.pitch, frame.pitch, frame.step)
     low = frame.origin + np.column_stack([x, y, plane]) * size
     high = frame.origin + np.column_stack([x + 1, y + 1, plane + layout.red_rise]) * size
     grid = np.array([frame.origin[0], frame.origin[1], frame.pitch])
-    return Columns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])
+    return ConnectorColumns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])
 
 
 _DOWN = np.array([1.0, 1.0, -1.0])
@@ -86,7 +92,7 @@ def make_feet(
     patches = []
     for part in np.unique(own[:, 3]).tolist():
         corners = (meshes[part].vertices * _DOWN)[meshes[part].triangles[:, ::-1]]
-        patches.append(clip_into(columns, corners, np.arange(len(corners)), own[:, 3] == part))
+        patches.append(clip_to_columns(columns, corners, np.arange(len(corners)), own[:, 3] == part))
     surface = join_patches(patches, len(own))
     base, lid = columns.lo[:, 2] - seat, columns.hi[:, 2] + layout.frame.step
     mine = np.ones(len(surface.owner), np.bool_)
@@ -103,7 +109,7 @@ def foot_boxes(layout: SupportLayout, group: int, overlap: float) -> tuple[Float
     return lo - (0.0, 0.0, overlap), hi
 
 
-def _foot_columns(layout: SupportLayout, feet: np.ndarray) -> Columns:
+def _foot_columns(layout: SupportLayout, feet: np.ndarray) -> ConnectorColumns:
     """Return the mirrored spaces that the feet may pass."""
     frame = layout.frame
     plane, y, x, _, deep = feet.T.astype(np.int64)
@@ -111,4 +117,4 @@ def _foot_columns(layout: SupportLayout, feet: np.ndarray) -> Columns:
     low = frame.origin + np.column_stack([x, y, -plane]) * size
     high = frame.origin + np.column_stack([x + 1, y + 1, deep - plane]) * size
     grid = np.array([frame.origin[0], frame.origin[1], frame.pitch])
-    return Columns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])
+    return ConnectorColumns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 from amprep.arrays import Floats
 from amprep.geometry.merging.union import arrays_of, evaluated, finish
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.powder.drain_holes import find_drains
 from amprep.model import Mesh
-from amprep.supports.solids.keep_out import standing_only
+from amprep.supports.solids.keep_out import drop_floating
 
 _ROUNDS = 4
 """A way may end in another pocket's way."""
@@ -16,7 +16,7 @@ _CRUMB = 1e-3
 """mm3; more than that must not come to hang in the air because of a way out."""
 
 
-def drained(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats, Floats]) -> Mesh:
+def cut_drain_holes(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats, Floats]) -> Mesh:
     """Return a support with ways out for a ball of diameter `hole` mm, wherever short straight ones exist.
 
     Parameters
@@ -37,7 +37,7 @@ def drained(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats
             break
         cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in drains]
         opened = evaluated(whole - Manifold.batch_boolean(cuts, OpType.Add))
-        stands = Mesh(*standing_only(*arrays_of(opened), boxes))
+        stands = Mesh(*drop_floating(*arrays_of(opened), boxes))
         if stands.signed_volume < opened.volume() - _CRUMB:
             break
         whole, arrays, found = opened, (stands.vertices, stands.triangles), True

@@ -8,11 +8,11 @@ import numpy as np
 
 from amprep.arrays import Floats, Ints
 from amprep.geometry.merging.union import arrays_of, union
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.supports.contact_area import contact_corners
-from amprep.geometry.supports.walls import beside, occupied, walls_of
+from amprep.geometry.supports.walls import occupancy_of, spaces_beside, walls_of
 from amprep.model import CONTACT_TOLERANCE, PlacedPart
 from amprep.supports.layout import SupportLayout
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 
-class Clearance:
+class WallClearance:
     """The walls of all parts of a build, with the distance that supports keep from them.
 
     Routing closes what is nearer than the gap, except where connectors run up and right below them.
@@ -34,23 +34,23 @@ class Clearance:
             for part, (mesh, needs) in enumerate(zip(layout.meshes, layout.overhangs, strict=True))
         ]
 
-    def keep(self, solid: "Manifold") -> "Manifold":
+    def offset(self, solid: "Manifold") -> "Manifold":
         """Return what of a solid is as far from all walls as asked, measured sideways."""
         from manifold3d import Manifold, OpType
 
         points, triangles = arrays_of(solid)
         corners = points[triangles]
-        taken = occupied(corners.min(axis=1), corners.max(axis=1))
+        taken = occupancy_of(corners.min(axis=1), corners.max(axis=1))
         cutters: list[Manifold] = []
         for walls in self._walls:
-            cutters += beside(walls.chosen(taken.near(walls.corners, self._gap)), self._gap)
+            cutters += spaces_beside(walls.chosen(taken.near(walls.corners, self._gap)), self._gap)
         return solid - Manifold.batch_boolean(cutters, OpType.Add) if cutters else solid
 
 
-class Obstacles:
+class PartObstacles:
     """The solid parts of a build, ready to be cut out of supports; each is made when first needed."""
 
-    def __init__(self, parts: Sequence[PlacedPart], clearance: Clearance | None = None) -> None:
+    def __init__(self, parts: Sequence[PlacedPart], clearance: WallClearance | None = None) -> None:
         self._parts = [(index, placed.mesh) for index, placed in enumerate(parts) if placed.part.is_solid]
         self._clearance = clearance
         self._solid = cache(lambda index: as_manifold(*self._arrays(index)))
@@ -59,7 +59,7 @@ class Obstacles:
         mesh = dict(self._parts)[index]
         return mesh.vertices, mesh.triangles.astype(np.int64)
 
-    def carve(
+    def subtract_from(
         self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False
     ) -> "Manifold":
         """Return what of the connectors lies at most `overlap` mm deep in parts they hold, and in no other.
@@ -77,12 +77,12 @@ class Obstacles:
             connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
         return connectors
 
-    def trim(self, solids: list["Manifold"]) -> list["Manifold"]:
+    def clip(self, solids: list["Manifold"]) -> list["Manifold"]:
         """Return finished solids, cut where they come nearer to walls of parts than the clearance."""
         if self._clearance is None or not solids:
             return solids
         whole = union(solids)
-        return [self._clearance.keep(whole)]
+        return [self._clearance.offset(whole)]
 
     def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
         """Return the triangles ``(t, 3, 3)`` mm of the parts held that lie in the connectors."""
@@ -94,7 +94,7 @@ class Obstacles:
         return np.concatenate(found)
 
 
-def standing_only(
+def drop_floating(
     points: Floats, triangles: Ints, feet: tuple[Floats, Floats] | None = None
 ) -> tuple[Floats, Ints]:
     """Return the pieces of a closed mesh that reach the plate or a foot, with the voids inside them.
@@ -118,7 +118,7 @@ def standing_only(
     for void in np.flatnonzero(volume < 0.0):
         around = (volume > 0.0) & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
         stays[void] = (stays & around).any()
-    return compact(points, triangles[stays[shell]])
+    return drop_unused_vertices(points, triangles[stays[shell]])
 
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
 from amprep.errors import JobError
-from amprep.geometry.connectors.columns import Columns
+from amprep.geometry.connectors.columns import ConnectorColumns
+from amprep.geometry.connectors.perforation import windows
 from amprep.geometry.connectors.sites import find_sites
-from amprep.geometry.connectors.tips import Profile, prisms, tips
-from amprep.geometry.connectors.windows import windows
+from amprep.geometry.connectors.tips import TipProfile, prisms, tips
 from amprep.geometry.merging.union import union
 from amprep.model.contacts import Connector
 from amprep.supports.layout import SupportLayout
@@ -39,14 +39,14 @@ manifold3d leaves folds there, and loses volume when it reads them again."""
 _WHOLE = 1.0 - 1e-6
 
 
-class Shaped(NamedTuple):
+class ShapedConnectors(NamedTuple):
     """Connectors of another kind, and what has to go from the cells below so that tips have room."""
 
     connectors: "Manifold"
     notch: "Manifold"
 
 
-def may_sink(layout: SupportLayout, wish: Connector, *, most: float) -> Floats:
+def sink_depths(layout: SupportLayout, wish: Connector, *, most: float) -> Floats:
     """Return how far connectors may reach below each red square, ``(m,)`` mm, so that tips have their height.
 
     At most `most` mm, and as far as they ask for where all cells below are upright; a quarter of a step where one
@@ -69,15 +69,15 @@ def may_sink(layout: SupportLayout, wish: Connector, *, most: float) -> Floats:
     )
 
 
-def shaped(
+def shape_connectors(
     connectors: "Manifold",
     contact: Floats,
-    columns: Columns,
+    columns: ConnectorColumns,
     base: Floats,
     sink: Floats,
     wish: Connector,
     overlap: float,
-) -> Shaped:
+) -> ShapedConnectors:
     """Return what is left of connectors that are to be of another kind; they still end in the true surface.
 
     Parameters
@@ -114,24 +114,24 @@ def shaped(
     if wish.window:
         for each in windows(columns, _room(contact, columns, depth), wish.window):
             connectors -= each
-    return Shaped(connectors, notch)
+    return ShapedConnectors(connectors, notch)
 
 
-def _profile(wish: Connector, side: float) -> tuple[int, Profile | None]:
+def _profile(wish: Connector, side: float) -> tuple[int, TipProfile | None]:
     """Return how many tips a square has each way, and their shape; None where the whole square runs up."""
     if wish.kind == "full" and wish.neck:
         # walls of 45 degrees above the neck, so that they can be printed
         width = min(WIDEST * side, wish.neck + 2.0 * wish.neck_height)
-        return 1, _necked(Profile(width, 2.0 * wish.neck_height, wish.neck, wish.neck_height, False))
+        return 1, _necked(TipProfile(width, 2.0 * wish.neck_height, wish.neck, wish.neck_height, False))
     if wish.kind not in ("teeth", "point"):
         return 1, None
     apart = wish.pitch or (TOOTH_PITCH if wish.kind == "teeth" else side)
     count = max(1, round(side / apart))
     width = min(wish.width, WIDEST * side / count)
-    return count, _necked(Profile(width, wish.height, wish.neck, wish.neck_height, wish.kind == "point"))
+    return count, _necked(TipProfile(width, wish.height, wish.neck, wish.neck_height, wish.kind == "point"))
 
 
-def _necked(profile: Profile) -> Profile:
+def _necked(profile: TipProfile) -> TipProfile:
     if profile.neck >= profile.width:
         raise JobError(
             f"cells.neck_mm = {profile.neck:g} has to be below the width at the part, which is {profile.width:.3g} mm "
@@ -140,7 +140,7 @@ def _necked(profile: Profile) -> Profile:
     return profile
 
 
-def _room(contact: Floats, columns: Columns, depth: float) -> Floats:
+def _room(contact: Floats, columns: ConnectorColumns, depth: float) -> Floats:
     """Return the least height of the contact over each red square, less `depth`; 0 where it covers not all of it."""
     sites = find_sites(contact, columns, 1, 0.0)
     room = np.zeros(len(columns.lo))

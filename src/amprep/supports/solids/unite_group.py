@@ -10,14 +10,14 @@ from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
 from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
 from amprep.geometry.merging.union import FILE_STEP, finish, union
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
 from amprep.model.contacts import Connector
 from amprep.supports.layout import SupportLayout
-from amprep.supports.solids.connectors import Ways, foot_boxes, make_feet
+from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
 from amprep.supports.solids.extended_cells import ends, on_red, squares
-from amprep.supports.solids.keep_out import Obstacles, standing_only
-from amprep.supports.solids.tips import Shaped, may_sink, shaped
+from amprep.supports.solids.keep_out import PartObstacles, drop_floating
+from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -30,8 +30,8 @@ def solid_of(
     group: int,
     emitted: Emitted,
     layout: SupportLayout,
-    ways: Ways,
-    obstacles: Obstacles,
+    surfaces: ColumnSurfaces,
+    obstacles: PartObstacles,
     *,
     overlap: float,
     connector: Connector,
@@ -47,49 +47,49 @@ def solid_of(
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    sink = may_sink(layout, connector, most=SEAT if on_beams else np.inf)  # beams carry by their ends
-    connectors = _connectors(red, np.maximum(seat / 2, sink), layout, ways, overlap)
+    sink = sink_depths(layout, connector, most=SEAT if on_beams else np.inf)  # beams carry by their ends
+    connectors = _connectors(red, np.maximum(seat / 2, sink), layout, surfaces, overlap)
     ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
     if extend:
         lids = [as_manifold(*mesh) for mesh in ends(emitted, mine & emitted.connector, seat, layout)]
         ups = [union(ups) ^ union(lids)] if ups and lids else []
     notch = union([])
     if ups:
-        up = obstacles.carve(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
+        up = obstacles.subtract_from(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
         contact = obstacles.contact(up, layout.group_parts[group]) if connector.is_shaped else None
         if contact is not None:
-            up, notch = _shaped(up, contact, red, seat / 2, sink, ways, connector, overlap)
+            up, notch = _shaped(up, contact, red, seat / 2, sink, surfaces, connector, overlap)
         ups = [up]
     ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
     stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
     cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(emitted, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
-    solids = obstacles.trim(cells + ups)
+    solids = obstacles.clip(cells + ups)
     if on_beams:
         return Mesh(*finish(solids)) if solids else None
     boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
-    return Mesh(*standing_only(*finish(solids), boxes)) if solids else None
+    return Mesh(*drop_floating(*finish(solids), boxes)) if solids else None
 
 
-def _feet(layout: SupportLayout, group: int, obstacles: Obstacles, overlap: float) -> list["Manifold"]:
+def _feet(layout: SupportLayout, group: int, obstacles: PartObstacles, overlap: float) -> list["Manifold"]:
     """Return the feet of a group that stands on parts, none where it does not."""
     feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=min(SEAT, layout.frame.step / 4))
     if not feet:
         return []
     stood = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
-    return [obstacles.carve(stood, layout.group_parts[group], overlap, down=True)]
+    return [obstacles.subtract_from(stood, layout.group_parts[group], overlap, down=True)]
 
 
 def _connectors(
-    red: Bools, below: Floats, layout: SupportLayout, ways: Ways, overlap: float
+    red: Bools, below: Floats, layout: SupportLayout, surfaces: ColumnSurfaces, overlap: float
 ) -> list[MeshArrays]:
     """Return connectors over red squares; they begin so many mm below them."""
-    held = ways.held.chosen(red[ways.held.owner[:, 0]])
-    base = ways.columns.lo[:, 2] - below
-    lid = ways.columns.hi[:, 2] + layout.frame.step
+    held = surfaces.held.chosen(red[surfaces.held.owner[:, 0]])
+    base = surfaces.columns.lo[:, 2] - below
+    lid = surfaces.columns.hi[:, 2] + layout.frame.step
     overlap = max(overlap, CONTACT_TOLERANCE)
-    return connect(held, ways.surface, base=base, lid=lid, overlap=overlap, own=ways.own)
+    return connect(held, surfaces.surface, base=base, lid=lid, overlap=overlap, own=surfaces.own)
 
 
 def _shaped(
@@ -98,15 +98,15 @@ def _shaped(
     red: Bools,
     below: Floats,
     sink: Floats,
-    ways: Ways,
+    surfaces: ColumnSurfaces,
     connector: Connector,
     overlap: float,
-) -> Shaped:
+) -> ShapedConnectors:
     """Return connectors of the kind asked for, where that is another than whole squares."""
-    columns = ways.columns
+    columns = surfaces.columns
     columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
     base = columns.lo[:, 2] - below[red]
-    return shaped(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
+    return shape_connectors(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
 
 
 def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
@@ -131,7 +131,7 @@ def _top_area(points: Floats, triangles: Ints) -> float:
 
 
 def sheet_of(
-    group: int, emitted: Emitted, layout: SupportLayout, ways: Ways, *, overlap: float
+    group: int, emitted: Emitted, layout: SupportLayout, surfaces: ColumnSurfaces, *, overlap: float
 ) -> Mesh | None:
     """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
     mine = emitted.of(group) & emitted.sheet
@@ -159,11 +159,11 @@ def sheet_of(
     if len(columns) > 1:
         sheets.append(
             raise_sheets(
-                ways.columns,
+                surfaces.columns,
                 np.concatenate(columns),
                 np.concatenate(segments),
-                ways.held,
-                ways.surface,
+                surfaces.held,
+                surfaces.surface,
                 overlap=max(overlap, CONTACT_TOLERANCE),
             )
         )

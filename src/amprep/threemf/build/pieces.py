@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.arrays import Floats
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.model.build import Lattice
 from amprep.model.mesh import Mesh
 from amprep.threemf.build import record
@@ -130,7 +130,7 @@ class PieceReader:
         clips = mode == Lib3MF.BeamLatticeClipMode.Inside
         room = np.array(self._mesh(clipping).bounds) if clips else None
         used, local = np.unique(struts, return_inverse=True)
-        solids = Mesh(*compact(mesh.vertices, mesh.triangles.astype(np.int64)))
+        solids = Mesh(*drop_unused_vertices(mesh.vertices, mesh.triangles.astype(np.int64)))
         return Lattice(mesh.vertices[used], local.reshape(-1, 2), radii, solids, self._mesh(stand_in), room)
 
     def _mesh(self, number: int) -> Mesh:

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 from tests.shared.examples import examples
 
 from amprep.geometry.connectors import connect as connectors
-from amprep.geometry.connectors.columns import Columns, Patches, clip_into
+from amprep.geometry.connectors.columns import ConnectorColumns, Patches, clip_to_columns
 from amprep.geometry.connectors.connect import connect, find_below
 from amprep.geometry.merging.union import union
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.meshes.manifold import as_manifold
 
 Floats = NDArray[np.float64]
 
 OVERLAP = 0.01
-ONE_COLUMN = Columns(
+ONE_COLUMN = ConnectorColumns(
     np.array([[0.0, 0.0, 0.0]]), np.array([[2.0, 2.0, 10.0]]), np.zeros((1, 2), np.int64),
     np.array([0.0, 0.0, 2.0]), (1, 1),
 )  # fmt: skip
@@ -40,7 +40,7 @@ _SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 def patches_of(layers: Sequence[Floats]) -> Patches:
     """Return all triangles of several layers, cut to the one column."""
     corners = np.concatenate(list(layers))
-    return clip_into(ONE_COLUMN, corners, np.arange(len(corners)), np.array([True]))
+    return clip_to_columns(ONE_COLUMN, corners, np.arange(len(corners)), np.array([True]))
 
 
 def volume_of(layers: Sequence[Floats]) -> float:
@@ -61,7 +61,7 @@ def test_what_lies_above_the_lowest_layer_adds_nothing():
 def test_columns_crowded_with_hidden_layers_hold_the_lowest():
     """Forty layers of 18 triangles each: most are left out as hidden, and the volume stays."""
     layers = [tiles(3, 1.0 + 0.2 * each, slope=0.05 * (each % 3)) for each in range(40)]
-    assert sum(map(len, layers)) > 10 * connectors.CROWDED
+    assert sum(map(len, layers)) > 10 * connectors.MAX_PATCHES_UNCULLED
     assert volume_of(layers) == pytest.approx(4.0 * (1.0 + OVERLAP), rel=1e-5)
 
 

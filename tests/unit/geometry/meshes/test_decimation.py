@@ -10,7 +10,7 @@ from tests.shared.examples import examples
 from amprep.checks.cells.ports import port_areas
 from amprep.geometry.cells.implicit import implicit_solid
 from amprep.geometry.merging.union import arrays_of
-from amprep.geometry.meshes.decimation import thin_out
+from amprep.geometry.meshes.decimation import decimate
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh, Template
 
@@ -21,7 +21,7 @@ def test_of_a_finely_cut_box_hardly_more_than_its_corners_stay():
     points, triangles = arrays_of(Manifold.cube([1.0, 1.0, 1.0]).refine(5))
     corner = np.isin(points, (0.0, 1.0)).all(axis=1)
     own = np.where(corner, 1 << np.cumsum(corner), 0)  # a plane for each corner, so that all of them stay
-    thin = thin_out(points, triangles, 1e-9, own)
+    thin = decimate(points, triangles, 1e-9, own)
     assert len(thin[0]) <= 12 < len(points)
     assert as_manifold(*thin).volume() == pytest.approx(1.0)
 
@@ -31,7 +31,7 @@ def test_of_a_finely_cut_box_hardly_more_than_its_corners_stay():
 def test_a_ring_stays_a_ring_of_about_its_volume(tolerance, segments):
     ring = Manifold.cylinder(0.5, 1.0, 1.0, segments) - Manifold.cylinder(0.5, 0.5, 0.5, segments)
     points, triangles = arrays_of(ring.refine(2))
-    thin = as_manifold(*thin_out(points, triangles, tolerance, FREE[: len(points)]))
+    thin = as_manifold(*decimate(points, triangles, tolerance, FREE[: len(points)]))
     assert thin.status().name == "NoError"
     assert thin.genus() == 1
     assert thin.num_tri() < len(triangles)
@@ -41,7 +41,7 @@ def test_a_ring_stays_a_ring_of_about_its_volume(tolerance, segments):
 def test_locked_vertices_stay():
     points, triangles = arrays_of(Manifold.sphere(1.0, 32))
     upper = points[:, 2] >= 0.0
-    thin, _ = thin_out(points, triangles, 0.05, upper.astype(np.int64))
+    thin, _ = decimate(points, triangles, 0.05, upper.astype(np.int64))
     assert set(map(tuple, points[upper])) <= set(map(tuple, thin))
     assert len(thin) < len(points)
 

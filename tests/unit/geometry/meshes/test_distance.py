@@ -8,12 +8,12 @@ from manifold3d import Manifold
 from tests.shared.examples import examples
 
 from amprep.geometry.meshes.distance import (
-    box_gap,
+    box_distance,
     box_solids,
     near_pairs,
-    solid_gap,
+    solid_distance,
     thickness,
-    triangle_gap,
+    triangle_distance,
 )
 
 
@@ -32,9 +32,9 @@ def test_near_pairs_are_those_whose_boxes_come_close_along_every_axis():
 
 def test_the_gap_of_boxes_is_euclidean_and_negative_by_the_depth():
     one = np.zeros((1, 3)), np.ones((1, 3))
-    assert box_gap(*one, np.full((1, 3), 2.0), np.full((1, 3), 3.0)) == pytest.approx(np.sqrt(3))
-    assert box_gap(*one, np.array([[0.75, 0.5, 0.0]]), np.full((1, 3), 3.0)) == pytest.approx(-0.25)
-    assert box_gap(*one, np.array([[1.0, 0.0, 0.0]]), np.full((1, 3), 3.0)) == 0.0
+    assert box_distance(*one, np.full((1, 3), 2.0), np.full((1, 3), 3.0)) == pytest.approx(np.sqrt(3))
+    assert box_distance(*one, np.array([[0.75, 0.5, 0.0]]), np.full((1, 3), 3.0)) == pytest.approx(-0.25)
+    assert box_distance(*one, np.array([[1.0, 0.0, 0.0]]), np.full((1, 3), 3.0)) == 0.0
 
 
 def test_a_slab_is_as_thick_as_it_is():
@@ -44,9 +44,9 @@ def test_a_slab_is_as_thick_as_it_is():
 
 def test_solids_are_as_far_apart_as_known():
     ball = Manifold.sphere(5, 128)
-    assert solid_gap(ball, ball.translate([12, 0, 0]), 5.0) == pytest.approx(2.0, abs=0.02)
-    assert solid_gap(ball, ball.translate([12, 0, 0]), 1.0) == 1.0
-    assert solid_gap(ball, ball.translate([9, 0, 0]), 1.0) < -0.1
+    assert solid_distance(ball, ball.translate([12, 0, 0]), 5.0) == pytest.approx(2.0, abs=0.02)
+    assert solid_distance(ball, ball.translate([12, 0, 0]), 1.0) == 1.0
+    assert solid_distance(ball, ball.translate([9, 0, 0]), 1.0) < -0.1
 
 
 @examples(40)
@@ -55,7 +55,7 @@ def test_triangle_gap_agrees_with_manifold3d_on_solids_that_are_apart(seed):
     rng = np.random.default_rng(seed)
     one = Manifold.hull_points(rng.uniform(0, 1, (8, 3)))
     other = Manifold.hull_points(rng.uniform(0, 1, (8, 3)) + rng.uniform(-1.5, 1.5, 3))
-    gap = triangle_gap(triangles(one), triangles(other), 2.0)
+    gap = triangle_distance(triangles(one), triangles(other), 2.0)
     if (one ^ other).is_empty():
         assert gap == pytest.approx(min(one.min_gap(other, 2.0), 2.0), abs=1e-6)
     else:
@@ -65,11 +65,11 @@ def test_triangle_gap_agrees_with_manifold3d_on_solids_that_are_apart(seed):
 def test_an_edge_through_a_triangle_crosses_it_by_the_lesser_depth():
     floor = np.array([[[-5, -5, 0], [5, -5, 0], [0, 5, 0]]], float)
     spike = np.array([[[0, 0, -0.25], [0, 0, 3], [0.1, 0, 3]]], float)
-    assert triangle_gap(floor, spike, 1.0) == pytest.approx(-0.25)
+    assert triangle_distance(floor, spike, 1.0) == pytest.approx(-0.25)
     up = np.array([0.0, 0.0, 1.0])
-    assert triangle_gap(floor, spike + 0.25 * up, 1.0) == pytest.approx(0.0, abs=1e-12)
-    assert triangle_gap(floor, spike + 0.75 * up, 1.0) == pytest.approx(0.5)
-    assert triangle_gap(floor, spike + 9.0 * up, 1.0) == 1.0
+    assert triangle_distance(floor, spike + 0.25 * up, 1.0) == pytest.approx(0.0, abs=1e-12)
+    assert triangle_distance(floor, spike + 0.75 * up, 1.0) == pytest.approx(0.5)
+    assert triangle_distance(floor, spike + 9.0 * up, 1.0) == 1.0
 
 
 def test_a_union_of_boxes_has_its_own_volume():

@@ -11,9 +11,9 @@ from amprep.checks.meshes import check_part
 from amprep.errors import MeshError
 from amprep.geometry.meshes import repair as solids_module
 from amprep.geometry.meshes import shells as shells_module
-from amprep.geometry.meshes.repair import settle
+from amprep.geometry.meshes.repair import repair_mesh
 from amprep.model import Appearance, Mesh, Part, Region
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 
 
 def arrays(solid):
@@ -46,77 +46,77 @@ def part_of(mesh, **more):
 
 
 def test_a_good_mesh_stays_bit_for_bit_as_it_is():
-    settled = settle(*BALL)
-    assert settled.vertices.tobytes() == BALL[0].tobytes()
-    assert np.array_equal(settled.triangles, BALL[1])
-    assert (settled.notes, settled.problem) == ((), "")
-    assert settled.volume == pytest.approx(BALL_VOLUME, rel=1e-12)
+    repaired = repair_mesh(*BALL)
+    assert repaired.vertices.tobytes() == BALL[0].tobytes()
+    assert np.array_equal(repaired.triangles, BALL[1])
+    assert (repaired.notes, repaired.problem) == ((), "")
+    assert repaired.volume == pytest.approx(BALL_VOLUME, rel=1e-12)
 
 
 def test_separate_corners_become_shared_vertices_and_that_is_said():
     soup = CUBE[0][CUBE[1]].reshape(-1, 3)
-    settled = settle(soup, np.arange(36).reshape(-1, 3))
-    assert len(settled.vertices) == 8
-    assert settled.volume == pytest.approx(1.0)
-    assert settled.notes == ("merged 28 vertices with others at the same place",)
+    repaired = repair_mesh(soup, np.arange(36).reshape(-1, 3))
+    assert len(repaired.vertices) == 8
+    assert repaired.volume == pytest.approx(1.0)
+    assert repaired.notes == ("merged 28 vertices with others at the same place",)
 
 
 def test_degenerate_and_repeated_triangles_are_dropped_and_that_is_said():
     extra = np.vstack([CUBE[1], [[0, 0, 1]], np.roll(CUBE[1][:1], 1, axis=1)])
-    settled = settle(CUBE[0], extra)
-    assert settled.notes == ("dropped 1 degenerate triangle", "dropped 1 repeated triangle")
-    assert np.array_equal(settled.triangles, CUBE[1])
-    assert settled.kept.tolist() == list(range(12))
+    repaired = repair_mesh(CUBE[0], extra)
+    assert repaired.notes == ("dropped 1 degenerate triangle", "dropped 1 repeated triangle")
+    assert np.array_equal(repaired.triangles, CUBE[1])
+    assert repaired.kept.tolist() == list(range(12))
 
 
 def test_vertices_no_triangle_uses_do_not_stretch_the_box():
-    settled = settle(np.vstack([CUBE[0], [[99, 99, 99]]]), CUBE[1])
-    assert settled.vertices.max() == 1.0
+    repaired = repair_mesh(np.vstack([CUBE[0], [[99, 99, 99]]]), CUBE[1])
+    assert repaired.vertices.max() == 1.0
 
 
 def test_an_inside_out_mesh_is_turned_and_that_is_said():
-    settled = settle(*inverted(BALL))
-    assert settled.notes == ("the mesh was inside out: turned",)
-    assert settled.volume == pytest.approx(BALL_VOLUME)
-    assert settled.turned.all()
-    assert np.array_equal(settled.triangles, BALL[1])
+    repaired = repair_mesh(*inverted(BALL))
+    assert repaired.notes == ("the mesh was inside out: turned",)
+    assert repaired.volume == pytest.approx(BALL_VOLUME)
+    assert repaired.turned.all()
+    assert np.array_equal(repaired.triangles, BALL[1])
 
 
 def test_one_shell_inside_out_is_turned_and_the_others_stay():
-    settled = settle(*together(BALL, scaled(inverted(BALL), 0.5, (5, 0, 0))))
-    assert settled.notes == ("1 of 2 shells was inside out: turned",)
-    assert settled.volume == pytest.approx(BALL_VOLUME * (1 + 0.125))
+    repaired = repair_mesh(*together(BALL, scaled(inverted(BALL), 0.5, (5, 0, 0))))
+    assert repaired.notes == ("1 of 2 shells was inside out: turned",)
+    assert repaired.volume == pytest.approx(BALL_VOLUME * (1 + 0.125))
 
 
 def test_the_cavity_of_a_hollow_ball_stays_a_cavity():
-    settled = settle(*together(BALL, scaled(inverted(BALL), 0.5)))
-    assert settled.notes == ()
-    assert settled.volume == pytest.approx(BALL_VOLUME * (1 - 0.125))
+    repaired = repair_mesh(*together(BALL, scaled(inverted(BALL), 0.5)))
+    assert repaired.notes == ()
+    assert repaired.volume == pytest.approx(BALL_VOLUME * (1 - 0.125))
 
 
 def test_a_hollow_ball_inside_out_is_turned_with_its_cavity():
-    settled = settle(*together(inverted(BALL), scaled(BALL, 0.5)))
-    assert settled.notes == ("the mesh was inside out: turned",)
-    assert settled.volume == pytest.approx(BALL_VOLUME * (1 - 0.125))
+    repaired = repair_mesh(*together(inverted(BALL), scaled(BALL, 0.5)))
+    assert repaired.notes == ("the mesh was inside out: turned",)
+    assert repaired.volume == pytest.approx(BALL_VOLUME * (1 - 0.125))
 
 
 def test_overlapping_shells_count_once():
-    settled = settle(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
-    assert settled.notes == ()
-    assert len(settled.triangles) == 24
-    assert settled.volume == pytest.approx(1.5)
+    repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
+    assert repaired.notes == ()
+    assert len(repaired.triangles) == 24
+    assert repaired.volume == pytest.approx(1.5)
 
 
 def test_a_cavity_where_two_shells_overlap_is_still_inside_one_of_them():
     cavity = scaled(inverted(CUBE), 0.2, (0.6, 0.4, 0.4))
-    settled = settle(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0)), cavity))
-    assert settled.volume == pytest.approx(1.5)
+    repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0)), cavity))
+    assert repaired.volume == pytest.approx(1.5)
 
 
 def test_a_cavity_where_only_one_shell_is_is_hollow():
     cavity = scaled(inverted(CUBE), 0.2, (0.1, 0.4, 0.4))
-    settled = settle(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0)), cavity))
-    assert settled.volume == pytest.approx(1.5 - 0.008)
+    repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0)), cavity))
+    assert repaired.volume == pytest.approx(1.5 - 0.008)
 
 
 @examples(30)
@@ -132,47 +132,47 @@ def test_the_volume_is_that_of_positive_winding_number_counted_cell_by_cell(boxe
         cells[x + 1 : x + 1 + size, y + 1 : y + 1 + size, z + 1 : z + 1 + size] += -1 if hollow else 1
         box = scaled(CUBE, size, (x + 1, y + 1, z + 1))
         meshes.append(inverted(box) if hollow else box)
-    settled = settle(*together(*meshes))
-    if not settled.notes:  # boxes that coincide are merged, and reported
-        assert settled.volume == pytest.approx((cells > 0).sum())
+    repaired = repair_mesh(*together(*meshes))
+    if not repaired.notes:  # boxes that coincide are merged, and reported
+        assert repaired.volume == pytest.approx((cells > 0).sum())
 
 
 @pytest.mark.parametrize("shift", [(1, 0, 0), (1, 1, 0), (1, 1, 1)], ids=["face", "edge", "corner"])
 def test_solids_that_touch_are_accepted_whatever_an_edge_count_says(shift):
-    settled = settle(*together(CUBE, scaled(CUBE, 1.0, shift)))
-    assert settled.problem == ""
-    assert settled.volume == pytest.approx(2.0)
+    repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, shift)))
+    assert repaired.problem == ""
+    assert repaired.volume == pytest.approx(2.0)
 
 
 def test_many_shells_are_measured_in_short_time_and_overlaps_still_count_once():
     corners = np.random.default_rng(2).integers(0, 60, (3000, 3)).astype(float)
     cells = np.zeros((61, 61, 61), bool)
     cells[tuple(corners.astype(int).T)] = True
-    settled = settle(*together(*(scaled(CUBE, 1.0, corner) for corner in corners)))
-    assert settled.volume == pytest.approx(cells.sum())
+    repaired = repair_mesh(*together(*(scaled(CUBE, 1.0, corner) for corner in corners)))
+    assert repaired.volume == pytest.approx(cells.sum())
 
 
 def test_where_too_many_shells_overlap_that_is_said(monkeypatch):
     for module in (shells_module, solids_module):
         monkeypatch.setattr(module, "MOST_UNITED", 1)
-    settled = settle(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
-    assert settled.volume == pytest.approx(2.0)
-    assert "counts overlaps repeatedly" in settled.notes[0]
+    repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
+    assert repaired.volume == pytest.approx(2.0)
+    assert "counts overlaps repeatedly" in repaired.notes[0]
 
 
 def test_a_seam_narrower_than_the_tolerance_is_sewn_and_that_is_said():
     soup = CUBE[0][CUBE[1]].reshape(-1, 3)
     torn = soup + np.random.default_rng(1).uniform(-1e-5, 1e-5, soup.shape)
-    settled = settle(torn, np.arange(36).reshape(-1, 3))
-    assert settled.problem == ""
-    assert settled.volume == pytest.approx(1.0, abs=1e-3)
-    assert settled.notes == ("joined 28 vertices along open seams up to 0.0001 mm wide",)
+    repaired = repair_mesh(torn, np.arange(36).reshape(-1, 3))
+    assert repaired.problem == ""
+    assert repaired.volume == pytest.approx(1.0, abs=1e-3)
+    assert repaired.notes == ("joined 28 vertices along open seams up to 0.0001 mm wide",)
 
 
 def test_a_gap_wider_than_the_tolerance_is_not_closed():
     soup = CUBE[0][CUBE[1]].reshape(-1, 3)
     torn = soup + np.random.default_rng(1).uniform(-0.01, 0.01, soup.shape)
-    assert "odd number of triangles" in settle(torn, np.arange(36).reshape(-1, 3)).problem
+    assert "odd number of triangles" in repair_mesh(torn, np.arange(36).reshape(-1, 3)).problem
 
 
 @pytest.mark.parametrize(
@@ -192,14 +192,14 @@ def test_a_gap_wider_than_the_tolerance_is_not_closed():
     ],
 )
 def test_what_is_no_solid_gets_a_reason_in_words(vertices, triangles, words):
-    settled = settle(vertices, triangles)
-    assert words in settled.problem
-    assert "\n" not in settled.problem
-    assert settled.volume == 0.0
+    repaired = repair_mesh(vertices, triangles)
+    assert words in repaired.problem
+    assert "\n" not in repaired.problem
+    assert repaired.volume == 0.0
 
 
 def test_the_place_of_a_hole_is_named():
-    assert "first near (" in settle(CUBE[0], CUBE[1][1:]).problem
+    assert "first near (" in repair_mesh(CUBE[0], CUBE[1][1:]).problem
 
 
 @examples(200)
@@ -213,30 +213,30 @@ def test_what_manifold3d_accepts_is_never_refused(tetrahedra, more, seed):
     vertices = np.random.default_rng(seed).integers(0, 3, (6, 3)).astype(float)
     faces = [[p[0], p[2], p[1]] for p in tetrahedra] + [[p[0], p[1], p[3]] for p in tetrahedra]
     faces += [[p[1], p[2], p[3]] for p in tetrahedra] + [[p[0], p[3], p[2]] for p in tetrahedra] + more
-    settled = settle(vertices, faces)
+    repaired = repair_mesh(vertices, faces)
     if not more:  # then all edges match; where they do not, manifold3d itself may crash
         judged = Manifold(Mesh64(vertices, np.array(faces, np.uint64)))
         if judged.status().name == "NoError" and judged.volume() > 1e-9:
-            assert settled.problem == ""
-    if not settled.problem:
-        assert settled.volume > 0.0
-        again = Manifold(Mesh64(np.array(settled.vertices), settled.triangles.astype(np.uint64)))
+            assert repaired.problem == ""
+    if not repaired.problem:
+        assert repaired.volume > 0.0
+        again = Manifold(Mesh64(np.array(repaired.vertices), repaired.triangles.astype(np.uint64)))
         assert again.status().name == "NoError"
 
 
 def test_a_settled_part_keeps_the_promise_and_an_unsettled_one_is_found_out():
     part = part_of(inverted(BALL))
     assert {violation.promise for violation in check_part(part)} == {"orientation", "volume"}
-    assert check_part(settle_part(part, allow_surface=False)) == []
+    assert check_part(repair_part(part, allow_surface=False)) == []
 
 
 def test_a_part_that_is_no_solid_is_refused_by_name_and_reason():
     with pytest.raises(MeshError, match=r"thing is not a solid: 3 edges .*--allow-surface"):
-        settle_part(part_of((CUBE[0], CUBE[1][1:])), allow_surface=False)
+        repair_part(part_of((CUBE[0], CUBE[1][1:])), allow_surface=False)
 
 
 def test_a_surface_is_taken_as_it_is_if_allowed():
-    part = settle_part(part_of((CUBE[0], CUBE[1][1:])), allow_surface=True)
+    part = repair_part(part_of((CUBE[0], CUBE[1][1:])), allow_surface=True)
     assert not part.is_solid
     assert len(part.mesh.triangles) == 11
     assert "taken as a surface" in part.notes[-1]
@@ -245,7 +245,7 @@ def test_a_surface_is_taken_as_it_is_if_allowed():
 
 def test_nan_is_refused_even_as_a_surface():
     with pytest.raises(MeshError, match="NaN"):
-        settle_part(part_of((CUBE[0] * [1, 1, np.nan], CUBE[1])), allow_surface=True)
+        repair_part(part_of((CUBE[0] * [1, 1, np.nan], CUBE[1])), allow_surface=True)
 
 
 def test_colours_and_regions_follow_their_triangles():
@@ -256,7 +256,7 @@ def test_colours_and_regions_follow_their_triangles():
         appearance=Appearance(triangle_colours=colours),
         regions=(Region("blocker", "r", np.array([0, 12])),),
     )
-    settled = settle_part(part, allow_surface=False)
-    assert settled.appearance.triangle_colours[0].tolist() == [5, 4, 3]
-    assert settled.regions[0].triangles.tolist() == [11]
-    assert check_part(settled) == []
+    repaired = repair_part(part, allow_surface=False)
+    assert repaired.appearance.triangle_colours[0].tolist() == [5, 4, 3]
+    assert repaired.regions[0].triangles.tolist() == [11]
+    assert check_part(repaired) == []

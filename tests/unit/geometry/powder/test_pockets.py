@@ -85,8 +85,8 @@ def test_two_chambers_with_a_door_are_one_pocket_and_without_it_two():
 
 def test_a_way_out_is_cut_where_it_is_shortest_and_never_through_a_part():
     (way,) = find_drains(arrays(CASE), [], hole=0.2)
-    drained = CASE - box((way[1] - way[0]).tolist(), way[0].tolist())
-    assert find_pockets([arrays(drained)], [], hole=0.2) == []
+    cut_drain_holes = CASE - box((way[1] - way[0]).tolist(), way[0].tolist())
+    assert find_pockets([arrays(cut_drain_holes)], [], hole=0.2) == []
     assert (way[0] > (-1, -1, 0)).all()
     shell = box((8, 7, 9), (-1, -1, -1)) - box((6, 5, 7), (0, 0, 0))
     assert find_drains(arrays(CASE), [arrays(shell)], hole=0.2) == []

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from amprep.checks.meshes import check_part
 from amprep.errors import InputError
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 from amprep.plugins.readers import amprep_mesh_readers
 from amprep.plugins.readers.files import read_mesh_file
 
@@ -21,7 +21,7 @@ def ball(radius=10.0):
 
 
 def settled(path):
-    parts = [settle_part(part, allow_surface=False) for part in read_mesh_file(path)]
+    parts = [repair_part(part, allow_surface=False) for part in read_mesh_file(path)]
     assert [violation for part in parts for violation in check_part(part)] == []
     return parts
 
@@ -218,6 +218,6 @@ def test_any_cut_and_any_flipped_byte_gives_parts_or_one_line(tmp_path, suffix, 
         path.write_bytes(changed)
         try:
             for part in read_mesh_file(path):
-                settle_part(part, allow_surface=True)
+                repair_part(part, allow_surface=True)
         except InputError as error:
             assert "\n" not in str(error)  # noqa: PT017 - either outcome is right

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from amprep.errors import InputError, JobError
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 from amprep.plugins.readers.step import StepParams, read_step_file
 
 HEAD = """ISO-10303-21;
@@ -97,7 +97,7 @@ def test_a_box_comes_back_in_millimetres_as_a_solid(tmp_path, capfd):
     pytest.importorskip("cascadio")
     path = tmp_path / "box.step"
     path.write_text(box_step((10, 20, 30)))
-    (part,) = (settle_part(part, allow_surface=False) for part in read_step_file(path, StepParams()))
+    (part,) = (repair_part(part, allow_surface=False) for part in read_step_file(path, StepParams()))
     assert part.name == "box"
     assert part.volume_mm3 == pytest.approx(6000, rel=1e-6)
     assert len(part.mesh.triangles) == 12

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.shared.builds import box_mesh
 
-from amprep.measures.slenderness import measure_columns
+from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Grid, Mesh, SupportBody, Voxel
 from amprep.supports.routes.bracing import join_columns
 from amprep.supports.routes.edges import components, voxel_users
@@ -16,7 +16,7 @@ def test_slenderness_is_height_over_least_width_of_the_most_slender_piece():
         np.concatenate([low.vertices, tall.vertices]),
         np.concatenate([low.triangles, tall.triangles + len(low.vertices)]),
     )
-    columns = measure_columns(SupportBody("s", both, (0,)))
+    columns = measure_slenderness(SupportBody("s", both, (0,)))
     assert columns.pieces == 2
     assert columns.slenderness == pytest.approx(10.0)
     assert columns.position_mm == pytest.approx((32, 1, 10))
@@ -26,7 +26,7 @@ def test_the_least_width_is_found_in_any_direction():
     turn = np.eye(4)
     turn[:2, :2] = [[np.sqrt(0.5), -np.sqrt(0.5)], [np.sqrt(0.5), np.sqrt(0.5)]]
     beam = box_mesh((0, 0, 0), (20, 2, 10)).moved(turn)
-    assert measure_columns(SupportBody("s", beam, (0,))).width_mm == pytest.approx(2.0, rel=1e-4)
+    assert measure_slenderness(SupportBody("s", beam, (0,))).width_mm == pytest.approx(2.0, rel=1e-4)
 
 
 def test_voids_are_no_pieces():
@@ -35,7 +35,7 @@ def test_voids_are_no_pieces():
         np.concatenate([outer.vertices, inner.vertices]),
         np.concatenate([outer.triangles, inner.triangles[:, ::-1] + len(outer.vertices)]),
     )
-    columns = measure_columns(SupportBody("s", hollow, (0,)))
+    columns = measure_slenderness(SupportBody("s", hollow, (0,)))
     assert (columns.pieces, columns.slenderness) == (1, pytest.approx(2.0))
 
 

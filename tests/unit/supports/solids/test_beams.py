@@ -11,7 +11,7 @@ from amprep.errors import AmprepError
 from amprep.geometry.supports.beams import near_surface, sample
 from amprep.model import Beams, Build, BuildSettings, BuildVolume, Lattice, Mesh, Part, PlacedPart, Stop
 from amprep.model import SupportBody as Body
-from amprep.supports.solids.beams import keep_out
+from amprep.supports.solids.beams import clip_beams
 from amprep.testing.problems import box_mesh
 from amprep.threemf import read_build, write_build
 
@@ -139,12 +139,12 @@ def test_beams_are_shortened_before_a_part_and_dropped_inside_it():
     )
     beams = Beams(nodes, np.array([[0, 1], [2, 3], [4, 5]], np.int32), np.full((3, 2), 0.4), np.zeros(3, int))
     slab = built(pin()).parts
-    kept = keep_out(beams, slab, (0,), SPACE, overlap=0.1, gap=0.0)
+    kept = clip_beams(beams, slab, (0,), SPACE, overlap=0.1, gap=0.0)
     assert len(kept.struts) == 2
     ends = sorted(kept.nodes[kept.struts[:, 1]].tolist())
     assert 9.3 <= ends[0][0] <= 9.6
     assert ends[1] == [30, 30, 9]
-    apart = keep_out(beams, slab, (0,), SPACE, overlap=0.1, gap=1.0)
+    apart = clip_beams(beams, slab, (0,), SPACE, overlap=0.1, gap=1.0)
     assert max(x for x in apart.nodes[apart.struts, 0].ravel().tolist() if x < 30) <= 8.6
 
 

@@ -22,7 +22,7 @@ from amprep.model import (
     SupportBody,
     silent,
 )
-from amprep.supports.solids.keep_out import Obstacles, standing_only
+from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 
 
 def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> CellRequest:
@@ -168,7 +168,7 @@ def test_a_floating_piece_and_a_void_inside_a_piece_are_told_apart():
         np.vstack([hollow.triangles, floating.triangles + len(hollow.vertices)]),
     )
     assert STANDING in broken(build_of(both))
-    points, triangles = standing_only(both.vertices, both.triangles)
+    points, triangles = drop_floating(both.vertices, both.triangles)
     assert Mesh(points, triangles).signed_volume == pytest.approx(64 - 1)
 
 
@@ -176,9 +176,9 @@ def test_carving_leaves_the_overlap_in_what_is_held_and_nothing_in_others():
     mesh = box((15, 15, 0), (17, 17, 12))
     post = as_manifold(mesh.vertices, mesh.triangles.astype(np.int64))
     build = build_of()
-    held = Obstacles(build.parts).carve(post, (0,), 0.1)
-    free = Obstacles(build.parts).carve(post, (), 0.1)
+    held = PartObstacles(build.parts).subtract_from(post, (0,), 0.1)
+    free = PartObstacles(build.parts).subtract_from(post, (), 0.1)
     assert held.volume() == pytest.approx(4 * 10.1, abs=4e-3)
     assert free.volume() == pytest.approx(4 * 10.0, abs=4e-3)
     surface = replace(build.parts[0], part=replace(build.parts[0].part, is_solid=False))
-    assert Obstacles((surface,)).carve(post, (0,), 0.1).volume() == pytest.approx(4 * 12)
+    assert PartObstacles((surface,)).subtract_from(post, (0,), 0.1).volume() == pytest.approx(4 * 12)

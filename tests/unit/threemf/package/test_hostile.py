@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from amprep.errors import InputError
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 from amprep.threemf import read_parts
 from amprep.threemf.package import open as package_module
 from amprep.threemf.package import scan as xml_module
@@ -58,7 +58,7 @@ def packed(content=None, files=None):
 def refusal(path, content):
     path.write_bytes(content)
     with pytest.raises(InputError) as caught:
-        [settle_part(part, allow_surface=False) for part in read_parts(path)]
+        [repair_part(part, allow_surface=False) for part in read_parts(path)]
     assert "\n" not in str(caught.value)
     assert str(path) in str(caught.value)
     assert len(str(caught.value)) < 600
@@ -67,7 +67,7 @@ def refusal(path, content):
 
 def test_the_package_all_of_these_spoil_is_read(tmp_path):
     (tmp_path / "a.3mf").write_bytes(packed())
-    (part,) = (settle_part(part, allow_surface=False) for part in read_parts(tmp_path / "a.3mf"))
+    (part,) = (repair_part(part, allow_surface=False) for part in read_parts(tmp_path / "a.3mf"))
     assert part.volume_mm3 == pytest.approx(1 / 6)
     assert part.notes == ()
 
@@ -227,7 +227,7 @@ def test_any_cut_and_any_flipped_byte_gives_parts_or_one_line(tmp_path):
             changed[rng.integers(len(changed))] = rng.integers(256)
             (tmp_path / "a.3mf").write_bytes(changed)
             try:
-                [settle_part(part, allow_surface=True) for part in read_parts(tmp_path / "a.3mf")]
+                [repair_part(part, allow_surface=True) for part in read_parts(tmp_path / "a.3mf")]
             except InputError as error:
                 assert "\n" not in str(error)  # noqa: PT017 - either outcome is right
 
@@ -241,6 +241,6 @@ def test_any_change_in_the_model_gives_parts_or_one_line(tmp_path):
         changed[rng.integers(len(changed))] = rng.choice(list(b'<>/"=0 9x-&'))
         (tmp_path / "a.3mf").write_bytes(packed(bytes(changed)))
         try:
-            [settle_part(part, allow_surface=True) for part in read_parts(tmp_path / "a.3mf")]
+            [repair_part(part, allow_surface=True) for part in read_parts(tmp_path / "a.3mf")]
         except InputError as error:
             assert "\n" not in str(error)  # noqa: PT017 - either outcome is right

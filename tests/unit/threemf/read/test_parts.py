@@ -10,7 +10,7 @@ import trimesh
 
 from amprep.checks.meshes import check_part
 from amprep.errors import InputError
-from amprep.pipeline.reading import settle_part
+from amprep.pipeline.reading import repair_part
 from amprep.threemf import read_parts
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -68,7 +68,7 @@ def box_object(number=1, more="", inside=""):
 
 
 def settled(path):
-    parts = [settle_part(part, allow_surface=False) for part in read_parts(path)]
+    parts = [repair_part(part, allow_surface=False) for part in read_parts(path)]
     assert [violation for part in parts for violation in check_part(part)] == []
     return parts
 

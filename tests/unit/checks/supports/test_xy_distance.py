@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.checks.supports.gap import check_gap
+from amprep.checks.supports.xy_distance import check_gap
 from amprep.geometry.meshes.sampling import sample_triangles
 from amprep.geometry.overhangs.find import find_overhangs
-from amprep.geometry.supports.walls import Walls, beside, occupied, wall_distance, walls_of
+from amprep.geometry.supports.walls import PartWalls, occupancy_of, spaces_beside, wall_distance, walls_of
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, SupportBody
 
 GAP = 0.5
@@ -82,7 +82,7 @@ def test_what_is_cut_off_is_all_that_is_nearer_to_a_solid_than_the_gap_in_its_ow
     mesh = mesh_of(part)
     nothing = find_overhangs(mesh.vertices, mesh.triangles, angle_deg=0.0)
     walls = walls_of(mesh.vertices, mesh.triangles, nothing, 0.0)
-    space = beside(walls, GAP)
+    space = spaces_beside(walls, GAP)
     low, high = mesh.bounds
     for z in rng.uniform(low[2], high[2], 3):
         outline = [np.array(each) for each in part.slice(z).to_polygons()]
@@ -128,10 +128,10 @@ def test_no_triangle_that_is_near_a_box_is_overlooked():
     aside = np.array([GAP, GAP, 0.0])
     low, high = corners.min(axis=1) - aside, corners.max(axis=1) + aside
     meets = ((low[:, None] <= hi) & (high[:, None] >= lo)).all(axis=2).any(axis=1)
-    found = occupied(lo, hi).near(corners, GAP)
+    found = occupancy_of(lo, hi).near(corners, GAP)
     assert (found >= meets).all()
     assert found.sum() < 0.8 * len(corners)
-    assert not occupied(lo[:0], hi[:0]).near(corners, GAP).any()
+    assert not occupancy_of(lo[:0], hi[:0]).near(corners, GAP).any()
 
 
 def test_points_on_triangles_leave_no_place_farther_than_their_spacing():
@@ -157,7 +157,7 @@ def test_walls_know_no_level_faces_none_held_and_none_that_look_up_where_support
     assert len(walls_of(pyramid.vertices, pyramid.triangles, none, 0.1).corners) == 3
     sides = walls_of(pyramid.vertices, pyramid.triangles, none, 0.1, stood_on=True)
     assert len(sides.corners) == 2  # the two upright ones
-    assert isinstance(sides, Walls)
+    assert isinstance(sides, PartWalls)
 
 
 def test_supports_that_nothing_trimmed_are_found_too_near_and_trimmed_ones_are_not():
@@ -165,7 +165,7 @@ def test_supports_that_nothing_trimmed_are_found_too_near_and_trimmed_ones_are_n
     build = build_of(post)
     assert len(check_gap(build, Stop())) == 1
     needs = find_overhangs(table.vertices, table.triangles, angle_deg=45.0)
-    for solid in beside(walls_of(table.vertices, table.triangles, needs, 0.1), GAP):
+    for solid in spaces_beside(walls_of(table.vertices, table.triangles, needs, 0.1), GAP):
         post -= solid
     trimmed = replace(build.supports[0], mesh=mesh_of(post))
     assert check_gap(replace(build, supports=(trimmed,)), Stop()) == []

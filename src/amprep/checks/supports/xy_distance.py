@@ -7,7 +7,7 @@ from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.sampling import sample_triangles
-from amprep.geometry.supports.walls import Walls, occupied, wall_distance, walls_of
+from amprep.geometry.supports.walls import PartWalls, occupancy_of, wall_distance, walls_of
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
 from amprep.overhangs.of_part import needs_of
@@ -47,7 +47,7 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     reach = build.settings.gap - _GRANT
     walls = _walls(placed, build, stood_on=placed in [build.parts[index] for index in body.parts])
     corners = body.mesh.vertices[body.mesh.triangles]
-    by_walls = occupied(walls.corners.min(axis=1), walls.corners.max(axis=1))
+    by_walls = occupancy_of(walls.corners.min(axis=1), walls.corners.max(axis=1))
     corners = corners[by_walls.near(corners, reach)]
     points = sample_triangles(corners, min(SPACING, build.settings.gap))
     for up in (0.0, 2.0 * TOLERANCE):  # what is in the part, or right below a face, is contact
@@ -66,7 +66,7 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     return [Violation(PROMISE, body.name, message)]
 
 
-def _walls(placed: PlacedPart, build: Build, *, stood_on: bool) -> Walls:
+def _walls(placed: PlacedPart, build: Build, *, stood_on: bool) -> PartWalls:
     settings = build.settings
     needs = needs_of(
         placed,

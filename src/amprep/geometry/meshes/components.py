@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.shells import Shells, measure_shells
-from amprep.geometry.meshes.topology import compact
+from amprep.geometry.meshes.topology import drop_unused_vertices
 
 CRUMB = 1e-4
 """mm3; what booleans on rounded coordinates may leave behind, and nobody misses."""
@@ -16,7 +16,7 @@ _INWARD = 1e-3
 """mm; how far below the surface a point stands for what is there."""
 
 
-class Parted(NamedTuple):
+class DetachedSplit(NamedTuple):
     """What stays of a solid, what is let go of it, and how many pieces that is, crumbs aside."""
 
     kept: MeshArrays
@@ -24,7 +24,7 @@ class Parted(NamedTuple):
     number: int
 
 
-def drop_islands(points: Floats, triangles: Int64s, region: MeshArrays, whole: MeshArrays) -> Parted:
+def drop_detached(points: Floats, triangles: Int64s, region: MeshArrays, whole: MeshArrays) -> DetachedSplit:
     """Let go of the pieces that lie wholly in the region.
 
     Where a piece of the `whole` lay wholly in the region itself, the largest that is left of it stays.
@@ -42,23 +42,25 @@ def drop_islands(points: Floats, triangles: Int64s, region: MeshArrays, whole: M
     loose = outward & ~_reaching_out(corners, shells.label, len(shells.volume), region)
     loose[_largest_each(points, triangles, shells, loose, region, whole)] = False
     if not loose.any():
-        return Parted((points, triangles), (np.empty((0, 3)), np.empty((0, 3), np.int64)), 0)
+        return DetachedSplit((points, triangles), (np.empty((0, 3)), np.empty((0, 3), np.int64)), 0)
     gone = loose[shells.label]
-    islands = compact(points, triangles[gone])
+    islands = drop_unused_vertices(points, triangles[gone])
     first = np.unique(shells.label, return_index=True)[1]
     voids = np.flatnonzero(~outward)
     loose[voids] = _within(points[triangles[first[voids], 0]], islands)
     count = int((loose & (shells.volume > CRUMB)).sum())
     gone = loose[shells.label]
-    return Parted(compact(points, triangles[~gone]), compact(points, triangles[gone]), count)
+    return DetachedSplit(
+        drop_unused_vertices(points, triangles[~gone]), drop_unused_vertices(points, triangles[gone]), count
+    )
 
 
-def pieces_of(points: Floats, triangles: Int64s) -> int:
+def count_components(points: Floats, triangles: Int64s) -> int:
     """Return how many pieces a closed solid has, crumbs and voids aside."""
     return int((measure_shells(points, triangles).volume > CRUMB).sum()) if len(triangles) else 0
 
 
-def handles_of(points: Floats, triangles: Int64s) -> int:
+def genus_of(points: Floats, triangles: Int64s) -> int:
     """Return how many handles all surfaces of a closed mesh have, each vertex of which is used by one of them."""
     shells = len(measure_shells(points, triangles).volume)
     used = len(np.unique(triangles))
@@ -90,7 +92,7 @@ def _largest_each(
     middle = _below(points[triangles[first]])
     found = []
     for piece in np.flatnonzero(covered):
-        within = _within(middle, compact(whole[0], whole[1][before.label == piece]))
+        within = _within(middle, drop_unused_vertices(whole[0], whole[1][before.label == piece]))
         if within.any():
             found.append(number[within][shells.volume[number[within]].argmax()])
     return np.array(found, np.int64)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.geometry.connectors.columns import Columns
-from amprep.geometry.meshes.repair import as_manifold
+from amprep.geometry.connectors.columns import ConnectorColumns
+from amprep.geometry.meshes.manifold import as_manifold
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -26,7 +26,7 @@ _PAST = 0.01
 """mm that windows go on beyond the last square of a row."""
 
 
-def windows(columns: Columns, room: Floats, width: float) -> "Iterator[Manifold]":
+def windows(columns: ConnectorColumns, room: Floats, width: float) -> "Iterator[Manifold]":
     """Yield solids to be cut out of connectors: windows along x, and windows along y.
 
     They lie at the same heights above all squares of a plane, so that they line up from square to square.
