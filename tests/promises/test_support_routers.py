@@ -60,4 +60,4 @@ def test_a_plan_is_legal_conserved_and_complete(router, name, rules):
     plan, again = route(), route()
     assert check_plan(task, plan) == []
     for each in ("plane", "y", "x", "direction", "flow", "capacity"):
-        assert getattr(plan, each).tolist() == getattr(again, each).tolist(), "two runs differ"
+        assert getattr(plan.edges, each).tolist() == getattr(again.edges, each).tolist(), "two runs differ"

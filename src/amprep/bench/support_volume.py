@@ -21,6 +21,7 @@ from amprep.model import (
     PlacedPart,
     Progress,
     Stop,
+    SupportEdges,
     SupportPlan,
     SupportProblem,
     Voxel,
@@ -150,7 +151,7 @@ def straight_columns(problem: SupportProblem, stop: Stop, progress: Progress) ->
         flow[1 : plane + 1, y, x] += 1
     plane, y, x = (each.astype(np.int32) for each in flow.nonzero())
     load = flow[plane, y, x]
-    return SupportPlan(plane, y, x, np.zeros(len(plane), np.uint8), load, load)
+    return SupportPlan(SupportEdges(plane, y, x, np.zeros(len(plane), np.uint8), load, load))
 
 
 def free_below(cubes: Bytes, red: RedSquares) -> Bools:

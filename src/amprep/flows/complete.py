@@ -2,17 +2,18 @@
 
 import numpy as np
 
-from amprep.arrays import Bools, Int32s
+from amprep.arrays import Bools
 from amprep.flows.escalation import escalate
 from amprep.flows.maximum_flow import push
 from amprep.flows.network import Task, no_flows, plan_of, reasons_of, task_of
 from amprep.kernels.flow.residual import Carried, Room
 from amprep.model.control import Progress, Stop
+from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import SupportPlan, SupportProblem
 
 
 def complete(
-    problem: SupportProblem, edges: Int32s, connected: Bools, *, stop: Stop, progress: Progress
+    problem: SupportProblem, edges: SupportEdges, connected: Bools, *, stop: Stop, progress: Progress
 ) -> SupportPlan:
     """Connect as many red squares as the capacities allow, or all when these may be raised.
 
@@ -22,7 +23,7 @@ def complete(
     Parameters
     ----------
     edges
-        ``(n, 5+)`` plane, y, x, direction, flow; each edge once.
+        The flow to start from; each edge occurs once.
     connected
         ``(m,)`` the red squares whose paths that flow is.
     """
@@ -36,13 +37,13 @@ def complete(
     return plan_of(problem, task.network, carried, reasons, stop_reason=stop_reason)
 
 
-def _carried(task: Task, edges: Int32s) -> Carried:
+def _carried(task: Task, edges: SupportEdges) -> Carried:
     """Return the edges' flow as the kernels see it."""
     network = task.network
-    plane, y, x, direction, flow = edges[:, :5].astype(np.int64).T
-    square = plane * network.stride + (y + 1) * network.width + x + 1
+    flow = edges.flow.astype(np.int64)
+    square = edges.plane.astype(np.int64) * network.stride + (edges.y + 1) * network.width + edges.x + 1
     flows = no_flows(network, int(flow.sum()))
-    flows.flow[square, direction] = flow
+    flows.flow[square, edges.direction] = flow
     np.add.at(flows.through, square, flow.astype(flows.through.dtype))
     return Carried(flows.flow, flows.through)
 

@@ -10,9 +10,9 @@ from amprep.arrays import Bools, Int32s, Int64s
 from amprep.errors import JobError
 from amprep.kernels.flow.residual import UNREACHED, Carried, Flowing, Room, measure
 from amprep.kernels.flow.shortest_paths import FAR, UNBOUNDED, Flows, Limits, Network
+from amprep.model.support_edges import DIRECTIONS, SupportEdges
 from amprep.model.supports import (
     CAPACITY,
-    DIRECTIONS,
     ENCLOSED,
     OUT_OF_TIME,
     Status,
@@ -96,13 +96,9 @@ def plan_of(
     vertical, oblique = problem.material
     raised = _raised(problem, flow, flows.through[used[used >= network.stride]])
     asked = problem.edge_capacity + (raised if problem.escalation == "uniform" else 0)
+    capacity = np.maximum(flow, asked if problem.edge_capacity else 0)
     return SupportPlan(
-        plane=plane,
-        y=y - 1,
-        x=x - 1,
-        direction=direction.astype(np.uint8),
-        flow=flow,
-        capacity=np.maximum(flow, asked if problem.edge_capacity else 0),
+        SupportEdges(plane, y - 1, x - 1, direction.astype(np.uint8), flow, capacity),
         unconnected=tuple(Unconnected(red, reason) for red, reason in reasons),
         stop_reason=stop_reason,
         objective=float(straight.sum() * vertical + (~straight).sum() * oblique),

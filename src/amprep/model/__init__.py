@@ -20,7 +20,8 @@ from amprep.model.control import Progress, Stop, silent
 from amprep.model.mesh import Mesh
 from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
-from amprep.model.supports import DIRECTIONS, SupportPlan, SupportProblem, Unconnected, Voxel
+from amprep.model.support_edges import DIRECTIONS, SupportEdges
+from amprep.model.supports import SupportPlan, SupportProblem, Unconnected, Voxel
 
 __all__ = [
     "CONTACT_TOLERANCE",
@@ -60,6 +61,7 @@ __all__ = [
     "Solid",
     "Stop",
     "SupportBody",
+    "SupportEdges",
     "SupportPlan",
     "SupportProblem",
     "Target",

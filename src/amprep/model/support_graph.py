@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.model.supports import DIRECTIONS, SupportProblem, Voxel
+from amprep.model.support_edges import DIRECTIONS
+from amprep.model.supports import SupportProblem, Voxel
 
 if TYPE_CHECKING:
     import networkx as nx

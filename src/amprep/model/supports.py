@@ -9,6 +9,7 @@ import numpy as np
 from amprep.arrays import Bools, Bytes, Ints, frozen
 from amprep.errors import JobError
 from amprep.geometry.voxels.grid import Grid
+from amprep.model.support_edges import SupportEdges
 
 Status = Literal["optimal", "feasible", "infeasible"]
 
@@ -33,10 +34,6 @@ class Voxel(IntEnum):
     FREE = 0
     OCCUPIED = 1
     CLOSED = 2
-
-
-DIRECTIONS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
-"""``(dy, dx)`` from a square to the one below it: straight, +x, -x, +y, -y."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,30 +95,21 @@ class Unconnected:
 
 @dataclass(frozen=True, eq=False)
 class SupportPlan:
-    """Flow on the edges that carry any; edge e leads down from (plane, y, x) in `direction`.
+    """Answer to a `SupportProblem`: the edges that carry flow, and the red squares that stay unconnected.
 
     Attributes
     ----------
-    plane, y, x
-        ``(n,)`` int32, the upper square.
-    direction
-        ``(n,)`` uint8, index into `DIRECTIONS`.
-    flow, capacity
-        ``(n,)`` int32, paths on the edge and the edge's final capacity (at least the flow).
+    edges
+        Each edge once, with flow 1 or more.
     raised
-        The most that escalation has added to a capacity; 0 without.
+        Largest amount that escalation added to a capacity; 0 without escalation.
     bound
-        What the objective cannot beat, or None.
+        Lower bound of the objective, or None.
     notes
-        Sentences for the user: what was chosen and why, how the plan compares.
+        Sentences for the user: the choice made, its reason, and how the plan compares.
     """
 
-    plane: Ints
-    y: Ints
-    x: Ints
-    direction: Bytes
-    flow: Ints
-    capacity: Ints
+    edges: SupportEdges
     unconnected: tuple[Unconnected, ...] = ()
     status: Status = "feasible"
     stop_reason: str = "finished"
@@ -129,8 +117,3 @@ class SupportPlan:
     bound: float | None = None
     raised: int = 0
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("plane", "y", "x", "flow", "capacity"):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
-        object.__setattr__(self, "direction", frozen(self.direction, np.uint8))

@@ -8,9 +8,9 @@ from amprep.arrays import Bools, Bytes, Floats, Int64s, Ints, frozen
 from amprep.geometry.overhangs.regions import Overhangs
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
+from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.routes.edges import components
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,17 +37,14 @@ class SupportLayout:
         ``(m,)`` bool.
     reasons
         ``m`` words: why a red square is unconnected, ``""`` when it is connected.
-    plane, y, x, direction, flow, capacity
-        ``(n,)`` the edges as in `amprep.model.supports.SupportPlan`; an edge shared by several parts
-        appears once.
-    edge_part
-        ``(n,)`` int32: the part whose red square the edge was routed for first.
+    edges
+        Edges with their part and group; an edge that several parts share appears once.
     feet
         ``(k, 5)`` int32: where columns end on a part instead of the plate; see
         `amprep.supports.routes.on_part.Grounded`.
-    red_group, edge_group
-        ``(m,)``, ``(n,)`` int32: support group, -1 for red squares that are not connected; one
-        group per part, merged where parts share squares.
+    red_group
+        ``(m,)`` int32: support group, -1 for red squares that are not connected; one group per part, merged
+        where parts share squares.
     group_parts
         Placed parts each group holds; more than one only where squares are shared.
     notes
@@ -66,29 +63,19 @@ class SupportLayout:
     red_rise: Ints
     connected: Bools
     reasons: tuple[str, ...]
-    plane: Ints
-    y: Ints
-    x: Ints
-    direction: Bytes
-    flow: Ints
-    capacity: Ints
-    edge_part: Ints
+    edges: SupportEdges
     red_group: Ints
-    edge_group: Ints
     group_parts: tuple[tuple[int, ...], ...]
     notes: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
     feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
 
     def __post_init__(self) -> None:
-        for name in ("plane", "y", "x", "flow", "capacity", "edge_part", "edge_group"):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
         for name in ("red_part", "red_region", "red_rise", "red_group"):
             object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
         object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
         object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
         object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
-        object.__setattr__(self, "direction", frozen(self.direction, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
 
     def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
@@ -120,13 +107,13 @@ class SupportLayout:
 
 
 def groups_of(
-    edges: Ints, red: RedSquares, connected: Bools, count: int
+    edges: SupportEdges, red: RedSquares, connected: Bools, count: int
 ) -> tuple[Ints, Ints, tuple[tuple[int, ...], ...]]:
     """Return the group of each red square ``(m,)`` (-1: none), of each edge ``(n,)``, and the parts of each group."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    _, of_red = components(edges, red.square[connected])
+    _, of_red = edges.components(red.square[connected])
     part = red.part[connected]
     owner = np.full(int(of_red.max(initial=-1)) + 1, -1)
     owner[of_red[::-1]] = part[::-1]
@@ -135,6 +122,6 @@ def groups_of(
     used, number = np.unique(label[part], return_inverse=True)
     group = np.full(len(red.part), -1, np.int32)
     group[connected] = number
-    edge_group = np.searchsorted(used, label[edges[:, 6]]).astype(np.int32)
+    edge_group = np.searchsorted(used, label[edges.part]).astype(np.int32)
     held = [sorted(set(part[number == i].tolist())) for i in range(len(used))]
     return group, edge_group, tuple(tuple(each) for each in held)

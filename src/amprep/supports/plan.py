@@ -1,6 +1,7 @@
 """Plans the supports of a build: needs, grid, red squares, routing, groups (thesis 3.2)."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
 from amprep.model.mesh import Mesh
+from amprep.model.support_edges import SupportEdges
 from amprep.overhangs.of_part import needs_of
 from amprep.supports.grid.red_squares import RedSquares, close_gap, red_squares
 from amprep.supports.grid.sizing import choose_pitch, frame_of
@@ -19,7 +21,6 @@ from amprep.supports.grid.voxel_states import PartVoxels, coloured, voxels_of
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.routes.bracing import join_columns
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
-from amprep.supports.routes.edges import merge_edges
 from amprep.supports.routes.network import Network, Route
 from amprep.supports.routes.on_part import stand_on_parts
 from amprep.supports.rules import Wishes
@@ -48,9 +49,9 @@ class _Laid(NamedTuple):
 
 
 class _Standing(NamedTuple):
-    """Supports that stand: edges (rows as in `Routed.edges`), feet on parts, which red squares are held."""
+    """Supports that stand: edges, feet on parts, which red squares are held."""
 
-    edges: Ints
+    edges: SupportEdges
     feet: Ints
     connected: Bools
     notes: tuple[str, ...]
@@ -143,7 +144,7 @@ def _grounded(laid: _Laid, routed: Routed, wishes: Wishes) -> _Standing:
     connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
     left = ~connected & (wishes.grounding == "anywhere")
     grounded = stand_on_parts(laid.voxels, laid.meeting, laid.blocks, laid.red, left, routed.edges)
-    edges = merge_edges(np.concatenate([routed.edges, grounded.edges]))
+    edges = SupportEdges.concatenate([routed.edges, grounded.edges]).merged()
     notes = (f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows",)
     return _Standing(edges, grounded.feet, connected | grounded.served, notes if len(grounded.feet) else ())
 
@@ -154,7 +155,7 @@ def _joined(laid: _Laid, standing: _Standing, wishes: Wishes) -> _Standing:
         return standing
     joined = join_columns(laid.frame, laid.voxels, standing.edges, wishes.slender)
     note = f"{joined.braced} slender columns are braced by struts, {joined.alone} stand too far from others"
-    edges = merge_edges(np.concatenate([standing.edges, joined.edges]))
+    edges = SupportEdges.concatenate([standing.edges, joined.edges]).merged()
     return standing._replace(edges=edges, notes=(*standing.notes, note))
 
 
@@ -182,15 +183,8 @@ def _layout(
         connected=connected,
         reasons=tuple("" if done else why for done, why in zip(connected.tolist(), reasons, strict=True)),
         feet=standing.feet,
-        plane=edges[:, 0],
-        y=edges[:, 1],
-        x=edges[:, 2],
-        direction=edges[:, 3].astype(np.uint8),
-        flow=edges[:, 4],
-        capacity=edges[:, 5],
-        edge_part=edges[:, 6],
+        edges=replace(edges, group=edge_group),
         red_group=red_group,
-        edge_group=edge_group,
         group_parts=group_parts,
         notes=(*told, *standing.notes),
         shared=tuple(f"share supports: {names}" for names in shared),

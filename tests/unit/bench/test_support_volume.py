@@ -40,7 +40,7 @@ def test_straight_columns_are_a_sound_plan_of_the_squares_with_nothing_below():
     )
     plan = straight_columns(problem, Stop(), silent)
     assert check_plan(problem, plan) == []
-    assert plan.flow.sum() == 5 + 3
+    assert plan.edges.flow.sum() == 5 + 3
 
 
 def test_branches_take_less_than_straight_columns_where_there_is_height_to_merge():

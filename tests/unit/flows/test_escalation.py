@@ -26,7 +26,7 @@ def test_all_come_through_one_hole_by_raising_what_is_at_it_alone(router, rules)
     assert check_plan(task, plan) == check_raises(task, plan) == []
     assert (plan.unconnected, plan.raised) == ((), 5)
     if "edge_capacity" in rules:
-        assert set(plan.capacity.tolist()) <= set(range(2, 8))
+        assert set(plan.edges.capacity.tolist()) <= set(range(2, 8))
 
 
 @pytest.mark.parametrize("router", ROUTERS)
@@ -41,7 +41,7 @@ def test_uniform_raises_all_edges_alike(router):
     plan = route(router, task)
     assert check_plan(task, plan) == check_raises(task, plan) == []
     assert (plan.unconnected, plan.raised) == ((), 3)
-    assert set(plan.capacity.tolist()) == {4}
+    assert set(plan.edges.capacity.tolist()) == {4}
 
 
 @pytest.mark.parametrize("router", ROUTERS)
@@ -75,7 +75,8 @@ def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():
     found = [each.message for each in check_plan(replace(task, escalation="none"), plan)]
     assert "raises capacities, though the problem forbids it" in found
     assert "is used" in check_plan(task, replace(plan, raised=6))[0].message
-    idle = check_plan(task, replace(plan, capacity=np.where(plan.flow == 1, 3, plan.capacity)))
+    unused = replace(plan.edges, capacity=np.where(plan.edges.flow == 1, 3, plan.edges.capacity))
+    idle = check_plan(task, replace(plan, edges=unused))
     assert "a raised capacity that it does not use" in idle[0].message
     wide = replace(task, edge_capacity=7)
     assert "without that all 7" in check_raises(wide, plan)[0].message

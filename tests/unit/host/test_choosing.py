@@ -29,6 +29,7 @@ from amprep.model import (
     PackingProblem,
     Placement,
     Solid,
+    SupportEdges,
     SupportPlan,
 )
 from amprep.model.rotations import axis_rotations, quarter_turns
@@ -180,7 +181,7 @@ def test_a_reader_returns_parts_and_nothing_else():
 
 
 def test_a_right_answer_comes_back_as_it_is():
-    plan = SupportPlan([], [], [], [], [], [])
+    plan = SupportPlan(SupportEdges.from_rows([]))
     cells = Cells((), [], [], [])
     for kind, record, answer in (
         ("router", SupportRouter("x", "y", run=lambda: plan), plan),

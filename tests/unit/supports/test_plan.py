@@ -5,11 +5,21 @@ import numpy as np
 import pytest
 
 from amprep.errors import JobError, PluginError
-from amprep.model import BuildVolume, Mesh, Overrides, Part, PlacedPart, Region, Stop, SupportPlan, silent
+from amprep.model import (
+    BuildVolume,
+    Mesh,
+    Overrides,
+    Part,
+    PlacedPart,
+    Region,
+    Stop,
+    SupportEdges,
+    SupportPlan,
+    silent,
+)
 from amprep.model.supports import (
     CAPACITY,
     CONNECTOR_BLOCKED,
-    DIRECTIONS,
     ENCLOSED,
     NO_FREE_VOXEL_BELOW,
     OUT_OF_TIME,
@@ -66,7 +76,7 @@ def test_a_table_has_a_red_square_under_every_cube_of_its_slab_beside_the_leg():
     assert plan.connected.all()
     assert set(plan.red_rise.tolist()) == {1}
     assert plan.group_parts == ((0,),)
-    assert set(plan.edge_group.tolist()) == {0}
+    assert set(plan.edges.group.tolist()) == {0}
     assert plan.frame.shape[0] == 11  # no higher than the highest overhang's voxel
 
 
@@ -74,7 +84,7 @@ def test_what_lies_in_the_layer_on_the_plate_is_connected_directly():
     plan = layout(placed(box((5, 4, 3), (10, 10, 0.5))))
     assert columns(plan) == {(0, y, x) for y in range(10, 14) for x in range(10, 15)}
     assert plan.connected.all()
-    assert len(plan.flow) == 0
+    assert len(plan.edges.flow) == 0
     assert set(plan.red_group.tolist()) == {0}
 
 
@@ -174,10 +184,7 @@ def test_two_balls_above_one_another_share_nothing_by_default():
     assert plan.connected.all()
     assert plan.group_parts == ((0,), (1,))
     assert plan.notes == ()
-    used = [set(), set()]
-    for p, y, x, d, part in zip(plan.plane, plan.y, plan.x, plan.direction, plan.edge_part, strict=True):
-        dy, dx = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))[d]
-        used[part] |= {(p - 1, y, x), (p - 1, y + dy, x + dx)}
+    used = [set(map(tuple, plan.edges[plan.edges.part == part].voxels.tolist())) for part in (0, 1)]
     assert not used[0] & used[1]
 
 
@@ -194,7 +201,7 @@ def test_supports_are_shared_only_where_there_is_no_other_way():
     assert plan.connected.all()
     assert plan.group_parts == ((1, 2),)
     assert plan.shared == ("share supports: p1, p2",)
-    assert plan.flow.max() == 32
+    assert plan.edges.flow.max() == 32
     apart = layout(shaft(5), least_area=0.0)
     assert apart.connected.all()
     assert apart.group_parts == ((1,), (2,))
@@ -213,7 +220,7 @@ def test_two_parts_may_need_the_same_square():
 def test_one_network_may_be_asked_for():
     plan = layout(two_balls(), share_between_parts="allow")
     assert plan.connected.all()
-    key = np.column_stack([plan.plane, plan.y, plan.x, plan.direction])
+    key = np.column_stack([plan.edges.upper, plan.edges.direction])
     assert len(np.unique(key, axis=0)) == len(key)
 
 
@@ -222,8 +229,8 @@ def test_capacities_hold_for_the_whole_build(share):
     plan = layout(shaft(2), share_between_parts=share, node_capacity=3, least_area=0.0)
     assert plan.connected.sum() == 12  # the shaft has four squares of at most three paths each
     assert {reason for reason in plan.reasons if reason} == {CAPACITY}
-    _, square = np.unique(np.column_stack([plan.plane, plan.y, plan.x]), axis=0, return_inverse=True)
-    assert np.bincount(square.reshape(-1), weights=plan.flow).max() <= 3
+    _, square = np.unique(plan.edges.upper, axis=0, return_inverse=True)
+    assert np.bincount(square.reshape(-1), weights=plan.edges.flow).max() <= 3
 
 
 def test_notes_say_what_the_router_says_that_capacities_are_raised_and_that_time_is_up():
@@ -306,8 +313,8 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
     free, kept = (layout(placed(post + slab), gap=gap) for gap in (0.0, 2.0))
     assert free.connected.all()
     x0, y0, _ = kept.frame.origin.astype(int)
-    x, y = kept.x + x0, kept.y + y0
-    low = kept.plane <= 15
+    x, y = kept.edges.x + x0, kept.edges.y + y0
+    low = kept.edges.plane <= 15
     assert ((x[low] >= 34) | (y[low] < 26) | (y[low] >= 34)).all()
     far = kept.red[:, 2] + x0 >= 34
     assert kept.connected[far].all()
@@ -316,7 +323,7 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
 def test_a_gap_of_any_width_leaves_what_can_stand_below_its_overhang():
     plan = layout(placed(TABLE), gap=1e9)
     assert plan.connected.all()
-    assert set(zip(plan.y, plan.x, strict=True)) <= {(y, x) for _, y, x in plan.red.tolist()}
+    assert set(zip(plan.edges.y, plan.edges.x, strict=True)) <= {(y, x) for _, y, x in plan.red.tolist()}
 
 
 def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
@@ -337,7 +344,7 @@ def test_a_pitch_far_too_fine_is_refused():
 
 def test_a_router_that_breaks_its_promise_is_refused():
     def lazy(problem, stop, progress):
-        return SupportPlan([], [], [], [], [], [])
+        return SupportPlan(SupportEdges.from_rows([]))
 
     with pytest.raises(PluginError, match="broke its promise"):
         layout(placed(TABLE), route=lazy)
@@ -345,8 +352,10 @@ def test_a_router_that_breaks_its_promise_is_refused():
 
 def test_the_same_build_gives_the_same_layout():
     first, second = layout(two_balls()), layout(two_balls())
-    for name in ("red", "plane", "y", "x", "direction", "flow", "edge_part", "red_group"):
+    for name in ("red", "red_group"):
         assert getattr(first, name).tolist() == getattr(second, name).tolist()
+    for name in ("upper", "direction", "flow", "capacity", "part", "group"):
+        assert getattr(first.edges, name).tolist() == getattr(second.edges, name).tolist()
 
 
 def test_the_automatic_pitch_keeps_to_the_memory_allowed_and_a_given_one_is_refused_with_advice():
@@ -379,14 +388,11 @@ def test_what_is_left_over_is_connected_beside_the_flow_of_other_parts():
     """Of two slabs above one shaft the upper one is left over, until capacities grow around both flows."""
     plan = layout(shaft(2), node_capacity=3, escalation="cut", least_area=0.0)
     assert plan.connected.all()
-    squares, number = np.unique(np.column_stack([plan.plane, plan.y, plan.x]), axis=0, return_inverse=True)
-    through = np.bincount(number.reshape(-1), weights=plan.flow)
+    squares, number = np.unique(plan.edges.upper, axis=0, return_inverse=True)
+    through = np.bincount(number.reshape(-1), weights=plan.edges.flow)
     assert through.max() == 8  # 32 paths over the four squares of the shaft
-    lower = np.column_stack([plan.plane - 1, plan.y, plan.x]) + np.insert(
-        np.array(DIRECTIONS)[plan.direction], 0, 0, axis=1
-    )
     arriving = {tuple(square): 0 for square in squares.tolist()}
-    for square, flow in zip(lower.tolist(), plan.flow.tolist(), strict=True):
+    for square, flow in zip(plan.edges.lower.tolist(), plan.edges.flow.tolist(), strict=True):
         arriving[tuple(square)] = arriving.get(tuple(square), 0) + flow
     red = {tuple(square) for square in plan.red.tolist()}
     for square, flow in zip(squares.tolist(), through.tolist(), strict=True):

@@ -17,7 +17,8 @@ from amprep.bench.routing.scenes import SIDES, count_graph, scene
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.host import Host
 from amprep.model import Stop, silent
-from amprep.model.supports import DIRECTIONS, Escalation, SupportPlan, SupportProblem
+from amprep.model.support_edges import DIRECTIONS
+from amprep.model.supports import Escalation, SupportPlan, SupportProblem
 
 if TYPE_CHECKING:
     from amprep.hookspecs import SupportRouter
@@ -213,12 +214,16 @@ def _route(
 
 
 def _cost(problem: SupportProblem, plan: SupportPlan) -> int:
-    return int((np.array(problem.costs)[np.minimum(plan.direction, 1)] * plan.flow.astype(np.int64)).sum())
+    return int(
+        (
+            np.array(problem.costs)[np.minimum(plan.edges.direction, 1)] * plan.edges.flow.astype(np.int64)
+        ).sum()
+    )
 
 
 def _material(problem: SupportProblem, plan: SupportPlan) -> float:
     """Return the material of all edges in use, mm3 in the chosen cell."""
-    return float(np.array(problem.material)[np.minimum(plan.direction, 1)].sum())
+    return float(np.array(problem.material)[np.minimum(plan.edges.direction, 1)].sum())
 
 
 def _squares(problem: SupportProblem, plan: SupportPlan) -> int:
@@ -231,16 +236,16 @@ def _most_in_a_square(problem: SupportProblem, plan: SupportPlan) -> int:
     most = 0
     for end in (0, 1):
         _, square = np.unique(_number(problem, plan, end), return_inverse=True)
-        most = max(most, int(np.bincount(square, weights=plan.flow).max(initial=0)))
+        most = max(most, int(np.bincount(square, weights=plan.edges.flow).max(initial=0)))
     return most
 
 
 def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Int64s:
     """Return the number of each edge's upper (0) or lower (1) square."""
     _, ny, nx = problem.voxels.shape
-    step = end * np.array(DIRECTIONS, np.int64)[plan.direction]
-    plane = plan.plane.astype(np.int64) - end
-    return np.asarray((plane * ny + plan.y + step[:, 0]) * nx + plan.x + step[:, 1])
+    step = end * np.array(DIRECTIONS, np.int64)[plan.edges.direction]
+    plane = plan.edges.plane.astype(np.int64) - end
+    return np.asarray((plane * ny + plan.edges.y + step[:, 0]) * nx + plan.edges.x + step[:, 1])
 
 
 def _forget_peak() -> None:

@@ -8,7 +8,7 @@ from amprep.arrays import Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.cells.ports import PLANE_AXES, SNAP, flush_sides, snapped
 from amprep.model.cells import CellRequest, Cells, Template
-from amprep.model.supports import DIRECTIONS
+from amprep.model.support_edges import DIRECTIONS
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection

@@ -7,8 +7,8 @@ import numpy as np
 
 from amprep.arrays import Bytes, Ints
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.supports import DIRECTIONS, Voxel
-from amprep.supports.routes.edges import components, lower_squares, voxel_users
+from amprep.model.support_edges import DIRECTIONS, SupportEdges
+from amprep.model.supports import Voxel
 
 FARTHEST_MM = 15.0
 """mm sideways; struts are no longer than this."""
@@ -19,14 +19,14 @@ Square = tuple[int, int, int]
 
 
 class Joined(NamedTuple):
-    """The struts as edges (rows as in `Routed.edges`), and how many slender columns have some, and none."""
+    """The struts as edges, and how many slender columns have some, and none."""
 
-    edges: Ints
+    edges: SupportEdges
     braced: int
     alone: int
 
 
-def join_columns(frame: Grid, voxels: Bytes, edges: Ints, slender: float) -> Joined:
+def join_columns(frame: Grid, voxels: Bytes, edges: SupportEdges, slender: float) -> Joined:
     """Brace every column higher than `slender` times its least width.
 
     A column is a connected piece of the supports of one part; its width is that of the box around its
@@ -35,10 +35,10 @@ def join_columns(frame: Grid, voxels: Bytes, edges: Ints, slender: float) -> Joi
     strut angle, so it carries itself. Struts pass free voxels that no other part's supports use. They carry
     no path: flow 1 and capacity 1 stand for the least section of the cell.
     """
-    piece, _ = components(edges, np.empty((0, 3), np.int32))
-    squares = np.concatenate([edges[:, :3], lower_squares(edges)])
-    pieces, parts = np.concatenate([piece, piece]), np.concatenate([edges[:, 6], edges[:, 6]])
-    owners = _Owners(squares, pieces, parts, voxel_users(edges))
+    piece, _ = edges.components(np.empty((0, 3), np.int32))
+    squares = np.concatenate([edges.upper, edges.lower])
+    pieces, parts = np.concatenate([piece, piece]), np.concatenate([edges.part, edges.part])
+    owners = _Owners(squares, pieces, parts, edges.voxel_parts())
     struts: list[list[int]] = []
     braced = alone = 0
     for number in range(int(piece.max(initial=-1)) + 1):
@@ -48,11 +48,11 @@ def join_columns(frame: Grid, voxels: Bytes, edges: Ints, slender: float) -> Joi
             slim = True
             strut = _strut(square, number, owners, voxels, round(FARTHEST_MM / frame.pitch))
             struts += strut
-            owners.voxel_part.update(voxel_users(np.array(strut, np.int32).reshape(-1, 7)))
+            owners.voxel_part.update(SupportEdges.from_rows(strut).voxel_parts())
             count += bool(strut)
         braced += count > 0
         alone += slim and not count
-    return Joined(np.array(struts, np.int32).reshape(-1, 7), braced, alone)
+    return Joined(SupportEdges.from_rows(struts), braced, alone)
 
 
 class _Owners:

@@ -1,5 +1,6 @@
-"""Routes the red squares of a build: as one network, or part by part so that supports are not shared."""
+"""Route the red squares of a build: as one network, or part by part so that parts do not share supports."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -8,138 +9,145 @@ from amprep.arrays import Ints
 from amprep.flows.complete import complete
 from amprep.flows.reachability import has_way
 from amprep.model.control import Progress, Stop, silent
+from amprep.model.support_edges import SupportEdges, square_keys
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME
-from amprep.supports.routes.edges import (
-    keys_of,
-    merge_edges,
-    no_edges,
-    no_voxels,
-    part_of_edges,
-    voxels_below,
-    voxels_used,
-)
-from amprep.supports.routes.network import Network
+from amprep.supports.grid.red_squares import RedSquares
+from amprep.supports.routes.network import NO_VOXELS, Network, voxels_below
 
 
 class Routed(NamedTuple):
-    """Where the supports run.
+    """The routed edges of a build.
 
     Attributes
     ----------
     edges
-        ``(n, 7)`` int32: plane, y, x, direction, flow, capacity, part; edges of several plans may repeat.
+        Edges of several plans; the same edge may occur more than once.
     reasons
-        For each red square; ``""`` when it is connected.
+        For each red square, why it is unconnected; ``""`` when it is connected.
     """
 
-    edges: Ints
+    edges: SupportEdges
     reasons: tuple[str, ...]
 
 
 def route_together(network: Network, progress: Progress) -> Routed:
-    """Route everything as one network, as in the thesis: supports of different parts may merge."""
-    reds = np.flatnonzero(network.red.square[:, 0] > 0).astype(np.int32)
-    edges = network.connect(reds, no_voxels(), network.stop, progress)
-    edges[:, 6] = part_of_edges(edges, network.red, reds)
-    return Routed(edges, tuple(network.reasons))
+    """Route all parts as one network, as in the thesis: supports of different parts may merge."""
+    reds = _above_plate(network.red)
+    edges = network.connect(reds, NO_VOXELS, network.stop, progress)
+    return Routed(_with_parts(edges, network.red, reds), tuple(network.reasons))
 
 
 def route_apart(network: Network, progress: Progress) -> Routed:
-    """Route part by part; squares and voxels in use are closed to the parts that follow.
+    """Route part by part; the voxels in use are closed to the parts that follow.
 
-    Parts come by the height of their highest red square, lowest first: the less height, the less room to
-    give way. Cubes right below the red squares of other parts are kept free for these. Each part gets an equal
-    share of the time that is left. Red squares that stay unconnected are then routed once more with the voxels
-    of other supports open: they share where they must.
+    Parts are routed in the order of their highest red square, lowest first: the lower it is, the fewer squares
+    can a path move sideways. The voxels below the red squares of the other parts stay free for these parts. Each
+    part gets an equal fraction of the remaining time. Red squares that stay unconnected are then routed through
+    the supports of other parts.
     """
-    red = network.red
-    above = red.square[:, 0] > 0
+    red, above = network.red, network.red.square[:, 0] > 0
     parts = sorted(
         set(red.part[above].tolist()), key=lambda part: (int(red.square[red.part == part, 0].max()), part)
     )
-    blocks = [no_edges()]
+    blocks: list[SupportEdges] = []
     for done, part in enumerate(parts):
         own = np.flatnonzero(above & (red.part == part)).astype(np.int32)
         kept = voxels_below(red.square[above & (red.part != part)])
-        kept = kept[~np.isin(keys_of(kept), keys_of(voxels_below(red.square[own])))]
-        closed = np.concatenate([kept, *(voxels_used(block) for block in blocks)])
-        edges = network.connect(own, closed, _equal_share(network.stop, len(parts) - done), silent)
-        edges[:, 6] = part
-        blocks.append(edges)
+        kept = kept[~np.isin(square_keys(kept), square_keys(voxels_below(red.square[own])))]
+        closed = np.concatenate([kept, *(block.voxels for block in blocks)])
+        edges = network.connect(own, closed, _fraction_of_time(network.stop, len(parts) - done), silent)
+        blocks.append(replace(edges, part=np.full(len(edges), part)))
         progress((done + 1) / (len(parts) + 1), "routing part by part")
-    edges = share(network, np.concatenate(blocks))
+    edges = route_shared(network, SupportEdges.concatenate(blocks))
     return Routed(edges, tuple(network.reasons))
 
 
-def _equal_share(stop: Stop, count: int) -> Stop:
-    """Return a stop that leaves as much time for each of `count - 1` others, when there is a limit."""
+def _above_plate(red: RedSquares) -> Ints:
+    """Return the numbers of the red squares that are not on the plate."""
+    return np.flatnonzero(red.square[:, 0] > 0).astype(np.int32)
+
+
+def _fraction_of_time(stop: Stop, count: int) -> Stop:
+    """Return a stop after 1 / `count` of the remaining time; the same stop when there is no deadline."""
     return stop if stop.deadline is None else stop.within(stop.remaining() / count)
 
 
-def share(network: Network, edges: Ints) -> Ints:
-    """Return the edges with those that connect the red squares left over through other parts' supports.
+def route_shared(network: Network, edges: SupportEdges) -> SupportEdges:
+    """Connect the unconnected red squares through the supports of other parts.
 
-    First the router connects them as far as there is room beside the flow of `edges`. Those that capacities then
-    leave out are connected by the greatest flow in one network of all parts that starts from what flows
-    already, and that exceeds capacities at last where escalation is allowed.
+    The router first connects them within the capacity that the flow of `edges` leaves. Red squares for which that
+    does not suffice are connected by a maximum flow in one network of all parts. It starts from the flow of
+    `edges` and exceeds capacities only where escalation allows it.
+
+    Returns
+    -------
+    All edges, those of `edges` included.
     """
-    left = network.left()
+    left = network.unconnected()
     if not left.size:
         return edges
-    posed = network.pose(left, no_voxels())
-    way = has_way(posed.problem)[posed.number]
-    network.explain(left[~way], ENCLOSED)
-    left = left[way]
-    edges = merge_edges(np.concatenate([edges, _beside(network, edges, left)]))
+    posed = network.pose(left, NO_VOXELS)
+    reachable = has_way(posed.problem)[posed.number]
+    network.explain(left[~reachable], ENCLOSED)
+    left = left[reachable]
+    edges = SupportEdges.concatenate([edges, _route_within_capacity(network, edges, left)]).merged()
     if network.stop():
-        network.explain(left[np.isin(left, network.left())], OUT_OF_TIME)
-    elif network.left(CAPACITY).size:
-        edges = _completed(network, edges)
+        network.explain(left[np.isin(left, network.unconnected())], OUT_OF_TIME)
+    elif network.unconnected(CAPACITY).size:
+        edges = _complete(network, edges)
     return edges
 
 
-def _beside(network: Network, edges: Ints, left: Ints) -> Ints:
-    """Connect red squares that have a way, with no capacity exceeded, by the router.
+def _route_within_capacity(network: Network, edges: SupportEdges, left: Ints) -> SupportEdges:
+    """Route reachable red squares beside the flow of `edges` without exceeding a capacity.
 
-    It does not know the flow that is there already, so squares where both together exceed a capacity are closed
-    and all is routed again, until nothing is exceeded.
+    The router does not know that flow. The squares where both flows together exceed a capacity are therefore
+    closed, and all is routed again, until no capacity is exceeded.
     """
-    rules, closed = network.rules, no_voxels()
+    rules, closed = network.rules, NO_VOXELS
     limit = rules.edge_limit(network.frame, int(network.red.square[:, 0].max()))
     while left.size and not network.stop():
         network.rules = rules._replace(escalation="none")
         more = network.connect(left, closed, network.stop, silent)
         network.rules = rules
-        network.explain(left[np.isin(left, network.left(ENCLOSED))], CAPACITY)
-        more[:, 6] = part_of_edges(more, network.red, left)
-        full = _exceeded(np.concatenate([edges, more]), limit, rules.node_capacity)
-        full = full[np.isin(keys_of(full), keys_of(voxels_below(more[:, :3])))]
+        network.explain(left[np.isin(left, network.unconnected(ENCLOSED))], CAPACITY)
+        more = _with_parts(more, network.red, left)
+        full = _exceeded(SupportEdges.concatenate([edges, more]).merged(), limit, rules.node_capacity)
+        full = full[np.isin(square_keys(full), square_keys(voxels_below(more.upper)))]
         if not len(full):
             return more
         closed = np.concatenate([closed, full])
-    return no_edges()
+    return SupportEdges.from_rows([])
 
 
-def _exceeded(edges: Ints, edge_capacity: int, node_capacity: int) -> Ints:
-    """Return the voxels below the squares, and below the edges' upper squares, that exceed the capacities."""
-    merged = merge_edges(edges)
-    over = np.zeros(len(merged), np.bool_)
+def _exceeded(edges: SupportEdges, edge_capacity: int, node_capacity: int) -> Ints:
+    """Return the voxels below the upper squares where edges or squares exceed a capacity; 0 is no capacity."""
+    over = np.zeros(len(edges), np.bool_)
     if edge_capacity:
-        over |= merged[:, 4] > edge_capacity
+        over |= edges.flow > edge_capacity
     if node_capacity:
-        _, square = np.unique(keys_of(merged[:, :3]), return_inverse=True)
-        over |= np.bincount(square, weights=merged[:, 4])[square] > node_capacity
-    return voxels_below(merged[over, :3])
+        _, square = np.unique(square_keys(edges.upper), return_inverse=True)
+        over |= np.bincount(square, weights=edges.flow)[square] > node_capacity
+    return voxels_below(edges.upper[over])
 
 
-def _completed(network: Network, edges: Ints) -> Ints:
-    """Return the edges of the greatest flow in one network of all parts, capacities raised where that is allowed."""
-    reds = np.flatnonzero(network.red.square[:, 0] > 0).astype(np.int32)
-    posed = network.pose(reds, no_voxels())
+def _complete(network: Network, edges: SupportEdges) -> SupportEdges:
+    """Return the edges of a maximum flow in one network of all parts, with escalation where that is allowed."""
+    reds = _above_plate(network.red)
+    posed = network.pose(reds, NO_VOXELS)
     connected = np.zeros(len(posed.problem.red), np.bool_)
-    connected[posed.number[~np.isin(reds, network.left())]] = True
-    inner = edges - np.append(posed.corner, [0, 0, 0, 0])
+    connected[posed.number[~np.isin(reds, network.unconnected())]] = True
+    plane, y, x = posed.corner
+    inner = replace(edges, plane=edges.plane - plane, y=edges.y - y, x=edges.x - x)
     plan = complete(posed.problem, inner, connected, stop=network.stop, progress=silent)
-    more = network.read(plan, posed, reds)
-    more[:, 6] = part_of_edges(more, network.red, reds)
-    return more
+    return _with_parts(network.read(plan, posed, reds), network.red, reds)
+
+
+def _with_parts(edges: SupportEdges, red: RedSquares, reds: Ints) -> SupportEdges:
+    """Assign each edge to the smallest part that has a red square, of those numbered `reds`, in its component."""
+    component, of_red = edges.components(red.square[reds])
+    smallest = np.full(
+        int(max(component.max(initial=-1), of_red.max(initial=-1))) + 1, np.iinfo(np.int32).max
+    )
+    np.minimum.at(smallest, of_red, red.part[reds])
+    return replace(edges, part=smallest[component])

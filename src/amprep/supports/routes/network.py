@@ -1,21 +1,26 @@
 """The voxels of a build and the red squares to connect, as a network that any router can be asked to route."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bytes, Int64s, Ints
+from amprep.arrays import Bytes, Int64s, Ints, frozen
 from amprep.checks.supports.plan import check_plan
 from amprep.errors import PluginError
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.control import Progress, Stop
+from amprep.model.support_edges import SupportEdges, square_keys
 from amprep.model.supports import ENCLOSED, OUT_OF_TIME, Escalation, SupportPlan, SupportProblem, Voxel
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.routes.edges import keys_of, no_edges, voxels_below
 from amprep.validation import LARGEST_COUNT
 
 Route = Callable[[SupportProblem, Stop, Progress], SupportPlan]
+"""A router: called with a problem, a stop and a progress callback, it returns a plan."""
+
+NO_VOXELS = frozen([], np.int32, 3)
+"""An empty list ``(0, 3)`` of voxels."""
 
 
 class Rules(NamedTuple):
@@ -86,19 +91,19 @@ class Network:
         self.reasons = [""] * len(red.part)
         self.notes: list[tuple[int | None, str]] = []
 
-    def connect(self, reds: Ints, closed: Ints, stop: Stop, progress: Progress) -> Ints:
+    def connect(self, reds: Ints, closed: Ints, stop: Stop, progress: Progress) -> SupportEdges:
         """Route the red squares numbered `reds` with the voxels ``closed[:, :3]`` (k, y, x) closed for once.
 
         Notes the reasons of those that stay unconnected, and returns the edges; without time nothing is routed.
         """
-        shut = np.isin(keys_of(voxels_below(self.red.square[reds])), keys_of(closed))
+        shut = np.isin(square_keys(voxels_below(self.red.square[reds])), square_keys(closed))
         self.explain(reds[shut], ENCLOSED)
         reds = reds[~shut]
         if len(reds) and stop():
             self.explain(reds, OUT_OF_TIME)
             self._note((f"routing ended early: {stop.reason}",), reds)
         if not len(reds) or stop():
-            return no_edges()
+            return SupportEdges.from_rows([])
         posed = self.pose(reds, closed)
         plan = self.route(posed.problem, stop, progress)
         broken = check_plan(posed.problem, plan)
@@ -110,7 +115,9 @@ class Network:
 
     def pose(self, reds: Ints, closed: Ints) -> Posed:
         """Return the problem of connecting `reds`, one or more: a path from plane p strays at most p squares."""
-        _, first, number = np.unique(keys_of(self.red.square[reds]), return_index=True, return_inverse=True)
+        _, first, number = np.unique(
+            square_keys(self.red.square[reds]), return_index=True, return_inverse=True
+        )
         square = self.red.square[reds[first]]
         top = int(square[:, 0].max())
         _, ny, nx = self.frame.shape
@@ -122,7 +129,7 @@ class Network:
         voxels[tuple(inner.T)] = Voxel.CLOSED
         return Posed(self._problem(voxels, square - corner, reds[first], corner), corner, number)
 
-    def read(self, plan: SupportPlan, posed: Posed, reds: Ints) -> Ints:
+    def read(self, plan: SupportPlan, posed: Posed, reds: Ints) -> SupportEdges:
         """Note what a plan says of the red squares it was asked for, and return its edges."""
         words = list(plan.notes)
         if plan.raised and self.rules.escalation != "none":
@@ -134,16 +141,15 @@ class Network:
         for red, i in zip(reds, posed.number.tolist(), strict=True):
             self.reasons[red] = reason.get(i, "")
         _, y, x = posed.corner
-        rows = (plan.plane, plan.y + y, plan.x + x, plan.direction, plan.flow, plan.capacity)
-        return np.column_stack([*rows, np.zeros(len(plan.flow))]).astype(np.int32)
+        return replace(plan.edges, y=plan.edges.y + y, x=plan.edges.x + x)
 
     def explain(self, reds: Ints, reason: str) -> None:
         """Note why red squares are not connected."""
         for red in reds:
             self.reasons[red] = reason
 
-    def left(self, *reasons: str) -> Ints:
-        """Return the red squares that are not connected, for one of these reasons if there are any."""
+    def unconnected(self, *reasons: str) -> Ints:
+        """Return the numbers of the unconnected red squares; with `reasons`, of those with one of these reasons."""
         return np.flatnonzero([each in reasons if reasons else each != "" for each in self.reasons]).astype(
             np.int32
         )
@@ -171,6 +177,11 @@ class Network:
             rules.material,
             rules.escalation,
         )
+
+
+def voxels_below(square: Ints) -> Ints:
+    """Return the voxel (k, y, x) below each square."""
+    return np.asarray(square - (1, 0, 0), np.int32)
 
 
 def _stretch(values: Ints, margin: int, limit: int) -> slice:

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Bytes, Ints
+from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import Voxel
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.grid.voxel_states import PartVoxels
-from amprep.supports.routes.edges import voxel_users
 
 DEEPEST = 2
 """Cubes below a green square that its foot may pass on its way to the surface."""
@@ -21,7 +21,7 @@ class Grounded(NamedTuple):
     Attributes
     ----------
     edges
-        Rows as in `Routed.edges`.
+        The edges of the columns.
     feet
         ``(k, 5)`` int32: the green square (plane, y, x) on top of a occupied voxel, the part, and how many voxels of
         its column the foot may pass downwards.
@@ -29,20 +29,25 @@ class Grounded(NamedTuple):
         ``(m,)`` which red squares they connect.
     """
 
-    edges: Ints
+    edges: SupportEdges
     feet: Ints
     served: Bools
 
 
 def stand_on_parts(
-    voxels: Bytes, meeting: Bytes, blocks: Sequence[PartVoxels], red: RedSquares, left: Bools, edges: Ints
+    voxels: Bytes,
+    meeting: Bytes,
+    blocks: Sequence[PartVoxels],
+    red: RedSquares,
+    left: Bools,
+    edges: SupportEdges,
 ) -> Grounded:
     """Lead the red squares that are `left` ``(m,)`` straight down to the first occupied voxel.
 
     That voxel has to belong to the part that the square holds, and to no other; the voxels on the way are white
     and in no other part's supports.
     """
-    users = voxel_users(edges)
+    users = edges.voxel_parts()
     found: list[list[int]] = []
     feet: dict[tuple[int, int, int], list[int]] = {}
     served = np.zeros(len(left), np.bool_)
@@ -62,7 +67,7 @@ def stand_on_parts(
             deep += 1
         feet[below + 1, y, x] = [below + 1, y, x, part, deep]
     return Grounded(
-        np.array(found, np.int32).reshape(-1, 7),
+        SupportEdges.from_rows(found),
         np.array(list(feet.values()), np.int32).reshape(-1, 5),
         served,
     )

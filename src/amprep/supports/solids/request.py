@@ -20,10 +20,11 @@ def make_request(
 
     A connector gets one voxel more than its red square's run, for the overlap.
     """
-    roles = np.where(layout.plane == 1, Role.FOOT, Role.TRUNK)
-    edges = np.column_stack(
-        [layout.plane, layout.y, layout.x, layout.flow, layout.edge_group, layout.direction, roles]
-    ).astype(np.int32)
+    own = layout.edges
+    roles = np.where(own.plane == 1, Role.FOOT, Role.TRUNK)
+    edges = np.column_stack([own.plane, own.y, own.x, own.flow, own.group, own.direction, roles]).astype(
+        np.int32
+    )
     if extend:
         edges = np.vstack([edges, _above_red(layout)])
     plane, y, x, load, group, direction, role = edges.T

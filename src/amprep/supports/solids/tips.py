@@ -56,13 +56,13 @@ def sink_depths(layout: SupportLayout, wish: Connector, *, most: float) -> Float
     _, profile = _profile(wish, frame.pitch)
     if profile is None:
         return np.zeros(len(layout.red))
-    leaning = layout.direction != 0
+    leaning = layout.edges.direction != 0
     _, ny, nx = frame.shape
 
     def place(plane: Ints, y: Ints, x: Ints) -> Ints:
         return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 
-    sideways = place(layout.plane[leaning], layout.y[leaning], layout.x[leaning])
+    sideways = place(*layout.edges.upper[leaning].T)
     share = np.where(np.isin(place(*layout.red.T), sideways), SINK_SIDEWAYS, SINK_UPRIGHT)
     return np.where(
         layout.red[:, 0] > 0, np.minimum(share * frame.step, min(profile.height + PAD, most)), 0.0

@@ -7,6 +7,7 @@ import pytest
 
 from amprep.checks.supports.plan import check_plan
 from amprep.geometry.voxels.grid import Grid
+from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem, Unconnected
 
 
@@ -30,18 +31,15 @@ def plan():
     """Two straight columns; the third red square is listed as enclosed, which it is."""
     planes = [4, 3, 2, 1] * 2
     nothing = np.zeros(8)
-    return SupportPlan(
-        planes, [1] * 8, [1] * 4 + [3] * 4, nothing, nothing + 1, nothing + 1, (Unconnected(2, ENCLOSED),)
-    )
+    edges = SupportEdges(planes, [1] * 8, [1] * 4 + [3] * 4, nothing, nothing + 1, nothing + 1)
+    return SupportPlan(edges, (Unconnected(2, ENCLOSED),))
 
 
 def changed(plan, index, **values):
-    arrays = {
-        name: np.array(getattr(plan, name)) for name in ("plane", "y", "x", "direction", "flow", "capacity")
-    }
+    arrays = {name: np.array(getattr(plan.edges, name)) for name in values}
     for name, value in values.items():
         arrays[name][index] = value
-    return replace(plan, **arrays)
+    return replace(plan, edges=replace(plan.edges, **arrays))
 
 
 def messages(task, plan):
@@ -76,9 +74,7 @@ def test_a_step_into_a_black_cube_is_found(task, plan):
 
 
 def test_a_column_that_ends_in_the_air_is_found(task, plan):
-    short = replace(
-        plan, **{n: getattr(plan, n)[:-1] for n in ("plane", "y", "x", "direction", "flow", "capacity")}
-    )
+    short = replace(plan, edges=plan.edges[:-1])
     assert "receives 1 and passes on 0" in messages(task, short)
 
 
@@ -91,9 +87,7 @@ def test_red_squares_must_be_connected_or_listed_once_with_a_true_reason(task, p
         task, replace(plan, unconnected=(Unconnected(2, "tired"),))
     )
     assert "no white way" in messages(task, replace(plan, unconnected=(Unconnected(2, CAPACITY),)))
-    half = replace(
-        plan, **{n: getattr(plan, n)[:4] for n in ("plane", "y", "x", "direction", "flow", "capacity")}
-    )
+    half = replace(plan, edges=plan.edges[:4])
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, ENCLOSED)))
     assert "there is a white way" in messages(task, lazy)
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, CAPACITY)))
@@ -103,15 +97,10 @@ def test_red_squares_must_be_connected_or_listed_once_with_a_true_reason(task, p
 
 def merged_plan(plan):
     """Both columns joined in the middle: x 1 and 3 step to 2, then two straight edges of two paths."""
-    return SupportPlan(
-        [4, 4, 3, 2, 1],
-        [1] * 5,
-        [1, 3, 2, 2, 2],
-        [1, 2, 0, 0, 0],
-        [1, 1, 2, 2, 2],
-        [1, 1, 2, 2, 2],
-        plan.unconnected,
+    edges = SupportEdges(
+        [4, 4, 3, 2, 1], [1] * 5, [1, 3, 2, 2, 2], [1, 2, 0, 0, 0], [1, 1, 2, 2, 2], [1, 1, 2, 2, 2]
     )
+    return SupportPlan(edges, plan.unconnected)
 
 
 def test_capacities_of_the_problem_bind_edges_and_squares_above_the_plate(task, plan):

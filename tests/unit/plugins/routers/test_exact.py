@@ -37,24 +37,24 @@ def test_what_has_no_way_at_all_is_enclosed(router):
     voxels[0] = Voxel.CLOSED
     plan = route(router, replace(task, voxels=voxels, green=voxels[0] == Voxel.FREE))
     assert [each.reason for each in plan.unconnected] == [ENCLOSED]
-    assert (plan.objective, len(plan.flow)) == (0.0, 0)
+    assert (plan.objective, len(plan.edges.flow)) == (0.0, 0)
 
 
 @pytest.mark.parametrize("router", ROUTERS)
 def test_a_problem_without_red_squares_gets_an_empty_plan(router):
-    assert len(route(router, hanging((3, 4, 5), [])).flow) == 0
+    assert len(route(router, hanging((3, 4, 5), [])).edges) == 0
 
 
 @pytest.mark.parametrize("router", ROUTERS)
 def test_the_same_problem_gives_the_same_plan(router):
     first, second = route(router, random_problem(5)), route(router, random_problem(5))
     for name in ("plane", "y", "x", "direction", "flow"):
-        np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
+        np.testing.assert_array_equal(getattr(first.edges, name), getattr(second.edges, name))
 
 
 def test_a_red_square_over_nothing_gets_a_straight_column():
     plan = route("min-cost-flow", hanging((6, 5, 5), [(2, 3)]))
-    assert plan.direction.tolist() == [0] * 5
+    assert plan.edges.direction.tolist() == [0] * 5
     assert (plan.objective, plan.bound, plan.status) == (5.0, 5.0, "optimal")
 
 
@@ -146,7 +146,7 @@ def test_straight_edges_come_first_where_there_is_a_choice():
         hanging((9, 6, 6), [(y, x) for y in range(1, 5) for x in range(1, 5)], node_capacity=1),
     )
     assert plan.unconnected == ()
-    assert set(plan.direction.tolist()) == {0}
+    assert set(plan.edges.direction.tolist()) == {0}
 
 
 def test_what_does_not_fit_through_a_hole_is_listed():
@@ -192,7 +192,7 @@ def test_more_paths_than_16_bits_count_meet_in_a_square():
     task = grids.problem(voxels, np.argwhere(np.ones((254, 16, 16))) + (17, 0, 0))
     plan = grids.route("shortest-paths", task, rounds=0)
     assert check_plan(task, plan) == []
-    assert (plan.unconnected, int(plan.flow.max())) == ((), 254 * 16 * 16)
+    assert (plan.unconnected, int(plan.edges.flow.max())) == ((), 254 * 16 * 16)
 
 
 def test_relabelling_all_at_any_time_changes_nothing_in_the_value(monkeypatch):

@@ -32,27 +32,25 @@ def route(task, seed=1, **params):
 
 
 def rows(plan):
-    return sorted(
-        zip(plan.plane.tolist(), plan.y.tolist(), plan.x.tolist(), plan.direction.tolist(), strict=True)
-    )
+    return sorted(map(tuple, np.column_stack([plan.edges.upper, plan.edges.direction]).tolist()))
 
 
 def test_a_lone_red_square_gets_a_straight_column():
     plan = route(hanging((6, 5, 5), [(2, 3)]))
     assert rows(plan) == [(p, 2, 3, 0) for p in range(1, 6)]
-    assert plan.flow.tolist() == [1] * 5
+    assert plan.edges.flow.tolist() == [1] * 5
 
 
 def test_two_columns_side_by_side_become_one_trunk():
     """Apart they cost 2 * 20 edges; joined after one sideways step 21."""
     plan = route(hanging((21, 5, 5), [(2, 2), (2, 3)]))
-    assert len(plan.flow) == 21
-    assert np.bincount(plan.flow).tolist() == [0, 2, 19]
+    assert len(plan.edges.flow) == 21
+    assert np.bincount(plan.edges.flow).tolist() == [0, 2, 19]
 
 
 def test_without_a_reward_for_sharing_paths_stay_straight():
     plan = route(hanging((21, 5, 5), [(2, 2), (2, 3)]), g=(1.0, 1.0), neighbour_discount=0.0)
-    assert set(plan.direction.tolist()) == {0}
+    assert set(plan.edges.direction.tolist()) == {0}
 
 
 def test_a_path_goes_round_what_is_below_with_the_fewest_sideways_steps():
@@ -60,8 +58,8 @@ def test_a_path_goes_round_what_is_below_with_the_fewest_sideways_steps():
     voxels = task.voxels.copy()
     voxels[2:4, 2:5, 2:5] = Voxel.OCCUPIED
     plan = route(replace(task, voxels=voxels))
-    assert len(plan.flow) == 8
-    assert (plan.direction > 0).sum() == 2
+    assert len(plan.edges.flow) == 8
+    assert (plan.edges.direction > 0).sum() == 2
 
 
 def test_a_red_square_above_a_closed_room_is_enclosed():
@@ -100,28 +98,30 @@ def test_capacities_are_kept_and_what_they_forbid_is_listed():
     plan = route(funnel(7, edge_capacity=3))
     assert {each.reason for each in plan.unconnected} == {CAPACITY}
     assert len(plan.unconnected) == 4  # the hole's voxel has one way in from above, straight down
-    assert plan.capacity.tolist() == [3] * len(plan.flow)
+    assert plan.edges.capacity.tolist() == [3] * len(plan.edges.flow)
 
 
 def test_paths_per_square_gives_way_where_all_must_pass_one_hole():
     plan = route(funnel(7), paths_per_square=2)
     assert plan.unconnected == ()
-    assert plan.flow.max() >= 3
+    assert plan.edges.flow.max() >= 3
 
 
 def test_a_crowd_does_not_pile_up_in_one_square():
     task = hanging((30, 20, 20), [(y, x) for y in range(4, 16) for x in range(4, 16)])
     plan = route(task)
-    inflow = np.bincount(np.ravel_multi_index((plan.plane, plan.y, plan.x), (31, 20, 20)), weights=plan.flow)
+    inflow = np.bincount(
+        np.ravel_multi_index(tuple(plan.edges.upper.T), (31, 20, 20)), weights=plan.edges.flow
+    )
     assert inflow.max() <= 9
-    assert len(plan.flow) < 0.5 * 144 * 29
+    assert len(plan.edges.flow) < 0.5 * 144 * 29
 
 
 def test_the_same_seed_gives_the_same_plan():
     task = hanging((12, 9, 9), [(y, x) for y in range(2, 7) for x in range(2, 7)])
     first, second = route(task, seed=5), route(task, seed=5)
     assert rows(first) == rows(second)
-    assert first.flow.tolist() == second.flow.tolist()
+    assert first.edges.flow.tolist() == second.edges.flow.tolist()
 
 
 def test_a_stopped_run_still_connects_everything():
@@ -136,7 +136,7 @@ def test_a_stopped_run_still_connects_everything():
 
 
 def test_a_problem_without_red_squares_gets_an_empty_plan():
-    assert len(route(problem(np.zeros((3, 4, 5)), [])).flow) == 0
+    assert len(route(problem(np.zeros((3, 4, 5)), [])).edges) == 0
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ def route(router, task, stop=None, **table):
 
 
 def material(task, plan):
-    return float(np.array(task.material)[np.minimum(plan.direction, 1)].sum())
+    return float(np.array(task.material)[np.minimum(plan.edges.direction, 1)].sum())
 
 
 @pytest.mark.parametrize("name", ["ball", "two-balls", "plate"])
@@ -100,4 +100,4 @@ def test_auto_picks_by_size_and_capacity_and_says_so(monkeypatch, rules, small, 
     task = replace(scene("ball", 16), **rules)
     plan, chosen = route("auto", task), route(expected, task)
     assert plan.notes[0].startswith(f"auto chose the router {expected}: ")
-    assert plan.flow.tolist() == chosen.flow.tolist()
+    assert plan.edges.flow.tolist() == chosen.edges.flow.tolist()
