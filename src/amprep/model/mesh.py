@@ -1,6 +1,7 @@
 """A triangle mesh: vertices and triangles, nothing else."""
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,3 +49,10 @@ class Mesh:
     def moved(self, matrix: Floats) -> "Mesh":
         """Return the mesh under the ``(4, 4)`` row-major affine `matrix` (column vectors)."""
         return Mesh(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.triangles)
+
+
+def join_meshes(meshes: Sequence[Mesh]) -> Mesh:
+    """Return one mesh with the vertices and triangles of all, in their order; nothing is united."""
+    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
+    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))

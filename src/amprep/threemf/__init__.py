@@ -1,4 +1,4 @@
-"""Reading and writing 3MF; the only package that knows lib3mf, and it loads it only when a function runs."""
+"""Read and write 3MF files. This is the only package that uses lib3mf, which it loads when a function needs it."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -24,14 +24,14 @@ def read_beams(path: Path) -> tuple[Floats, Ints, Floats] | None:
 
 
 def modifier_note(name: str) -> str:
-    """Return what reading says of a modifier; see `amprep.threemf.read.objects.modifier_note`."""
+    """Return the note about a modifier; see `amprep.threemf.read.objects.modifier_note`."""
     from amprep.threemf.read.objects import modifier_note as run
 
     return run(name)
 
 
 def write_build(build: Build, path: Path) -> None:
-    """Write a build job; see `amprep.threemf.write.write_build`."""
+    """Write a build file; see `amprep.threemf.write.write_build`."""
     from amprep.threemf.write import write_build as run
 
     run(build, path)
@@ -52,7 +52,7 @@ def write_parts(
 
 
 def read_build(path: Path) -> Build:
-    """Read a build job back from its file alone; see `amprep.threemf.build.read.read_build`."""
+    """Read a build from its file; see `amprep.threemf.build.read.read_build`."""
     from amprep.threemf.build.read import read_build as run
 
     return run(path)

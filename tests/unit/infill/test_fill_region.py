@@ -23,10 +23,11 @@ from amprep.model import Mesh, MeshCell, Part, Region, Stop, silent
 from amprep.model.rotations import parse_rotations
 from amprep.pipeline.choose_cell import cell_named
 from amprep.threemf import read_parts, write_parts
-from amprep.threemf.read.slicer_config import cura_role, with_loose
+from amprep.threemf.names import CURA_NAMESPACE
+from amprep.threemf.read.separate_regions import SeparateRegion, assign_regions
+from amprep.threemf.read.slicer_config import cura_role
 from amprep.threemf.write import write_document
-from amprep.threemf.write.document import Body, Document, Instance, Item
-from amprep.threemf.write.generic_and_cura import CURA_NAMESPACE
+from amprep.threemf.write.document import BuildItem, Document, MeshObject, PlacedObject
 
 ROOT = Path(__file__).parents[3]
 PACKAGES = ("gyroid", "honeycomb", "pillar")
@@ -238,20 +239,22 @@ def test_modifiers_of_cura_mark_the_parts_that_they_lie_in():
         Part(name, BLOCK, 1728.0, positions=np.array([[at, 0.0, 0.0]]))
         for name, at in (("a", 50.0), ("b", 90.0))
     ]
-    a, b = with_loose(parts, [(Region("lattice", "core", mesh=CORE), np.array([[50.0, 1.0, 0.0]]))])
+    a, b = assign_regions(
+        parts, [SeparateRegion(Region("lattice", "core", mesh=CORE), np.array([[50.0, 1.0, 0.0]]))]
+    )
     assert b.regions == ()
     assert a.regions[0].mesh.bounds[0] == pytest.approx([2, 3, 2])
 
 
 def test_a_plate_of_cura_is_read_with_its_modifier_as_a_region_not_as_a_part(tmp_path):
     bodies = (
-        Body("block", BLOCK),
-        Body("core", CORE, metadata=((CURA_NAMESPACE, "infill_mesh", "True"),)),
+        MeshObject("block", BLOCK),
+        MeshObject("core", CORE, metadata=((CURA_NAMESPACE, "infill_mesh", "True"),)),
     )
     place = np.eye(4)
     place[:3, 3] = (30, 40, 0)
-    items = tuple(Item((Instance(number, place),), ()) for number in (1, 0))
-    write_document(Document("plate", (), bodies, items), tmp_path / "plate.3mf", slicer=False)
+    items = tuple(BuildItem((PlacedObject(number, place),), ()) for number in (1, 0))
+    write_document(Document("plate", (), bodies, items), tmp_path / "plate.3mf", with_volumes=False)
     (part,) = read_parts(tmp_path / "plate.3mf")
     (region,) = part.regions
     assert (part.name, region.kind, region.name) == ("block", "lattice", "core")

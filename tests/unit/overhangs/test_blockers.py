@@ -11,7 +11,6 @@ from amprep.geometry.meshes.subdivision import subdivide
 from amprep.model import Mesh, Part, PlacedPart, Region
 from amprep.overhangs.blockers import FINEST, mark
 from amprep.overhangs.of_part import needs_of
-from amprep.threemf.read.painted_supports import Painted, decode, find_paint, painted_regions
 
 SLAB = box_mesh((0, 0, 10), (100, 60, 5))
 """Its underside is two triangles."""
@@ -92,60 +91,3 @@ def test_refining_ends_where_nothing_is_wanted_and_names_the_parents():
 
 def _size(corners):
     return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
-
-
-A, B, C, AB, BC, CA = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]])
-
-
-@pytest.mark.parametrize(
-    ("text", "corners"),
-    [
-        ("4", (A, B, C)),
-        ("041", (BC, C, A)),
-        ("401", (A, B, BC)),
-        ("045", (CA, A, B)),
-        ("049", (AB, B, C)),
-        ("0042", (B, C, CA)),
-        ("4002", (A, AB, CA)),
-        ("0406", (BC, C, AB)),
-        ("400A", (C, CA, BC)),
-        ("00043", (AB, BC, CA)),
-        ("40003", (A, AB, CA)),
-    ],
-)
-def test_painted_pieces_are_where_prusaslicer_puts_its_supports(text, corners):
-    """Compared with where PrusaSlicer 2.5 lays support when it slices a plate painted with the same text."""
-    pieces, states = decode(text)
-    assert states.tolist() == [1]
-    assert sorted(map(tuple, pieces[0])) == sorted(map(tuple, np.array(corners, float)))
-
-
-def test_pieces_of_pieces_halve_again():
-    pieces, states = decode("000" + "00043" + "3")
-    assert states.tolist() == [1]
-    assert np.linalg.det(pieces[0]) == pytest.approx(1 / 16), "share of the triangle's area"
-
-
-def test_other_states_are_read_and_left_out():
-    assert decode("8")[1].tolist() == [2]
-    assert len(decode("0")[0]) == 0
-    assert len(decode("5C")[0]) == 0, "a state above 2, in two digits"
-
-
-@pytest.mark.parametrize("text", ["1", "41", "44", "4D", "000041", "1" * 5000])
-def test_damaged_paint_is_an_error(text):
-    with pytest.raises(ValueError, match="it "):
-        decode(text)
-
-
-def test_damaged_paint_is_noted_and_the_rest_kept():
-    model = b"""<model><object id="7"><mesh><triangles><triangle v1="0" v2="1" v3="2"/>
-    <triangle v1="0" v2="2" v3="3" slic3rpe:custom_supports="4"/><triangle paint_supports="41" v1="0" v2="2" v3="4"/>
-    </triangles></mesh></object><object id="8" name="a > b"><triangles><triangle/></triangles></object></model>"""
-    ((name, painted),) = find_paint(model).items()
-    assert (name, painted) == (7, Painted(3, {1: "4", 2: "41"}))
-    corners = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 4]])
-    regions, words = painted_regions(painted, np.zeros((5, 3)), corners, np.array([False, True, True]), 10)
-    assert [(region.kind, region.triangles.tolist()) for region in regions] == [("enforcer", [10])]
-    assert "1 triangles are damaged" in words
-    assert painted_regions(painted, np.zeros((5, 3)), corners[:2], np.ones(2, bool), 0)[1]

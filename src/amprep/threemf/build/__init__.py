@@ -1,1 +1,1 @@
-"""Build jobs: the record in a 3MF file, and reading it back."""
+"""Build files: amprep's metadata in them, and reading them back."""

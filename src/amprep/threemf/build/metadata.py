@@ -1,7 +1,7 @@
-"""amprep's own metadata in a build job, read from its XML.
+"""Read amprep's own metadata of a build file from its XML.
 
-Not by lib3mf: in its version 2.5.0 a value comes back with part of its end tag when its buffer of 64 KiB
-ends within that tag.
+lib3mf 2.5.0 cannot read it: a value comes back with part of its end tag if the end of lib3mf's buffer of 64 KiB
+falls within that tag.
 """
 
 import io
@@ -9,64 +9,59 @@ import zipfile
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from amprep.threemf.build.record import NAMESPACE, numbered
-from amprep.threemf.write.skeleton import MODEL_NAME
+from amprep.threemf.build.record import numbered
+from amprep.threemf.names import CORE_NAMESPACE, MODEL_NAME, NAMESPACE
+from amprep.threemf.package.xml import parse_xml
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-_CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+_CORE = f"{{{CORE_NAMESPACE}}}"
 
 
-class Entries(NamedTuple):
-    """Name and value of amprep's metadata: of the model, and of each build item in their order."""
+class BuildMetadata(NamedTuple):
+    """Names and values of amprep's metadata of the model and of each build item."""
 
     model: dict[str, str]
     items: list[dict[str, str]]
 
 
-def read_entries(package: bytes) -> Entries:
-    """Read the metadata of a package that has been looked through; empty where amprep wrote none.
+def read_metadata(package: bytes) -> BuildMetadata:
+    """Read the metadata of a scanned package; it is empty if amprep did not write the file.
 
     Raises
     ------
     ValueError
         If the model is not well-formed.
     """
-    from lxml import etree
-
     with zipfile.ZipFile(io.BytesIO(package)) as archive:
         text = archive.read(MODEL_NAME) if MODEL_NAME in archive.namelist() else b"<model/>"
-    parser = etree.XMLParser(resolve_entities=False, no_network=True)
-    try:
-        model = etree.fromstring(_without_meshes(text), parser)
-    except etree.XMLSyntaxError as error:
-        raise ValueError(f"it is not well-formed XML: {error}") from None
+    model = parse_xml(_without_meshes(text))
     items = model.iterfind(f"{_CORE}build/{_CORE}item")
-    return Entries(
-        _own(model, model.iterfind(f"{_CORE}metadata")),
-        [_own(item, item.iterfind(f"{_CORE}metadatagroup/{_CORE}metadata")) for item in items],
+    return BuildMetadata(
+        _own_entries(model, model.iterfind(f"{_CORE}metadata")),
+        [_own_entries(item, item.iterfind(f"{_CORE}metadatagroup/{_CORE}metadata")) for item in items],
     )
 
 
 def _without_meshes(text: bytes) -> bytes:
-    """Return the model without what is nearly all of it."""
+    """Return the model without its meshes, which are nearly all of its text."""
     head, *rest = text.split(b"<mesh>")
     return head + b"".join(each.partition(b"</mesh>")[2] for each in rest)
 
 
-def _own(scope: "_Element", metadata: Iterable["_Element"]) -> dict[str, str]:
-    """Return amprep's entries, those that were cut into several joined."""
-    parts: dict[str, str] = {}
+def _own_entries(scope: "_Element", metadata: Iterable["_Element"]) -> dict[str, str]:
+    """Return amprep's entries, with the sections of a split entry joined."""
+    sections: dict[str, str] = {}
     for each in metadata:
         prefix, _, name = each.get("name", "").rpartition(":")
         if scope.nsmap.get(prefix) == NAMESPACE:
-            parts[name] = each.text or ""
-    return {name: _joined(name, parts) for name in parts if "." not in name}
+            sections[name] = each.text or ""
+    return {name: _joined(name, sections) for name in sections if "." not in name}
 
 
-def _joined(name: str, parts: dict[str, str]) -> str:
+def _joined(name: str, sections: dict[str, str]) -> str:
     count = 1
-    while numbered(name, count + 1) in parts:
+    while numbered(name, count + 1) in sections:
         count += 1
-    return "".join(parts[numbered(name, number)] for number in range(1, count + 1))
+    return "".join(sections[numbered(name, number)] for number in range(1, count + 1))

@@ -1,4 +1,4 @@
-"""What amprep writes about a build into its 3MF: namespace, names of the metadata, records of the model."""
+"""Convert the records of a build to the JSON in a build file's metadata, and back."""
 
 from collections.abc import Sequence
 from pathlib import PurePath
@@ -11,41 +11,38 @@ from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
 from amprep.threemf.build.values import (
-    Record,
-    flag,
-    listing,
-    mapping,
+    JsonObject,
+    as_list,
+    as_object,
+    boolean,
+    choice,
+    integer,
+    integers,
     number,
     plain,
+    string,
     table,
-    text,
-    whole,
-    wholes,
-    word,
 )
 
-NAMESPACE = "http://schemas.amprep.dev/3mf/2026/11"
-"""Namespace of all metadata that amprep reads from jobs and writes into builds."""
-
 FORMAT_VERSION = "1"
-"""Version of the record; a file with another one is refused by name."""
+"""Version of the metadata; a file with another version is refused."""
 
 FORMAT, SETTINGS, VOLUME, PARTS, UNSUPPORTED = "format", "settings", "volume", "parts", "unsupported"
-"""Names of the model's metadata in `NAMESPACE`."""
+"""Names of the model's metadata in amprep's namespace."""
 
-PIECES = "pieces"
-"""Name of a build item's metadata in `NAMESPACE`: its parts and supports, in the order of their geometry."""
+BODIES = "bodies"
+"""Name of a build item's metadata in amprep's namespace: its parts and supports, in the order of their geometry."""
 
 HOLDS = "holds"
-"""Name of a support object's metadata in `NAMESPACE`: the labels of the parts that it holds."""
+"""Name of a support object's metadata in amprep's namespace: the labels of the parts that it holds."""
 
 
 def numbered(name: str, number: int) -> str:
-    """Return the name of the n-th part of an entry that is cut into several."""
+    """Return the name of section `number`, from 1, of a metadata entry that is split because of its length."""
     return name if number == 1 else f"{name}.{number}"
 
 
-_SETTING_TEXTS = ("build_id", "printer")
+_SETTING_STRINGS = ("build_id", "printer")
 _SETTING_NUMBERS = (
     "clearance",
     "lift",
@@ -60,28 +57,28 @@ _SETTING_NUMBERS = (
 _OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
 
 
-def settings_record(settings: BuildSettings) -> Record:
-    """Return all rules of a build but its build volume."""
+def settings_record(settings: BuildSettings) -> JsonObject:
+    """Return the settings of a build without its build volume."""
     names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "grounding", "supports_as")
     return {name: getattr(settings, name) for name in names}
 
 
 def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
-    """Return the rules of a build; like all readers here, raises ValueError for a value of the wrong kind."""
-    values = mapping(record, SETTINGS)
-    texts = {name: text(values, name) for name in _SETTING_TEXTS}
+    """Return the settings of a build; like all readers below, raise ValueError for a value of the wrong type."""
+    values = as_object(record, SETTINGS)
+    strings = {name: string(values, name) for name in _SETTING_STRINGS}
     numbers = {name: number(values, name) for name in _SETTING_NUMBERS}
-    target = cast("Target", word(values, "target", TARGETS))
+    target = cast("Target", choice(values, "target", TARGETS))
     grounding = cast(
-        "Grounding", word(values, "grounding", get_args(Grounding)) if "grounding" in values else "plate"
+        "Grounding", choice(values, "grounding", get_args(Grounding)) if "grounding" in values else "plate"
     )
     supports_as = cast(
         "SupportsAs",
-        word(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
+        choice(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
     )
-    supported = flag(values, "supported")
+    supported = boolean(values, "supported")
     return BuildSettings(
-        **texts,  # type: ignore[arg-type]
+        **strings,  # type: ignore[arg-type]
         **numbers,  # type: ignore[arg-type]
         target=target,
         supported=supported,
@@ -91,37 +88,37 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     )
 
 
-def volume_record(space: BuildVolume) -> Record:
-    """Return size, shape and forbidden zones (x0 y0 z0 x1 y1 z1 each), mm."""
+def volume_record(space: BuildVolume) -> JsonObject:
+    """Return size, shape and forbidden zones of a build volume; a zone is x0, y0, z0, x1, y1, z1 in mm."""
     zones = np.hstack([space.zone_lo, space.zone_hi])
     return {"size": plain(space.size), "shape": space.shape, "zones": plain(zones)}
 
 
 def volume_of(record: Any) -> BuildVolume:
     """Return the build volume."""
-    values = mapping(record, VOLUME)
-    shape = cast('Literal["box", "cylinder"]', word(values, "shape", ("box", "cylinder")))
+    values = as_object(record, VOLUME)
+    shape = cast('Literal["box", "cylinder"]', choice(values, "shape", ("box", "cylinder")))
     zones = table(values, "zones", 6)
     return BuildVolume(table(values, "size", 3).reshape(-1), shape, zones[:, :3], zones[:, 3:])
 
 
-def orientations_record(orientations: Orientations) -> Record:
-    """Return freedom and rotation matrices, nine numbers each, row by row."""
+def orientations_record(orientations: Orientations) -> JsonObject:
+    """Return the freedom and the rotation matrices, nine numbers each in row-major order."""
     return {"freedom": orientations.freedom, "matrices": plain(orientations.matrices.reshape(-1, 9))}
 
 
 def orientations_of(record: Any) -> Orientations:
     """Return the allowed orientations."""
-    values = mapping(record, "orientations")
-    freedom = cast("Freedom", word(values, "freedom", get_args(Freedom)))
+    values = as_object(record, "orientations")
+    freedom = cast("Freedom", choice(values, "freedom", get_args(Freedom)))
     return Orientations(freedom, table(values, "matrices", 9).reshape(-1, 3, 3))
 
 
-def part_record(part: Part) -> Record:
-    """Return all that is known of a part but its mesh and the colours of its triangles.
+def part_record(part: Part) -> JsonObject:
+    """Return a part without its mesh and the colours of its triangles.
 
-    `source` keeps the file's name only, so that a build's bytes do not depend on where the job lay.
-    Regions to be filled with cells are left out: no judge asks for them.
+    `source` is reduced to the file's name, so that a build's bytes do not depend on the job's folder.
+    Regions to be filled with cells are left out because no judge needs them.
     """
     return {
         "name": part.name,
@@ -143,30 +140,38 @@ def part_record(part: Part) -> Record:
 
 
 def part_of(record: Any, mesh: Mesh, triangle_colours: Any | None) -> Part:
-    """Return the part of a record with the geometry and triangle colours that the file holds for it."""
-    values = mapping(record, "part")
-    colour, material = (_text_or_none(values, name) for name in ("colour", "material"))
+    """Return a part.
+
+    Parameters
+    ----------
+    record
+        The JSON object that `part_record` made.
+    mesh, triangle_colours
+        Geometry and colours ``(m, 3)`` of the part's object in the file.
+    """
+    values = as_object(record, "part")
+    colour, material = (_string_or_none(values, name) for name in ("colour", "material"))
     return Part(
-        name=text(values, "name"),
+        name=string(values, "name"),
         mesh=mesh,
         volume_mm3=number(values, "volume_mm3"),
-        quantity=whole(values, "quantity"),
+        quantity=integer(values, "quantity"),
         value=_number_or_none(values, "value"),
         orientations=orientations_of(values.get("orientations")),
-        regions=tuple(_region_of(entry) for entry in listing(values.get("regions"), "regions")),
+        regions=tuple(_region_of(entry) for entry in as_list(values.get("regions"), "regions")),
         overrides=_overrides_of(values.get("overrides")),
         appearance=Appearance(colour, material, triangle_colours),
-        is_solid=flag(values, "is_solid"),
+        is_solid=boolean(values, "is_solid"),
         boxes=None if values.get("boxes") is None else table(values, "boxes", 6),
-        part_number=text(values, "part_number"),
-        source=text(values, "source"),
-        notes=tuple(_texts(values.get("notes"), "notes")),
+        part_number=string(values, "part_number"),
+        source=string(values, "source"),
+        notes=tuple(_strings(values.get("notes"), "notes")),
         metadata=_metadata_of(values.get("metadata")),
     )
 
 
-def unsupported_record(region: Unsupported) -> Record:
-    """Return a listed region; its points are rounded to 1e-6 mm."""
+def unsupported_record(region: Unsupported) -> JsonObject:
+    """Return an unsupported region; its points are rounded to 1e-6 mm."""
     return {
         "part": region.part,
         "label": region.label,
@@ -180,32 +185,32 @@ def unsupported_record(region: Unsupported) -> Record:
 
 
 def unsupported_of(record: Any, parts: int) -> Unsupported:
-    """Return a listed region of one of so many `parts`."""
-    values = mapping(record, UNSUPPORTED)
+    """Return an unsupported region of a build with `parts` parts."""
+    values = as_object(record, UNSUPPORTED)
     return Unsupported(
-        part=whole(values, "part", below=parts),
-        label=text(values, "label"),
-        kind=word(values, "kind", ("face", "edge", "tip")),
-        reason=text(values, "reason"),
+        part=integer(values, "part", below=parts),
+        label=string(values, "label"),
+        kind=choice(values, "kind", ("face", "edge", "tip")),
+        reason=string(values, "reason"),
         measure=number(values, "measure"),
         points=table(values, "points", 3),
         radius=number(values, "radius"),
-        minor="minor" in values and flag(values, "minor"),
+        minor="minor" in values and boolean(values, "minor"),
     )
 
 
-def _overrides_record(overrides: Overrides) -> Record:
+def _overrides_record(overrides: Overrides) -> JsonObject:
     names = (*_OVERRIDE_NUMBERS, "supports")
     return {name: getattr(overrides, name) for name in names if getattr(overrides, name) is not None}
 
 
 def _overrides_of(record: Any) -> Overrides:
-    values = mapping(record, "overrides")
+    values = as_object(record, "overrides")
     numbers = {name: _number_or_none(values, name) for name in _OVERRIDE_NUMBERS}
-    return Overrides(**numbers, supports=flag(values, "supports") if "supports" in values else None)
+    return Overrides(**numbers, supports=boolean(values, "supports") if "supports" in values else None)
 
 
-def _region_record(region: Region) -> Record:
+def _region_record(region: Region) -> JsonObject:
     record: dict[str, Any] = {"kind": region.kind, "name": region.name}
     if region.triangles is not None:
         record["triangles"] = region.triangles.tolist()
@@ -215,33 +220,33 @@ def _region_record(region: Region) -> Record:
 
 
 def _region_of(record: Any) -> Region:
-    values = mapping(record, "region")
-    kind = cast("RegionKind", word(values, "kind", get_args(RegionKind)))
+    values = as_object(record, "region")
+    kind = cast("RegionKind", choice(values, "kind", get_args(RegionKind)))
     triangles = (
-        np.array(wholes(values, "triangles", below=2**31), np.int32) if "triangles" in values else None
+        np.array(integers(values, "triangles", below=2**31), np.int32) if "triangles" in values else None
     )
     mesh = None
     if "mesh" in values:
-        vertices, corners = listing(values["mesh"], "mesh")
+        vertices, corners = as_list(values["mesh"], "mesh")
         mesh = Mesh(vertices, corners)
-    return Region(kind, text(values, "name"), triangles, mesh)
+    return Region(kind, string(values, "name"), triangles, mesh)
 
 
 def _metadata_of(record: Any) -> dict[tuple[str, str], str]:
-    entries = [_texts(entry, "metadata") for entry in listing(record, "metadata")]
+    entries = [_strings(entry, "metadata") for entry in as_list(record, "metadata")]
     return {(namespace, name): value for namespace, name, value in entries}
 
 
-def _texts(record: Any, name: str) -> Sequence[str]:
-    values = listing(record, name)
+def _strings(record: Any, name: str) -> Sequence[str]:
+    values = as_list(record, name)
     if not all(isinstance(value, str) for value in values):
-        raise ValueError(f"{name} must be a list of texts")
+        raise ValueError(f"{name} must be a list of strings")
     return values
 
 
-def _text_or_none(values: Record, name: str) -> str | None:
-    return None if values.get(name) is None else text(values, name)
+def _string_or_none(values: JsonObject, name: str) -> str | None:
+    return None if values.get(name) is None else string(values, name)
 
 
-def _number_or_none(values: Record, name: str) -> float | None:
+def _number_or_none(values: JsonObject, name: str) -> float | None:
     return None if values.get(name) is None else number(values, name)

@@ -1,1 +1,1 @@
-"""The 3MF package: opening, scanning, writing."""
+"""3MF packages as zip files: opened with limits, scanned, repaired, written."""

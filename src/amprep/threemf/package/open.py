@@ -1,4 +1,4 @@
-"""Open a 3MF package as if it were hostile: bounded, looked through, and mended where readers disagree."""
+"""Open a 3MF package as if it were hostile: limit its size, scan its XML and repair its relationships."""
 
 import io
 import posixpath
@@ -9,83 +9,92 @@ from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import unquote
 
 from amprep.errors import InputError
+from amprep.threemf.names import BAMBU_CONFIG, PRUSASLICER_CONFIG, ROOT_RELATIONSHIPS
+from amprep.threemf.package.painted_supports import PaintedSupports, find_painted_supports
 from amprep.threemf.package.scan import Outline, Scanner, check_instances
-from amprep.threemf.read.painted_supports import Painted, find_paint
+from amprep.threemf.package.xml import parse_xml
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
 MOST_BYTES = 2 << 30
+"""Largest inflated package that is read."""
 MOST_ENTRIES = 10_000
 MOST_RATIO = 200
-"""Times a package may grow when inflated, past `FREE_BYTES`; meshes as XML grow tenfold."""
+"""Largest ratio of inflated to packed size, above `FREE_BYTES`; meshes as XML reach a ratio of about 10."""
 FREE_BYTES = 64 << 20
+"""Inflated size up to which the ratio is not limited."""
 
-_PIECE = 1 << 20
+_CHUNK = 1 << 20
 _XML = (".model", ".rels", ".config", ".xml")
-_ROOT_RELATIONS = "_rels/.rels"
-_SLICER_CONFIG = "Metadata/Slic3r_PE_model.config"
-_PART_CONFIG = "Metadata/model_settings.config"
 
 
 class Package(NamedTuple):
-    """A package that has been looked through.
+    """A package that has been scanned.
 
     Attributes
     ----------
     data
-        A package with the same contents, stored without compression, every byte of it seen by us.
-    config
-        ``Metadata/Slic3r_PE_model.config``, where PrusaSlicer keeps what triangles mean; may be empty.
-    part_config
-        ``Metadata/model_settings.config``, where Bambu Studio and OrcaSlicer keep what components mean.
+        A zip file with the same contents, stored without compression, built from the bytes that were scanned.
+    prusaslicer_config
+        ``Metadata/Slic3r_PE_model.config``, PrusaSlicer's list of volumes; may be empty.
+    bambu_config
+        ``Metadata/model_settings.config``, in which Bambu Studio and OrcaSlicer store the roles of components;
+        may be empty.
     unprintable
-        Indices of build items marked as not to be printed.
+        Indices of the build items that are marked as not printable.
     notes
-        What was mended.
-    paint
-        Model part and object id -> supports painted on the object.
+        One sentence for each repair.
+    painted
+        (model part, object id) -> supports painted on the object.
     """
 
     data: bytes
-    config: bytes
-    part_config: bytes
+    prusaslicer_config: bytes
+    bambu_config: bytes
     unprintable: frozenset[int]
     notes: tuple[str, ...]
-    paint: dict[tuple[str, int], Painted]
+    painted: dict[tuple[str, int], PaintedSupports]
 
 
 def open_package(path: Path) -> Package:
-    """Read a 3MF package, refuse it if it is hostile or broken, mend it if only careless.
+    """Read a 3MF package; refuse a hostile or broken one, and repair a careless one.
 
-    Mended are relationships to parts that are not there (PrusaSlicer's command line writes one to a
-    thumbnail it does not make) or that lie outside the package: they are left out.
+    The repair removes relationships whose target is missing or outside the package. PrusaSlicer's command
+    line, for example, writes a relationship to a thumbnail that it does not make.
 
     Raises
     ------
     InputError
-        If it cannot be read, is not a zip file, holds too much, or holds what no 3MF needs.
+        If the file cannot be read, is not a zip file, exceeds a limit, or contains something that no 3MF file
+        needs.
     """
     entries, outlines = _inflate(path)
     notes: list[str] = []
     for name in [name for name in entries if name.lower().endswith(".rels")]:
         entries[name], dropped = _without_dangling(name, entries)
-        notes += [f"left out a relationship to {target!r}, which is not in the package" for target in dropped]
+        notes += [f"removed a relationship to {target!r}, which is not in the package" for target in dropped]
     if not outlines:
-        raise InputError(f"{path}: no 3D model in this package; expected a 3MF file")
+        raise InputError(f"{path}: expected a 3MF file, found no 3D model in the package; export it again")
     check_instances(outlines, str(path))
     root = outlines.get(_root_model(entries), Outline())
-    config, part_config = entries.get(_SLICER_CONFIG, b""), entries.get(_PART_CONFIG, b"")
-    paint = {
-        (f"/{name}", number): painted
+    painted = {
+        (f"/{name}", object_id): supports
         for name in outlines
-        for number, painted in find_paint(entries[name]).items()
+        for object_id, supports in find_painted_supports(entries[name]).items()
     }
-    return Package(_stored(entries), config, part_config, frozenset(root.unprintable), tuple(notes), paint)
+    return Package(
+        data=_stored(entries),
+        prusaslicer_config=entries.get(PRUSASLICER_CONFIG, b""),
+        bambu_config=entries.get(BAMBU_CONFIG, b""),
+        unprintable=frozenset(root.unprintable),
+        notes=tuple(notes),
+        painted=painted,
+    )
 
 
 def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:
-    """Inflate every entry, counting; scan the XML ones and outline the models."""
+    """Inflate every entry within the size limit, scan XML entries and return the outlines of model parts."""
     entries: dict[str, bytes] = {}
     outlines: dict[str, Outline] = {}
     try:
@@ -108,82 +117,84 @@ def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:
 
 
 def _checked(infos: list[zipfile.ZipInfo], path: Path) -> list[zipfile.ZipInfo]:
-    """Return the entries that are files, once their number and names are in order."""
+    """Return the entries that are files, after a check of their number and names."""
     if len(infos) > MOST_ENTRIES:
-        raise InputError(f"{path}: {len(infos)} entries in the package, at most {MOST_ENTRIES} are read")
+        raise InputError(
+            f"{path}: expected at most {MOST_ENTRIES} entries in the package, found {len(infos)}"
+        )
     files = [info for info in infos if not info.is_dir()]
     names = [info.orig_filename for info in files]
     for name in names:
         if name.startswith("/") or ".." in name.split("/") or any(char in name for char in "\\:\0"):
-            raise InputError(f"{path}: an entry is named {name[:80]!r}, which leads out of the package")
+            raise InputError(f"{path}: the entry name {name[:80]!r} points outside the package")
     if len({name.lower() for name in names}) < len(names):
         raise InputError(f"{path}: two entries of the package have the same name")
     return files
 
 
 def _read(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: int, path: Path) -> bytes:
-    """Inflate one entry, whatever length its header states, up to `budget` bytes."""
+    """Inflate one entry up to `budget` bytes, regardless of the length that its header states."""
     content = io.BytesIO()
     with archive.open(info) as stream:
-        while piece := stream.read(_PIECE):
-            content.write(piece)
+        while chunk := stream.read(_CHUNK):
+            content.write(chunk)
             if content.tell() > budget:
                 limit = f"{MOST_BYTES >> 20} MiB or {MOST_RATIO} times its size"
-                raise InputError(f"{path}: inflates to more than {limit}, as no 3MF needs to; refused")
+                raise InputError(f"{path}: inflates to more than {limit}, which no 3MF file needs; refused")
     return content.getvalue()
 
 
 def _scan(content: bytes, where: str) -> Outline:
     scanner = Scanner(where)
-    for start in range(0, len(content), _PIECE):
-        scanner.feed(content[start : start + _PIECE])
+    for start in range(0, len(content), _CHUNK):
+        scanner.feed(content[start : start + _CHUNK])
     return scanner.close()
 
 
-def _relations(content: bytes, where: str) -> "_Element":
-    from lxml import etree
-
+def _relationships(content: bytes, where: str) -> "_Element":
     try:
-        return etree.fromstring(content, etree.XMLParser(resolve_entities=False, no_network=True))
-    except etree.XMLSyntaxError as error:
-        raise InputError(f"{where}: not the XML expected here ({error}); the file is damaged") from error
+        return parse_xml(content)
+    except ValueError as error:
+        raise InputError(f"{where}: cannot parse the relationships ({error}); the file is damaged") from error
 
 
 def _root_model(entries: dict[str, bytes]) -> str:
-    """Return the name of the model part that the package starts from, "" if none is named."""
-    root = _relations(entries.get(_ROOT_RELATIONS, b"<none/>"), _ROOT_RELATIONS)
-    for relation in root.iterchildren("{*}Relationship"):
-        if str(relation.get("Type", "")).endswith("/3dmodel"):
-            return _resolved(_ROOT_RELATIONS, relation.get("Target", ""))
+    """Return the name of the package's root model part, or "" if it names none."""
+    root = _relationships(entries.get(ROOT_RELATIONSHIPS, b"<none/>"), ROOT_RELATIONSHIPS)
+    for relationship in root.iterchildren("{*}Relationship"):
+        if str(relationship.get("Type", "")).endswith("/3dmodel"):
+            return _resolved(ROOT_RELATIONSHIPS, relationship.get("Target", ""))
     return ""
 
 
 def _without_dangling(name: str, entries: dict[str, bytes]) -> tuple[bytes, list[str]]:
-    """Leave out relationships whose target is not in the package; return the part, and the targets."""
+    """Remove relationships to targets that are not in the package; return the new part and those targets."""
     from lxml import etree
 
     present = {entry.lower() for entry in entries}
-    relations = _relations(entries[name], name)
+    relationships = _relationships(entries[name], name)
     dangling = [
-        relation
-        for relation in relations.iterchildren("{*}Relationship")
-        if relation.get("TargetMode") == "External"
-        or _resolved(name, relation.get("Target", "")).lower() not in present
+        each
+        for each in relationships.iterchildren("{*}Relationship")
+        if each.get("TargetMode") == "External"
+        or _resolved(name, each.get("Target", "")).lower() not in present
     ]
-    for relation in dangling:
-        relations.remove(relation)
-    content = etree.tostring(relations, xml_declaration=True, encoding="UTF-8") if dangling else entries[name]
-    return content, [relation.get("Target", "") for relation in dangling]
+    if not dangling:
+        return entries[name], []
+    for each in dangling:
+        relationships.remove(each)
+    content = etree.tostring(relationships, xml_declaration=True, encoding="UTF-8")
+    return content, [each.get("Target", "") for each in dangling]
 
 
-def _resolved(relations: str, target: str) -> str:
-    """Return the package entry that a relationship's target means."""
-    folder = posixpath.dirname(posixpath.dirname(relations))
+def _resolved(relationships: str, target: str) -> str:
+    """Return the name of the entry that a target in the part `relationships` refers to."""
+    folder = posixpath.dirname(posixpath.dirname(relationships))
     return posixpath.normpath(posixpath.join("/", folder, unquote(target))).lstrip("/")
 
 
 def _stored(entries: dict[str, bytes]) -> bytes:
-    """Pack the entries again, uncompressed and undated: lib3mf shall see what we saw, and nothing else."""
+    """Pack the scanned entries again, uncompressed and undated, so that lib3mf reads exactly these bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for name, content in entries.items():

@@ -1,4 +1,4 @@
-"""Look through XML parts of a package before lib3mf does: no DTD, bounded depth and size; who uses whom."""
+"""Scan the XML parts of a package before lib3mf reads them: no DTD, limited depth, size and references."""
 
 import re
 from dataclasses import dataclass, field
@@ -8,40 +8,45 @@ from xml.parsers import expat
 from amprep.errors import InputError
 
 MOST_DEPTH = 64
+"""Deepest nesting of XML elements."""
 MOST_ELEMENTS = 120_000_000
 """About 50 million triangles with their vertices; a build of metal parts has a hundredth of that."""
 MOST_INSTANCES = 100_000
 MOST_NESTING = 64
+"""Deepest nesting of components."""
 
 _LEAF = rb'<(?:\w++:)?(?:vertex|triangle)(?:\s++[\w:]++="[^"<>]*+")*+\s*+/>\s*+'
 _LEAVES = re.compile(rb"(?>(?:" + _LEAF + rb")++)")
-_LONGEST_PIECE = 1 << 24
+_LONGEST_BUFFER = 1 << 24
+
+ObjectKey = tuple[str, str]
+"""(model part, object id)."""
 
 
 @dataclass
 class Outline:
-    """What a model part holds, apart from vertices and triangles.
+    """The references in a model part.
 
     Attributes
     ----------
     uses
-        Object id -> the objects its components name, as (model part, id); part "" is the same one.
+        Object id -> the objects of its components; an empty model part means the same part.
     items
-        What the build asks for, as (model part, id).
+        The object of each build item.
     unprintable
         Indices into `items` of those marked ``printable="0"``, as PrusaSlicer does.
     """
 
-    uses: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
-    items: list[tuple[str, str]] = field(default_factory=list)
+    uses: dict[str, list[ObjectKey]] = field(default_factory=dict)
+    items: list[ObjectKey] = field(default_factory=list)
     unprintable: set[int] = field(default_factory=set)
 
 
 class Scanner:
-    """Takes an XML part piece by piece, refuses what is hostile, and draws up its outline.
+    """Takes an XML part in chunks, refuses hostile content and collects the outline.
 
-    Runs of plain vertices and triangles, nearly all of any file, are cut down to one empty element before
-    the parser sees them: the parser would spend most of its time on them.
+    Runs of plain vertices and triangles make up nearly all of any file, and the parser would spend most of
+    its time on them. They are replaced by one empty element before the parser sees them.
     """
 
     def __init__(self, where: str) -> None:
@@ -56,36 +61,34 @@ class Scanner:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
 
-    def feed(self, piece: bytes) -> None:
+    def feed(self, chunk: bytes) -> None:
         """Take the next bytes of the part."""
-        whole = self._held + piece
-        cut = whole.rfind(b"<") if len(whole) < _LONGEST_PIECE else len(whole)
-        self._held = whole[cut:]
-        self._parse(whole[:cut], final=False)
+        buffer = self._held + chunk
+        cut = buffer.rfind(b"<") if len(buffer) < _LONGEST_BUFFER else len(buffer)
+        self._held = buffer[cut:]
+        self._parse(buffer[:cut], final=False)
 
     def close(self) -> Outline:
-        """Take the end of the part, and return its outline."""
+        """Finish the part and return its outline."""
         self._parse(self._held, final=True)
         return self.outline
 
-    def _parse(self, piece: bytes, *, final: bool) -> None:
-        self.elements += piece.count(b"<")
+    def _parse(self, chunk: bytes, *, final: bool) -> None:
+        self.elements += chunk.count(b"<")
         if self.elements > MOST_ELEMENTS:
-            raise InputError(f"{self.where}: more than {MOST_ELEMENTS} XML elements; split the job")
+            raise InputError(f"{self.where}: expected at most {MOST_ELEMENTS} XML elements; split the job")
         try:
-            self._parser.Parse(_LEAVES.sub(b"<vertex/>", piece), final)
+            self._parser.Parse(_LEAVES.sub(b"<vertex/>", chunk), final)
         except (expat.ExpatError, ValueError, LookupError) as error:
             raise InputError(f"{self.where}: not well-formed XML ({error}); the file is damaged") from error
 
     def _refuse_doctype(self, *_: object) -> None:
-        raise InputError(
-            f"{self.where}: has a document type definition, which 3MF forbids and amprep refuses"
-        )
+        raise InputError(f"{self.where}: contains a document type definition, which 3MF forbids; refused")
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         self._depth += 1
         if self._depth > MOST_DEPTH:
-            raise InputError(f"{self.where}: XML nested deeper than {MOST_DEPTH} levels")
+            raise InputError(f"{self.where}: XML is nested deeper than {MOST_DEPTH} levels; refused")
         local = name.rpartition(":")[2]
         if local == "object":
             self._object = attributes.get("id", "")
@@ -107,14 +110,21 @@ def check_instances(outlines: dict[str, Outline], where: str) -> None:
     Parameters
     ----------
     outlines
-        Of each model part by its name in the package.
+        Name of each model part in the package -> its outline.
+    where
+        Name of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If components refer to each other in a circle or are nested too deeply, or for too many instances.
     """
     graph = {
         (part, name): [(target or part, used) for target, used in uses]
         for part, outline in outlines.items()
         for name, uses in outline.uses.items()
     }
-    known: dict[Key, _Tree] = {}
+    known: dict[ObjectKey, _Tree] = {}
     for start in graph:
         _measure(start, graph, known, where)
     deepest = max((tree.depth for tree in known.values()), default=0)
@@ -124,39 +134,39 @@ def check_instances(outlines: dict[str, Outline], where: str) -> None:
     total = sum(known[item].instances for item in items if item in known)
     if total > MOST_INSTANCES:
         raise InputError(
-            f"{where}: the build asks for {total} instances of objects, at most {MOST_INSTANCES}"
+            f"{where}: the build has {total} instances of objects, at most {MOST_INSTANCES} are read"
         )
 
 
-Key = tuple[str, str]
-"""(model part, object id)."""
-
-
 class _Tree(NamedTuple):
+    """Number of instances and depth of the component tree below an object, itself included."""
+
     instances: int
     depth: int
 
 
-def _measure(start: Key, graph: dict[Key, list[Key]], known: dict[Key, _Tree], where: str) -> None:
-    """Measure what an object stands for: what it uses first, without recursion."""
-    waiting, ancestors = [start], set[Key]()
-    while waiting:
-        here = waiting[-1]
+def _measure(
+    start: ObjectKey, graph: dict[ObjectKey, list[ObjectKey]], known: dict[ObjectKey, _Tree], where: str
+) -> None:
+    """Add the trees of an object and of everything below it to `known`, depth first without recursion."""
+    stack, ancestors = [start], set[ObjectKey]()
+    while stack:
+        here = stack[-1]
         unknown = [used for used in graph.get(here, ()) if used not in known]
         if any(used in ancestors or used == here for used in unknown):
             raise InputError(f"{where}: object {here[1]} contains itself")
         if unknown:
             ancestors.add(here)
-            waiting.extend(unknown)
+            stack.extend(unknown)
         else:
             trees = [known[used] for used in graph.get(here, ())]
             instances = min(1 + sum(tree.instances for tree in trees), 1 << 62)
             known[here] = _Tree(instances, 1 + max((tree.depth for tree in trees), default=0))
             ancestors.discard(here)
-            waiting.pop()
+            stack.pop()
 
 
-def _target(attributes: dict[str, str]) -> Key:
-    """Return (model part, id) an item or component names; the path is the production extension's."""
+def _target(attributes: dict[str, str]) -> ObjectKey:
+    """Return the object that an item or component refers to; its path is the production extension's."""
     path = next((value for key, value in attributes.items() if key.rpartition(":")[2] == "path"), "")
     return path.lstrip("/"), attributes.get("objectid", "")

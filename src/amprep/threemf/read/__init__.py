@@ -1,4 +1,4 @@
-"""Read the parts of a 3MF job: what each build item shows, in millimetres, with all that is said of it."""
+"""Read the parts of a 3MF job: one part per build item, in millimetres, with its metadata."""
 
 import re
 from collections.abc import Iterator
@@ -13,34 +13,24 @@ from amprep.errors import InputError
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region
 from amprep.threemf.package.open import Package, open_package
-from amprep.threemf.read.arrays import Model3MF, load_model
+from amprep.threemf.read.arrays import LoadedModel, load_model, unit_of
 from amprep.threemf.read.colours import appearance_of
-from amprep.threemf.read.job_metadata import foreign, wishes_of
-from amprep.threemf.read.objects import Gatherer, Shape, row_matrix
-from amprep.threemf.read.slicer_config import (
-    Loose,
-    cura_role,
-    parse_part_roles,
-    parse_slicer_config,
-    with_loose,
-)
+from amprep.threemf.read.job_metadata import foreign_metadata, parse_job_metadata
+from amprep.threemf.read.objects import FlattenedItem, Flattener
+from amprep.threemf.read.separate_regions import SeparateRegion, assign_regions
+from amprep.threemf.read.slicer_config import cura_role, parse_bambu_config, parse_prusaslicer_config
+from amprep.threemf.transforms import row_matrix
 
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
 
-_UNITS = (
-    ("micrometres", 0.001),
-    ("millimetres", 1.0),
-    ("centimetres", 10.0),
-    ("inches", 25.4),
-    ("feet", 304.8),
-    ("metres", 1000.0),
-)
-"""In the order of lib3mf's `ModelUnit`: name, and mm of one."""
+_MESH_SUFFIXES = (".stl", ".obj", ".3mf", ".amf", ".step", ".stp")
+_LONGEST_NAME = 200
+_MOST_WARNINGS = 10
 
 
-class _Item(NamedTuple):
-    """Build items that ask for the same: an object under a linear map, and what is said of it."""
+class _ItemRequest(NamedTuple):
+    """What a build item asks for: an object, its linear map and translation for row vectors, its metadata."""
 
     thing: "Lib3MF.Object"
     linear: Floats
@@ -50,15 +40,16 @@ class _Item(NamedTuple):
 
 
 def read_parts(path: Path) -> list[Part]:
-    """Return the parts a 3MF file's build asks for, not yet settled.
+    """Return the parts in the build of a 3MF file; their meshes are not yet validated and repaired.
 
-    An item's linear map is applied to the mesh, its translation kept as a position; items of one object under
-    the same map are one part. Components become one mesh. A file that lib3mf refuses is read by trimesh.
+    The linear map of a build item is applied to the mesh, and its translation becomes a position of the part.
+    Items of the same object with the same map become one part. Components are joined into one mesh. A file
+    that lib3mf refuses is read by trimesh.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is hostile, or its build asks for nothing that can be printed.
+        If the file cannot be read, is hostile, or its build contains nothing that can be printed.
     """
     from lib3mf import Lib3MF
 
@@ -71,10 +62,10 @@ def read_parts(path: Path) -> list[Part]:
     try:
         return _parts(loaded, package, path)
     except (Lib3MF.ELib3MFException, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: lib3mf cannot tell what is in this file ({error})") from error
+        raise InputError(f"{path}: lib3mf cannot read the contents of this file ({error})") from error
 
 
-def _load(data: bytes) -> Model3MF | str:
+def _load(data: bytes) -> LoadedModel | str:
     """Return the model, or the reason why lib3mf refuses it."""
     from lib3mf import Lib3MF
 
@@ -84,57 +75,54 @@ def _load(data: bytes) -> Model3MF | str:
         return str(error).partition(": ")[2] or str(error)
 
 
-def _parts(loaded: Model3MF, package: Package, path: Path) -> list[Part]:
-    """Turn items into parts; notes on the file as a whole go to the first part."""
-    unit, scale = _UNITS[int(loaded.model.GetUnit())]
-    notes = [*package.notes, *_meant(loaded.warnings)]
+def _parts(loaded: LoadedModel, package: Package, path: Path) -> list[Part]:
+    """Return one part for each different build item; the first part carries the notes about the file."""
+    unit, scale = unit_of(loaded.model)
+    notes = [*package.notes, *_relevant(loaded.warnings)]
     if scale != 1.0:
         notes.append(f"scaled from {unit} to millimetres")
     if package.unprintable:
-        notes.append(f"left out {len(package.unprintable)} items that the file marks as not to be printed")
-    volumes = parse_slicer_config(package.config, str(path))
-    roles = parse_part_roles(package.part_config, str(path))
-    gatherer = Gatherer(loaded.model, volumes, roles, package.paint, str(path))
+        notes.append(f"left out {len(package.unprintable)} items that the file marks as not printable")
+    prusaslicer = parse_prusaslicer_config(package.prusaslicer_config, str(path))
+    roles = parse_bambu_config(package.bambu_config, str(path))
+    flattener = Flattener(loaded.model, prusaslicer, roles, package.painted, str(path))
     parts: list[Part] = []
-    loose: list[Loose] = []
-    for item, positions in _items(loaded.model, package.unprintable):
-        shape = gatherer.shape_of(item.thing, item.linear, cura_role(item.metadata, item.thing.GetName()))
-        if shape.regions and not sum(map(len, shape.triangles)):
-            loose += [(_scaled(region, scale), positions * scale) for region in shape.regions]
-            notes += shape.notes
-        elif shape.vertices:
-            notes = [*notes, *shape.notes]
-            parts.append(_part(item, positions * scale, shape, scale, tuple(dict.fromkeys(notes)), path))
+    separate: list[SeparateRegion] = []
+    for request, positions in _requests(loaded.model, package.unprintable):
+        role = cura_role(request.metadata, request.thing.GetName())
+        item = flattener.flatten(request.thing, request.linear, role)
+        notes += item.notes
+        if item.regions and not sum(map(len, item.triangles)):
+            separate += [SeparateRegion(_scaled(each, scale), positions * scale) for each in item.regions]
+        elif item.vertices:
+            parts.append(_part(request, positions * scale, item, scale, tuple(dict.fromkeys(notes)), path))
             notes = []
-        else:
-            notes += shape.notes
     if not parts:
-        raise InputError(f"{path}: the build asks for nothing that can be printed{_because(notes)}")
+        raise InputError(f"{path}: the build contains nothing that can be printed{_because(notes)}")
     parts[-1] = replace(parts[-1], notes=tuple(dict.fromkeys([*parts[-1].notes, *notes])))
-    return with_loose(parts, loose)
+    return assign_regions(parts, separate)
 
 
-def _items(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_Item, Floats]]:
-    """Yield the different build items, and the positions ``(k, 3)`` of each, in the order of their first."""
-    found: dict[object, list[_Item]] = {}
+def _requests(model: "Lib3MF.Model", unprintable: frozenset[int]) -> Iterator[tuple[_ItemRequest, Floats]]:
+    """Yield each different request with its positions ``(k, 3)``, in the order of the first ones."""
+    found: dict[object, list[_ItemRequest]] = {}
     items = model.GetBuildItems()
     index = 0
     while items.MoveNext():
         if index not in unprintable:
-            item = _item(items.GetCurrent())
-            key = (item.thing.GetUniqueResourceID(), (item.linear + 0.0).tobytes(), item.part_number)
-            found.setdefault((key, tuple(sorted(item.metadata.items()))), []).append(item)
+            request = _request(items.GetCurrent())
+            key = (request.thing.GetUniqueResourceID(), (request.linear + 0.0).tobytes(), request.part_number)
+            found.setdefault((key, tuple(sorted(request.metadata.items()))), []).append(request)
         index += 1
-    yield from ((same[0], np.array([item.translation for item in same])) for same in found.values())
+    yield from ((same[0], np.array([each.translation for each in same])) for same in found.values())
 
 
-def _item(item: "Lib3MF.BuildItem") -> _Item:
+def _request(item: "Lib3MF.BuildItem") -> _ItemRequest:
     thing = item.GetObjectResource()
     matrix = row_matrix(item.GetObjectTransform()) if item.HasObjectTransform() else np.eye(4)
     metadata = _metadata(thing.GetMetaDataGroup()) | _metadata(item.GetMetaDataGroup())
-    return _Item(
-        thing, matrix[:3, :3], matrix[3, :3], item.GetPartNumber() or thing.GetPartNumber(), metadata
-    )
+    number = item.GetPartNumber() or thing.GetPartNumber()
+    return _ItemRequest(thing, matrix[:3, :3], matrix[3, :3], number, metadata)
 
 
 def _metadata(group: "Lib3MF.MetaDataGroup") -> dict[tuple[str, str], str]:
@@ -143,37 +131,48 @@ def _metadata(group: "Lib3MF.MetaDataGroup") -> dict[tuple[str, str], str]:
 
 
 def _part(
-    item: _Item, positions: Floats, shape: Shape, scale: float, notes: tuple[str, ...], path: Path
+    request: _ItemRequest,
+    positions: Floats,
+    item: FlattenedItem,
+    scale: float,
+    notes: tuple[str, ...],
+    path: Path,
 ) -> Part:
-    name = part_name([item.thing.GetName(), *shape.names], path)
-    wishes = wishes_of(item.metadata, f"{path}: {name}")
-    vertices, triangles = shape.joined()
+    name = part_name([request.thing.GetName(), *item.names], path)
+    settings = parse_job_metadata(request.metadata, f"{path}: {name}")
+    vertices, triangles = item.joined()
     return Part(
         name=name,
         mesh=Mesh(vertices * scale, triangles.astype(np.int32)),
         volume_mm3=0.0,
-        quantity=wishes.quantity * len(positions),
-        value=wishes.value,
-        orientations=wishes.orientations,
-        regions=tuple(_scaled(region, scale) for region in shape.regions),
-        appearance=appearance_of(shape.paints) if len(triangles) else Appearance(),
+        quantity=settings.quantity * len(positions),
+        value=settings.value,
+        orientations=settings.orientations,
+        regions=tuple(_scaled(region, scale) for region in item.regions),
+        appearance=appearance_of(item.colours) if len(triangles) else Appearance(),
         positions=positions,
-        part_number=item.part_number,
+        part_number=request.part_number,
         source=str(path),
         notes=notes,
-        metadata=foreign(item.metadata),
+        metadata=foreign_metadata(request.metadata),
     )
 
 
 def part_name(candidates: list[str], path: Path) -> str:
-    """Return the first name given, as one printable line and without a mesh file's suffix, or the file's."""
+    """Return the first candidate that is not blank, as one printable line without a mesh file's suffix.
+
+    Parameters
+    ----------
+    candidates
+        Names in the file, most specific first.
+    path
+        The file; its stem is the name if there is no other.
+    """
     for candidate in candidates:
-        name = "".join(char if char.isprintable() else " " for char in candidate).strip()[:200]
+        name = "".join(char if char.isprintable() else " " for char in candidate).strip()[:_LONGEST_NAME]
         if name:
-            suffix = PurePath(name).suffix.lower()
-            return (
-                name[: -len(suffix)] if suffix in (".stl", ".obj", ".3mf", ".amf", ".step", ".stp") else name
-            )
+            suffix = PurePath(name).suffix
+            return name[: -len(suffix)] if suffix.lower() in _MESH_SUFFIXES else name
     return path.stem
 
 
@@ -183,10 +182,10 @@ def _scaled(region: Region, scale: float) -> Region:
     return replace(region, mesh=Mesh(region.mesh.vertices * scale, region.mesh.triangles))
 
 
-def _meant(warnings: tuple[str, ...]) -> list[str]:
-    """Return the warnings worth telling: not those of attributes others add, nor of missing UUIDs."""
-    worth = [words for words in warnings if not re.search("namespace|uuid", words, re.IGNORECASE)]
-    return [f"lib3mf warns: {words}" for words in worth[:10]]
+def _relevant(warnings: tuple[str, ...]) -> list[str]:
+    """Return lib3mf's warnings, without those about foreign attributes and missing UUIDs."""
+    relevant = [text for text in warnings if not re.search("namespace|uuid", text, re.IGNORECASE)]
+    return [f"lib3mf warns: {text}" for text in relevant[:_MOST_WARNINGS]]
 
 
 def _because(notes: list[str]) -> str:

@@ -1,4 +1,4 @@
-"""Load a model with lib3mf, and fetch whole arrays from it: its own getters make an object per number."""
+"""Load a model with lib3mf and fetch whole arrays from it; lib3mf's getters make a Python object per number."""
 
 import ctypes
 from collections.abc import Callable
@@ -12,25 +12,35 @@ from amprep.arrays import Floats
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
 
+_UNITS = (
+    ("micrometres", 0.001),
+    ("millimetres", 1.0),
+    ("centimetres", 10.0),
+    ("inches", 25.4),
+    ("feet", 304.8),
+    ("metres", 1000.0),
+)
+"""Name and length in mm of each unit, in the order of lib3mf's `ModelUnit`."""
 
-class Model3MF(NamedTuple):
-    """A model in lib3mf's memory, with what lib3mf warned of while reading."""
+
+class LoadedModel(NamedTuple):
+    """A model in lib3mf's memory, and lib3mf's warnings about it."""
 
     model: "Lib3MF.Model"
     warnings: tuple[str, ...]
 
 
 class RawMesh(NamedTuple):
-    """Arrays of a mesh object as the file has them.
+    """Arrays of a mesh object, unchanged.
 
     Attributes
     ----------
     vertices
-        ``(n, 3)`` float64, in the file's unit; the values are those of float32.
+        ``(n, 3)`` float64 in the file's unit; the values are those of float32.
     triangles
         ``(m, 3)`` int64.
     properties
-        ``(m, 4)`` int64: unique id of the property resource (0 for none) and the property of each corner.
+        ``(m, 4)`` int64: unique id of the property resource (0 for none), and the property at each corner.
     """
 
     vertices: Floats
@@ -38,8 +48,8 @@ class RawMesh(NamedTuple):
     properties: NDArray[np.int64]
 
 
-def load_model(package: bytes) -> Model3MF:
-    """Read a package from memory, not strictly.
+def load_model(package: bytes) -> LoadedModel:
+    """Read a package from memory, in lib3mf's tolerant mode.
 
     Raises
     ------
@@ -54,7 +64,12 @@ def load_model(package: bytes) -> Model3MF:
     start = ctypes.cast(ctypes.c_char_p(package), ctypes.POINTER(ctypes.c_uint8))
     _call(reader, "lib3mf_reader_readfrombuffer", ctypes.c_uint64(len(package)), start)
     warnings = dict.fromkeys(reader.GetWarning(index)[1] for index in range(reader.GetWarningCount()))
-    return Model3MF(model, tuple(warnings))
+    return LoadedModel(model, tuple(warnings))
+
+
+def unit_of(model: "Lib3MF.Model") -> tuple[str, float]:
+    """Return the name of the model's unit of length and its length in mm."""
+    return _UNITS[int(model.GetUnit())]
 
 
 def fetch_mesh(mesh: "Lib3MF.MeshObject") -> RawMesh:
@@ -69,7 +84,7 @@ def fetch_mesh(mesh: "Lib3MF.MeshObject") -> RawMesh:
 
 
 def fetch_beams(lattice: "Lib3MF.BeamLattice") -> tuple[NDArray[np.int64], Floats]:
-    """Fetch the beams of a lattice: vertices ``(m, 2)`` and radii ``(m, 2)`` in the file's unit."""
+    """Fetch the beams of a lattice: the vertices ``(m, 2)`` and radii ``(m, 2)`` of both ends, in the file's unit."""
     from lib3mf import Lib3MF
 
     dtype = np.dtype([("ends", np.uint32, 2), ("radii", np.float64, 2), ("caps", np.int32, 2)])
@@ -77,19 +92,19 @@ def fetch_beams(lattice: "Lib3MF.BeamLattice") -> tuple[NDArray[np.int64], Float
     return beams["ends"].astype(np.int64), beams["radii"].astype(np.float64)
 
 
-def _fetch(mesh: Any, name: str, record: type, dtype: DTypeLike, width: int) -> NDArray[Any]:
-    """Let a getter of lib3mf fill an array; asked without one it says how many records there are."""
+def _fetch(thing: Any, name: str, record: type, dtype: DTypeLike, width: int) -> NDArray[Any]:
+    """Let a getter of lib3mf fill an array; called without an array, it returns the number of records."""
     needed = ctypes.c_uint64(0)
     pointer: Any = ctypes.POINTER(record)
-    _call(mesh, name, ctypes.c_uint64(0), needed, pointer())
+    _call(thing, name, ctypes.c_uint64(0), needed, pointer())
     array = np.empty((needed.value, width), dtype)
     if needed.value:
-        _call(mesh, name, ctypes.c_uint64(needed.value), needed, array.ctypes.data_as(pointer))
+        _call(thing, name, ctypes.c_uint64(needed.value), needed, array.ctypes.data_as(pointer))
     return array
 
 
 def _call(thing: Any, name: str, *arguments: Any) -> None:
-    """Call a function of lib3mf's C interface on an object, raising its error."""
+    """Call a function of lib3mf's C interface on an object; raise its error, if any."""
     wrapper = thing._wrapper  # noqa: SLF001 - lib3mf offers no other way to its bulk functions
     function: Callable[..., int] = getattr(wrapper.lib, name)
     wrapper.checkError(thing, function(thing._handle, *arguments))  # noqa: SLF001

@@ -1,4 +1,4 @@
-"""Read a 3MF that lib3mf refuses with trimesh, which keeps shapes and names only."""
+"""Read a 3MF file that lib3mf refuses with trimesh, which keeps only shapes and names."""
 
 import io
 from pathlib import Path
@@ -12,12 +12,19 @@ from amprep.threemf.package.open import Package
 
 
 def read_by_trimesh(package: Package, path: Path, refusal: str) -> list[Part]:
-    """Return a part for each instance in the build; the first says why lib3mf refused the file.
+    """Return one part for each instance in the build.
+
+    Parameters
+    ----------
+    package
+        The scanned package of the file `path`.
+    refusal
+        lib3mf's reason, which becomes a note of the first part.
 
     Raises
     ------
     InputError
-        If trimesh cannot read it either, or finds nothing in it.
+        If trimesh cannot read the file either, or finds no mesh in it.
     """
     import trimesh
 
@@ -25,10 +32,10 @@ def read_by_trimesh(package: Package, path: Path, refusal: str) -> list[Part]:
         scene = trimesh.load_scene(io.BytesIO(package.data), file_type="3mf", process=False)
         scale = trimesh.units.unit_conversion(scene.units or "millimeters", "millimeters")
         meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
-    except Exception as error:  # trimesh raises whatever its parts raise
-        words = " ".join(str(error).split())[:200]
+    except Exception as error:  # trimesh passes on any exception of the libraries it uses
+        message = " ".join(str(error).split())[:200]
         raise InputError(
-            f"{path}: lib3mf refuses this file ({refusal}), and trimesh too ({words})"
+            f"{path}: lib3mf refuses this file ({refusal}), and trimesh too ({message})"
         ) from error
     if not meshes:
         raise InputError(f"{path}: lib3mf refuses this file ({refusal}), and trimesh finds no mesh in it")

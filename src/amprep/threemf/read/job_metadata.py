@@ -1,4 +1,4 @@
-"""What a 3MF job says of a part in amprep's namespace: quantity, value and rotations."""
+"""Read amprep's own metadata of a part in a 3MF job: quantity, value and rotations."""
 
 import math
 from collections.abc import Mapping
@@ -7,28 +7,34 @@ from typing import NamedTuple
 from amprep.errors import InputError, JobError
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
-from amprep.threemf.build.record import NAMESPACE
+from amprep.threemf.names import NAMESPACE
 
 MOST_COPIES = 100_000
 
-Metadata = Mapping[tuple[str, str], str]
+PartMetadata = Mapping[tuple[str, str], str]
+"""(namespace, name) -> value."""
 
 
-class Wishes(NamedTuple):
-    """What the job wants of a part."""
+class JobMetadata(NamedTuple):
+    """Settings of a part that a 3MF job states as metadata."""
 
     quantity: int = 1
     value: float | None = None
     orientations: Orientations = Orientations()
 
 
-def wishes_of(metadata: Metadata, where: str) -> Wishes:
-    """Return what the metadata ``quantity``, ``value`` and ``rotations`` ask for.
+def parse_job_metadata(metadata: PartMetadata, where: str) -> JobMetadata:
+    """Return the settings that the metadata ``quantity``, ``value`` and ``rotations`` state.
+
+    Parameters
+    ----------
+    where
+        File and part, for messages.
 
     Raises
     ------
     InputError
-        For a value that cannot be meant; `where` names file and part.
+        For an invalid value.
     """
     quantity = metadata.get((NAMESPACE, "quantity"), "1")
     value = metadata.get((NAMESPACE, "value"))
@@ -36,19 +42,21 @@ def wishes_of(metadata: Metadata, where: str) -> Wishes:
         orientations = parse_rotations(metadata.get((NAMESPACE, "rotations"), "none"))
     except JobError as error:
         raise InputError(f"{where}: {error}") from error
-    return Wishes(_quantity(quantity, where), None if value is None else _value(value, where), orientations)
+    return JobMetadata(
+        _quantity(quantity, where), None if value is None else _value(value, where), orientations
+    )
 
 
-def foreign(metadata: Metadata) -> dict[tuple[str, str], str]:
-    """Return the metadata that is not amprep's own: that speaks of a job or build, not of the part."""
+def foreign_metadata(metadata: PartMetadata) -> dict[tuple[str, str], str]:
+    """Return the metadata of other programs; amprep's own describes the job, not the part."""
     return {key: value for key, value in metadata.items() if key[0] != NAMESPACE}
 
 
 def _quantity(text: str, where: str) -> int:
-    plain = text.strip()
-    if not (plain.isascii() and plain.isdigit() and len(plain) < 10 and 1 <= int(plain) <= MOST_COPIES):
+    digits = text.strip()
+    if not (digits.isascii() and digits.isdigit() and len(digits) < 10 and 1 <= int(digits) <= MOST_COPIES):
         raise InputError(f"{where}: expected a quantity from 1 to {MOST_COPIES}, got {text[:40]!r}")
-    return int(plain)
+    return int(digits)
 
 
 def _value(text: str, where: str) -> float:

@@ -1,4 +1,4 @@
-"""Flatten what a build item shows: components of components, mirrored and sheared, into one mesh."""
+"""Flatten the object of a build item, nested components included, into one mesh."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,194 +11,242 @@ from amprep.arrays import Floats
 from amprep.errors import InputError
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
+from amprep.threemf.package.painted_supports import PaintedSupports
 from amprep.threemf.read.arrays import fetch_mesh
-from amprep.threemf.read.colours import Paint, paint_of
-from amprep.threemf.read.painted_supports import Painted, painted_regions
-from amprep.threemf.read.slicer_config import (
-    BLOCKER,
-    ENFORCER,
-    MODIFIER,
-    NEGATIVE,
-    SOLID,
-    Role,
-    SlicerObject,
-    Volume,
-)
+from amprep.threemf.read.colours import MeshColours, mesh_colours
+from amprep.threemf.read.painted_supports import painted_regions
+from amprep.threemf.read.slicer_config import ComponentRole, SlicerObject
+from amprep.threemf.slicer_volumes import SlicerVolume, VolumeKind
+from amprep.threemf.transforms import row_matrix
 
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
 
 MOST_TRIANGLES = 50_000_000
 
-_REGIONS: dict[str, RegionKind] = {BLOCKER: "blocker", ENFORCER: "enforcer", MODIFIER: "lattice"}
+_LARGEST_NUMBER = 1e30
+"""Limit of a transform's numbers; NaN exceeds it, too."""
+
+_REGION_KINDS: dict[VolumeKind, RegionKind] = {
+    "blocker": "blocker",
+    "enforcer": "enforcer",
+    "modifier": "lattice",
+}
 
 
 @dataclass
-class Shape:
-    """What has been gathered of a build item so far, in its own coordinates and the file's unit.
+class FlattenedItem:
+    """The meshes found so far below a build item, in its own coordinates and the file's unit.
 
     Attributes
     ----------
     vertices, triangles
-        Of each mesh, its triangles counted from its own first vertex.
+        ``(n, 3)`` and ``(m, 3)`` of each mesh; triangles refer to the vertices of their own mesh.
+    colours
+        Colours of each mesh.
+    regions
+        Blockers, enforcers and modifiers.
+    names
+        Name of each mesh object; may be empty.
+    notes
+        One sentence for everything that was left out.
     """
 
     vertices: list[Floats] = field(default_factory=list)
     triangles: list[NDArray[np.int64]] = field(default_factory=list)
-    paints: list[Paint] = field(default_factory=list)
+    colours: list[MeshColours] = field(default_factory=list)
     regions: list[Region] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def joined(self) -> tuple[Floats, NDArray[np.int64]]:
-        """Return the meshes as one."""
-        first = np.cumsum([0, *(len(vertices) for vertices in self.vertices)])
+        """Return vertices and triangles of all meshes as one mesh."""
+        starts = np.cumsum([0, *(len(vertices) for vertices in self.vertices)])
         return np.concatenate(self.vertices), np.concatenate(
-            [triangles + start for triangles, start in zip(self.triangles, first, strict=False)]
+            [triangles + start for triangles, start in zip(self.triangles, starts, strict=False)]
         )
 
 
-class Gatherer:
-    """Gathers the shapes of a model's objects; `where` names the file, `paint` is that of `Package`."""
+class Flattener:
+    """Flattens the objects of one model.
+
+    Parameters
+    ----------
+    prusaslicer
+        Object id -> name and volumes.
+    roles
+        (object id, component's object id) -> role.
+    painted
+        (model part, object id) -> supports painted on the object.
+    where
+        Name of the file, for messages.
+    """
 
     def __init__(
         self,
         model: "Lib3MF.Model",
-        slicer: Mapping[int, SlicerObject],
-        roles: Mapping[tuple[int, int], Role],
-        paint: Mapping[tuple[str, int], Painted],
+        prusaslicer: Mapping[int, SlicerObject],
+        roles: Mapping[tuple[int, int], ComponentRole],
+        painted: Mapping[tuple[str, int], PaintedSupports],
         where: str,
     ) -> None:
         self.model = model
-        self.slicer = slicer
+        self.prusaslicer = prusaslicer
         self.roles = roles
-        self.paint = paint
+        self.painted = painted
         self.where = where
         self._triangles = 0
 
-    def shape_of(self, thing: "Lib3MF.Object", linear: Floats, role: Role | None = None) -> Shape:
-        """Return what an object shows under the ``(3, 3)`` map `linear` (row vectors); `role` is what it is for."""
-        shape = Shape()
+    def flatten(
+        self, thing: "Lib3MF.Object", linear: Floats, role: ComponentRole | None = None
+    ) -> FlattenedItem:
+        """Return the meshes of an object.
+
+        Parameters
+        ----------
+        thing
+            A mesh object or a components object.
+        linear
+            ``(3, 3)`` map for row vectors that is applied to the vertices.
+        role
+            Purpose of the whole object; None for a part.
+
+        Raises
+        ------
+        InputError
+            If the geometry is invalid, too large, or has a negative volume.
+        """
+        item = FlattenedItem()
         frame = np.eye(4)
         frame[:3, :3] = linear
-        self._gather(thing, frame, role, shape)
-        return shape
+        self._add_object(thing, frame, role, item)
+        return item
 
-    def _gather(self, thing: "Lib3MF.Object", frame: Floats, role: Role | None, shape: Shape) -> None:
-        skipped = _why_skipped(thing)
-        if skipped:
-            shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: {skipped}")
+    def _add_object(
+        self, thing: "Lib3MF.Object", frame: Floats, role: ComponentRole | None, item: FlattenedItem
+    ) -> None:
+        reason = _why_skipped(thing)
+        if reason:
+            item.notes.append(f"left out {thing.GetName() or 'an object'!r}: {reason}")
         elif thing.IsMeshObject():
-            self._gather_mesh(thing, frame, role, shape)
+            self._add_mesh(thing, frame, role, item)
         elif thing.IsComponentsObject():
             for index in range(thing.GetComponentCount()):
                 component = thing.GetComponent(index)
                 inner = component.GetObjectResource()
-                names = thing.GetModelResourceID(), inner.GetModelResourceID()
-                with np.errstate(all="ignore"):  # what overflows is found out with the mesh
-                    placed = row_matrix(component.GetTransform()) @ frame
-                self._gather(inner, placed, self.roles.get(names, role), shape)
+                key = thing.GetModelResourceID(), inner.GetModelResourceID()
+                with np.errstate(all="ignore"):  # an overflow is reported with the mesh
+                    inner_frame = row_matrix(component.GetTransform()) @ frame
+                self._add_object(inner, inner_frame, self.roles.get(key, role), item)
         else:
-            shape.notes.append(f"left out {thing.GetName() or 'an object'!r}: it is no mesh")
+            item.notes.append(f"left out {thing.GetName() or 'an object'!r}: it is not a mesh")
 
-    def _gather_mesh(
-        self, thing: "Lib3MF.MeshObject", frame: Floats, role: Role | None, shape: Shape
+    def _add_mesh(
+        self, thing: "Lib3MF.MeshObject", frame: Floats, role: ComponentRole | None, item: FlattenedItem
     ) -> None:
         self._triangles += thing.GetTriangleCount()
         if self._triangles > MOST_TRIANGLES:
             raise InputError(
-                f"{self.where}: more than {MOST_TRIANGLES} triangles in the build; split the job"
+                f"{self.where}: expected at most {MOST_TRIANGLES} triangles in the build; split the job"
             )
+        mirrored = self._check_frame(frame, thing.GetName())
         raw = fetch_mesh(thing)
-        if not np.abs(frame).max() < 1e30:
-            raise InputError(
-                f"{self.where}: the transform of {thing.GetName()!r} is not made of usable numbers"
-            )
-        turns = np.linalg.det(frame[:3, :3])
-        if turns == 0.0:
-            raise InputError(f"{self.where}: {thing.GetName()!r} is squashed flat by its transform")
-        paint = paint_of(self.model, thing, raw)
+        colours = mesh_colours(self.model, thing, raw)
         vertices = raw.vertices @ frame[:3, :3] + frame[3, :3]
-        triangles = as_read = raw.triangles
-        if turns < 0.0:
-            triangles, paint = triangles[:, ::-1], paint._replace(colours=paint.colours[:, ::-1])
+        triangles = raw.triangles
+        if mirrored:
+            triangles, colours = triangles[:, ::-1], colours._replace(corners=colours.corners[:, ::-1])
         if thing.BeamLattice().GetBeamCount():
-            shape.notes.append(f"left out the beam lattice of {thing.GetName()!r}: beams are not read yet")
-        if paint.lost:
-            shape.notes.append("textures and mixed materials are not kept")
-        known = self.slicer.get(thing.GetModelResourceID(), SlicerObject("", ()))
-        shape.names.append(thing.GetName() or known.name)
-        whole = (Volume(*role, 0, len(triangles) - 1),) if role else ()
-        first = sum(map(len, shape.triangles))
-        printed = self._add(vertices, triangles, paint, known.volumes or whole, shape)
-        painted = self.paint.get((thing.PackagePart().GetPath(), thing.GetModelResourceID()))
+            item.notes.append(
+                f"left out the beam lattice of {thing.GetName()!r}: parts of beams are not supported"
+            )
+        if colours.incomplete:
+            item.notes.append(
+                "dropped textures and mixed materials: only colours and base materials are kept"
+            )
+        known = self.prusaslicer.get(thing.GetModelResourceID(), SlicerObject())
+        item.names.append(thing.GetName() or known.name)
+        whole = (SlicerVolume(role.name, 0, len(triangles) - 1, role.kind),) if role else ()
+        first = sum(map(len, item.triangles))
+        printed = self._add(vertices, triangles, colours, known.volumes or whole, item)
+        painted = self.painted.get((thing.PackagePart().GetPath(), thing.GetModelResourceID()))
         if painted is not None:
-            regions, words = painted_regions(painted, vertices, as_read, printed, first)
-            shape.regions += regions
-            shape.notes += [words] if words else []
+            regions, note = painted_regions(painted, vertices, raw.triangles, printed, first)
+            item.regions += regions
+            item.notes += [note] if note else []
+
+    def _check_frame(self, frame: Floats, name: str) -> bool:
+        """Refuse a transform that is not finite or singular; return whether it mirrors."""
+        if not np.abs(frame).max() < _LARGEST_NUMBER:
+            raise InputError(
+                f"{self.where}: the transform of {name!r} contains non-finite numbers; export the file again"
+            )
+        determinant = np.linalg.det(frame[:3, :3])
+        if determinant == 0.0:
+            raise InputError(
+                f"{self.where}: the transform of {name!r} flattens it to a plane, a line or a point"
+            )
+        return bool(determinant < 0.0)
 
     def _add(
         self,
         vertices: Floats,
         triangles: NDArray[np.int64],
-        paint: Paint,
-        volumes: tuple[Volume, ...],
-        shape: Shape,
+        colours: MeshColours,
+        volumes: tuple[SlicerVolume, ...],
+        item: FlattenedItem,
     ) -> NDArray[np.bool_]:
-        """Add a mesh, its blockers and enforcers apart from what is printed; tell which triangles are."""
+        """Add a mesh without the triangles of its regions; return whether each triangle is printed."""
         printed = np.ones(len(triangles), np.bool_)
         for volume in volumes:
-            if volume.kind != SOLID:
-                self._set_apart(volume, vertices, triangles, printed, shape)
+            if volume.kind != "solid":
+                self._add_region(volume, vertices, triangles, printed, item)
         if not printed.all():
-            triangles, paint = triangles[printed], paint._replace(colours=paint.colours[printed])
-        shape.vertices.append(vertices)
-        shape.triangles.append(triangles)
-        shape.paints.append(paint)
+            triangles, colours = triangles[printed], colours._replace(corners=colours.corners[printed])
+        item.vertices.append(vertices)
+        item.triangles.append(triangles)
+        item.colours.append(colours)
         return printed
 
-    def _set_apart(
+    def _add_region(
         self,
-        volume: Volume,
+        volume: SlicerVolume,
         vertices: Floats,
         triangles: NDArray[np.int64],
         printed: NDArray[np.bool_],
-        shape: Shape,
+        item: FlattenedItem,
     ) -> None:
-        """Take a volume's triangles out of what is printed, and keep it as a region if it is one."""
+        """Add a volume as a region, and clear its triangles in `printed`."""
         if not 0 <= volume.first <= volume.last < len(triangles):
-            raise InputError(f"{self.where}: PrusaSlicer's volume {volume.name!r} names triangles not there")
-        if volume.kind == NEGATIVE:
             raise InputError(
-                f"{self.where}: {volume.name!r} is a negative volume, which amprep cannot subtract"
+                f"{self.where}: PrusaSlicer's volume {volume.name!r} refers to triangles that do not exist"
+            )
+        if volume.kind == "negative":
+            raise InputError(
+                f"{self.where}: {volume.name!r} is a negative volume, which amprep cannot subtract; "
+                "subtract it in the slicer or remove it"
             )
         own = triangles[volume.first : volume.last + 1]
         printed[volume.first : volume.last + 1] = False
         used, corners = np.unique(own, return_inverse=True)
         mesh = Mesh(vertices[used], corners.reshape(-1, 3).astype(np.int32))
-        shape.regions.append(Region(_REGIONS[volume.kind], volume.name, mesh=mesh))
-        if volume.kind == MODIFIER:
-            shape.notes.append(modifier_note(volume.name))
+        item.regions.append(Region(_REGION_KINDS[volume.kind], volume.name, mesh=mesh))
+        if volume.kind == "modifier":
+            item.notes.append(modifier_note(volume.name))
 
 
 def modifier_note(name: str) -> str:
-    """Return what is said of a modifier that was read."""
+    """Return the note about a modifier in a file."""
     return f"left out the modifier {name!r}; 'amprep lattice' fills it with cells"
 
 
-def row_matrix(transform: "Lib3MF.Transform") -> Floats:
-    """Return a 3MF transform as a ``(4, 4)`` matrix for row vectors."""
-    matrix = np.eye(4)
-    matrix[:, :3] = np.array([list(row) for row in transform.Fields], np.float64)
-    return matrix
-
-
 def _why_skipped(thing: "Lib3MF.Object") -> str:
+    """Return why an object is not printed, or "" if it is."""
     from lib3mf import Lib3MF
 
     kind = thing.GetType()
     if kind in (Lib3MF.ObjectType.Support, Lib3MF.ObjectType.SolidSupport):
         return "it is a support, and amprep plans its own"
     if kind in (Lib3MF.ObjectType.Surface, Lib3MF.ObjectType.Other):
-        return "its type says that it is not to be printed"
+        return "its type is not printable"
     return ""

@@ -1,151 +1,131 @@
-"""Painted supports: what slicers write at triangles about blockers and enforcers, down to parts of triangles.
+"""Decode painted supports: blockers and enforcers on triangles, or on parts of triangles.
 
-PrusaSlicer keeps them in ``slic3rpe:custom_supports``, Bambu Studio and OrcaSlicer in ``paint_supports``; lib3mf
-does not pass either on. The text is a tree in hexadecimal digits, the last digit first: a digit's lower two bits
-say how many sides of the triangle are halved; without any its upper two are the state (3: the next digit holds
-more), else the corner that the halving starts from, and the 2 to 4 pieces follow, last piece first.
+The code of a triangle is a tree of subdivisions in hexadecimal digits, written from the last digit to the first.
+The lower two bits of a digit count the sides of the triangle that are halved. If there are none, the upper two
+bits are the state of the whole triangle (3: the next digit holds a larger state). Otherwise the upper two bits are
+the corner at which the subdivision starts, and the codes of the 2 to 4 smaller triangles follow, last triangle
+first.
 """
-
-import re
-from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
+from amprep.threemf.package.painted_supports import PaintedSupports
 
-MOST_PIECES = 1_000_000
-"""Pieces read of one object; what is painted finer than that is no longer looked at."""
+MOST_DIGITS = 1_000_000
+"""Digits read of one object; codes beyond them are counted as damaged."""
 
 STATES: dict[int, RegionKind] = {1: "enforcer", 2: "blocker"}
 
-_ELEMENT = re.compile(rb"<(?:\w+:)?(object|triangle)\b((?:[^<>\"']|\"[^\"]*\"|'[^']*')*)>")
-_ID = re.compile(rb"(?:^|\s)id\s*=\s*[\"'](\d{1,9})[\"']")
-_PAINT = re.compile(rb"(?:custom_supports|paint_supports)\s*=\s*[\"']([0-9A-Fa-f]+)[\"']")
-
-# Corners and middles of sides of a triangle that begins at its special corner: a, b, c, ab, bc, ca.
+# Corners and midpoints of the sides of a triangle that begins at the corner of the subdivision: a, b, c, ab, bc, ca.
 _A, _B, _C, _AB, _BC, _CA = range(6)
-_HALVES = {
+_SUBDIVISIONS = {
     1: ((_A, _B, _BC), (_BC, _C, _A)),
     2: ((_A, _AB, _CA), (_AB, _B, _CA), (_B, _C, _CA)),
     3: ((_A, _AB, _CA), (_AB, _B, _BC), (_BC, _C, _CA), (_AB, _BC, _CA)),
 }
 
 
-class Painted(NamedTuple):
-    """What is painted on an object: number of its triangles, and the text at each painted one."""
+def decode(code: str) -> tuple[Floats, Ints]:
+    """Return the painted triangles within a triangle.
 
-    triangles: int
-    texts: dict[int, str]
-
-
-def find_paint(model: bytes) -> dict[int, Painted]:
-    """Return object id -> what is painted on it, from a model part that has been looked through."""
-    found: dict[int, Painted] = {}
-    if b"_supports" not in model:
-        return found
-    name, count, texts = -1, 0, dict[int, str]()
-    for element in _ELEMENT.finditer(model):
-        if element[1] == b"object":
-            number = _ID.search(element[2])
-            name, count, texts = int(number[1]) if number else -1, 0, {}
-            continue
-        paint = _PAINT.search(element[2])
-        if paint:
-            texts[count] = paint[1].decode("ascii")
-        count += 1
-        if texts:
-            found[name] = Painted(count, texts)
-    return found
-
-
-def decode(text: str) -> tuple[Floats, Ints]:
-    """Return the painted pieces of a triangle: corners ``(k, 3, 3)`` in its barycentric coordinates, states ``(k,)``.
+    Returns
+    -------
+    corners, states
+        ``(k, 3, 3)`` in barycentric coordinates of the triangle, and ``(k,)`` keys of `STATES`.
 
     Raises
     ------
     ValueError
-        If the text ends too early or goes on too long.
+        If the code is truncated, has trailing data or names an invalid corner.
     """
-    digits = [int(digit, 16) for digit in reversed(text)]
-    waiting = [np.eye(3)]
-    pieces: list[Floats] = []
+    digits = [int(digit, 16) for digit in reversed(code)]
+    stack = [np.eye(3)]
+    painted: list[Floats] = []
     states: list[int] = []
     read = 0
-    while waiting:
+    while stack:
         if read >= len(digits):
-            raise ValueError("it ends too early")
-        corners, digit = waiting.pop(), digits[read]
+            raise ValueError("the code is truncated")
+        corners, digit = stack.pop(), digits[read]
         read += 1
         sides, high = digit & 3, digit >> 2
         if sides:
             if high == 3:
-                raise ValueError("it names a fourth corner")
-            waiting += _split(corners, sides, high)
+                raise ValueError("the code names a fourth corner")
+            stack += _subdivide(corners, sides, high)
             continue
         if high == 3:
             if read >= len(digits):
-                raise ValueError("it ends too early")
+                raise ValueError("the code is truncated")
             high += digits[read]
             read += 1
         if high in STATES:
-            pieces.append(corners)
+            painted.append(corners)
             states.append(high)
     if read < len(digits):
-        raise ValueError("it goes on too long")
-    return np.array(pieces).reshape(-1, 3, 3), np.array(states, np.int32)
+        raise ValueError("the code has trailing data")
+    return np.array(painted).reshape(-1, 3, 3), np.array(states, np.int32)
 
 
-def _split(corners: Floats, sides: int, special: int) -> list[Floats]:
-    """Return the pieces of a triangle with so many sides halved, in order; the last is the first in the text."""
-    a, b, c = np.roll(corners, -special, axis=0)
+def _subdivide(corners: Floats, sides: int, start: int) -> list[Floats]:
+    """Return the smaller triangles of a triangle with 1 to 3 sides halved; the code lists them in reverse."""
+    a, b, c = np.roll(corners, -start, axis=0)
     points = (a, b, c, (a + b) / 2, (b + c) / 2, (c + a) / 2)
-    return [np.array([points[corner] for corner in piece]) for piece in _HALVES[sides]]
+    return [np.array([points[corner] for corner in triangle]) for triangle in _SUBDIVISIONS[sides]]
 
 
 def painted_regions(
-    painted: Painted, vertices: Floats, triangles: Ints, printed: Bools, first: int
+    painted: PaintedSupports, vertices: Floats, triangles: Ints, printed: Bools, first: int
 ) -> tuple[list[Region], str]:
-    """Return what is painted on an object's mesh as regions, and what could not be read of it, in words.
+    """Return the regions painted on an object's mesh, and a note if some could not be read.
 
     Parameters
     ----------
     vertices, triangles
         ``(n, 3)`` mm and ``(m, 3)``, corners in the order of the file.
-    printed, first
-        ``(m,)`` which of the triangles become part of the mesh, and the number of the first of these there.
+    printed
+        ``(m,)`` whether each triangle becomes part of the mesh.
+    first
+        Index in the part's mesh of the first printed triangle.
+
+    Returns
+    -------
+    regions, note
+        The note is empty if everything was read.
     """
     if painted.triangles != len(triangles):
-        return [], "painted supports are not kept: lib3mf left out some of its triangles"
-    number = first + np.cumsum(printed) - 1
-    wholes: dict[int, list[int]] = {state: [] for state in STATES}
+        return [], "painted supports are dropped: lib3mf skipped some triangles of the object"
+    index_in_part = first + np.cumsum(printed) - 1
+    whole: dict[int, list[int]] = {state: [] for state in STATES}
     owners: dict[int, list[Ints]] = {state: [] for state in STATES}
-    pieces: dict[int, list[Floats]] = {state: [] for state in STATES}
-    broken, left = 0, MOST_PIECES
-    for index, text in painted.texts.items():
-        left -= len(text)
+    corners: dict[int, list[Floats]] = {state: [] for state in STATES}
+    damaged, remaining = 0, MOST_DIGITS
+    for index, code in painted.codes.items():
+        remaining -= len(code)
         try:
-            parts, states = decode(text if left > 0 else "")
+            smaller, states = decode(code if remaining > 0 else "")
         except ValueError:
-            broken += 1
+            damaged += 1
             continue
         for state in STATES if printed[index] else ():
-            own = parts[states == state]
-            if len(text) == 1 and len(own):
-                wholes[state].append(int(number[index]))
+            own = smaller[states == state]
+            if len(code) == 1 and len(own):
+                whole[state].append(int(index_in_part[index]))
             elif len(own):
-                pieces[state].append(own @ vertices[triangles[index]])
-                owners[state].append(np.full(len(own), number[index]))
+                corners[state].append(own @ vertices[triangles[index]])
+                owners[state].append(np.full(len(own), index_in_part[index]))
     regions = [
-        Region(STATES[state], "painted", np.array(each, np.int32)) for state, each in wholes.items() if each
+        Region(STATES[state], "painted", np.array(each, np.int32)) for state, each in whole.items() if each
     ]
-    for state, each in pieces.items():
+    for state, each in corners.items():
         if each:
-            corners = np.concatenate(each).reshape(-1, 3)
-            mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+            points = np.concatenate(each).reshape(-1, 3)
+            mesh = Mesh(points, np.arange(len(points)).reshape(-1, 3))
             regions.append(
                 Region(STATES[state], "painted", np.concatenate(owners[state]).astype(np.int32), mesh)
             )
-    words = f"painted supports of {broken} triangles are damaged or too fine and not kept" if broken else ""
-    return regions, words
+    note = f"painted supports of {damaged} triangles are dropped: damaged or too fine" if damaged else ""
+    return regions, note

@@ -1,68 +1,53 @@
-"""What slicers say about triangles and components: solid volumes, support blockers, modifiers."""
+"""Parse the configuration that slicers add to a 3MF file: the purpose of triangles, components and objects."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from amprep.arrays import Floats
 from amprep.errors import InputError
-from amprep.model.mesh import Mesh
-from amprep.model.part import Part, Region
-from amprep.threemf.write.generic_and_cura import CURA_NAMESPACE
+from amprep.threemf.names import CURA_NAMESPACE
+from amprep.threemf.package.xml import parse_xml
+from amprep.threemf.slicer_volumes import PRUSASLICER_KINDS, SlicerVolume, VolumeKind
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
-SOLID, BLOCKER, ENFORCER, NEGATIVE, MODIFIER = "solid", "blocker", "enforcer", "negative", "modifier"
-_KINDS = {
-    "ModelPart": SOLID,
-    "NegativeVolume": NEGATIVE,
-    "ParameterModifier": MODIFIER,
-    "SupportBlocker": BLOCKER,
-    "SupportEnforcer": ENFORCER,
+
+_BAMBU_KINDS: dict[str, VolumeKind] = {
+    "negative_part": "negative",
+    "modifier_part": "modifier",
+    "support_blocker": "blocker",
+    "support_enforcer": "enforcer",
 }
-_ROLES = {
-    "negative_part": NEGATIVE,
-    "modifier_part": MODIFIER,
-    "support_blocker": BLOCKER,
-    "support_enforcer": ENFORCER,
+_CURA_KINDS: dict[str, VolumeKind] = {
+    "infill_mesh": "modifier",
+    "cutting_mesh": "modifier",
+    "anti_overhang_mesh": "blocker",
 }
-
-
-class Volume(NamedTuple):
-    """Triangles `first` to `last`, both included, of a mesh object, and what they are for."""
-
-    kind: str
-    name: str
-    first: int
-    last: int
 
 
 class SlicerObject(NamedTuple):
     """An object's name in PrusaSlicer, and its volumes."""
 
+    name: str = ""
+    volumes: tuple[SlicerVolume, ...] = ()
+
+
+class ComponentRole(NamedTuple):
+    """Purpose and name of a component or an object."""
+
+    kind: VolumeKind
     name: str
-    volumes: tuple[Volume, ...]
 
 
-class Role(NamedTuple):
-    """What a component is for, and its name."""
-
-    kind: str
-    name: str
-
-
-def parse_slicer_config(config: bytes, where: str) -> dict[int, SlicerObject]:
-    """Return object id -> what ``Metadata/Slic3r_PE_model.config`` says of it.
+def parse_prusaslicer_config(config: bytes, where: str) -> dict[int, SlicerObject]:
+    """Return object id -> name and volumes, from ``Metadata/Slic3r_PE_model.config``.
 
     Raises
     ------
     InputError
-        If the part is not what PrusaSlicer writes.
+        If PrusaSlicer would not write such a configuration.
     """
-    root = _root(config, where)
     try:
+        root = parse_xml(config or b"<config/>")
         return {
             int(element.get("id", "")): SlicerObject(
                 _value(element, "name"), tuple(_volume(volume) for volume in element.iterchildren("volume"))
@@ -70,84 +55,53 @@ def parse_slicer_config(config: bytes, where: str) -> dict[int, SlicerObject]:
             for element in root.iterchildren("object")
         }
     except ValueError as error:
-        raise InputError(f"{where}: cannot understand PrusaSlicer's model config ({error})") from error
+        raise InputError(
+            f"{where}: cannot parse PrusaSlicer's configuration ({error}); export it again"
+        ) from error
 
 
-def parse_part_roles(config: bytes, where: str) -> dict[tuple[int, int], Role]:
-    """Return (object id, component's object id) -> what ``Metadata/model_settings.config`` says it is for.
+def parse_bambu_config(config: bytes, where: str) -> dict[tuple[int, int], ComponentRole]:
+    """Return (object id, component's object id) -> role, from ``Metadata/model_settings.config``.
 
     Raises
     ------
     InputError
-        If the part is not what Bambu Studio and OrcaSlicer write.
+        If Bambu Studio and OrcaSlicer would not write such a configuration.
     """
-    root = _root(config, where)
     try:
+        root = parse_xml(config or b"<config/>")
         return {
-            (int(element.get("id", "")), int(part.get("id", ""))): Role(
-                _ROLES.get(part.get("subtype", ""), SOLID), _value(part, "name")
+            (int(element.get("id", "")), int(part.get("id", ""))): ComponentRole(
+                _BAMBU_KINDS.get(part.get("subtype", ""), "solid"), _value(part, "name")
             )
             for element in root.iterchildren("object")
             for part in element.iterchildren("part")
         }
     except ValueError as error:
-        raise InputError(f"{where}: cannot understand the slicer's model settings ({error})") from error
+        raise InputError(
+            f"{where}: cannot parse the slicer's configuration ({error}); export it again"
+        ) from error
 
 
-def _root(config: bytes, where: str) -> "_Element":
-    from lxml import etree
-
-    try:
-        parser = etree.XMLParser(resolve_entities=False, no_network=True)
-        return etree.fromstring(config or b"<config/>", parser)
-    except etree.XMLSyntaxError as error:
-        raise InputError(f"{where}: cannot understand the slicer's settings ({error})") from error
+def cura_role(metadata: Mapping[tuple[str, str], str], name: str) -> ComponentRole | None:
+    """Return the role of an object by Cura's settings of it; None for a part."""
+    for setting, kind in _CURA_KINDS.items():
+        if metadata.get((CURA_NAMESPACE, setting), "").strip().lower() == "true":
+            return ComponentRole(kind, name)
+    return None
 
 
-def _volume(element: "_Element") -> Volume:
-    kind = _KINDS.get(_value(element, "volume_type"), SOLID)
+def _volume(element: "_Element") -> SlicerVolume:
+    kind = PRUSASLICER_KINDS.get(_value(element, "volume_type"), "solid")
     if not _value(element, "volume_type") and _value(element, "modifier") == "1":  # before PrusaSlicer 2
-        kind = MODIFIER
+        kind = "modifier"
     first, last = int(element.get("firstid", "")), int(element.get("lastid", ""))
-    return Volume(kind, _value(element, "name"), first, last)
+    return SlicerVolume(_value(element, "name"), first, last, kind)
 
 
 def _value(element: "_Element", key: str) -> str:
-    """Return the value of the element's own metadata called `key`, "" if there is none."""
+    """Return the value of the element's own metadata `key`, or "" if there is none."""
     for child in element.iterchildren("metadata"):
         if child.get("key") == key:
             return str(child.get("value", ""))
     return ""
-
-
-Loose = tuple[Region, Floats]
-"""A region in mm, and the positions ``(k, 3)`` at which it lies."""
-
-_SETTINGS = {"infill_mesh": MODIFIER, "cutting_mesh": MODIFIER, "anti_overhang_mesh": BLOCKER}
-
-
-def cura_role(metadata: Mapping[tuple[str, str], str], name: str) -> Role | None:
-    """Return what Cura's settings of an object make of it; None for a part."""
-    for setting, kind in _SETTINGS.items():
-        if metadata.get((CURA_NAMESPACE, setting), "").strip().lower() == "true":
-            return Role(kind, name)
-    return None
-
-
-def with_loose(parts: Sequence[Part], loose: Sequence[Loose]) -> list[Part]:
-    """Return the parts, each with the regions whose boxes meet the box around one of its places."""
-    return [
-        replace(part, regions=(*part.regions, *(each for one in loose for each in _on(part, *one))))
-        for part in parts
-    ]
-
-
-def _on(part: Part, region: Region, places: Floats) -> list[Region]:
-    if region.mesh is None or part.positions is None:
-        return []
-    (low, high), (part_low, part_high) = region.mesh.bounds, part.mesh.bounds
-    shifts = [place - at for at in part.positions for place in places]
-    met = [each for each in shifts if (low + each < part_high).all() and (high + each > part_low).all()]
-    different = np.unique(np.round(np.array(met).reshape(-1, 3), 6), axis=0)
-    mesh = region.mesh
-    return [replace(region, mesh=Mesh(mesh.vertices + each, mesh.triangles)) for each in different]

@@ -1,4 +1,4 @@
-"""Writing a build job: the dialect's document in lib3mf's structure, with exact meshes and placements."""
+"""Write a build file: lib3mf makes the structure, amprep adds exact meshes and placements."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -9,49 +9,69 @@ from amprep.arrays import Floats
 from amprep.errors import AmprepError
 from amprep.files import replacing
 from amprep.model.build import Build
-from amprep.threemf.build.record import NAMESPACE
+from amprep.threemf.names import (
+    CURA_NAMESPACE,
+    MODEL_NAME,
+    NAMESPACE,
+    PRUSASLICER_CONFIG,
+    PRUSASLICER_NAMESPACE,
+)
 from amprep.threemf.package.write import write_package
 from amprep.threemf.write.document import Document
-from amprep.threemf.write.generic_and_cura import CURA_NAMESPACE, components_document
+from amprep.threemf.write.generic_and_cura import components_document
 from amprep.threemf.write.geometry import check_geometry, mesh_text, text_size
-from amprep.threemf.write.prusaslicer import CONFIG_NAME, SLICER_NAMESPACE, merged_document, slicer_config
-from amprep.threemf.write.skeleton import MODEL_NAME, Skeleton, is_readable, make_skeleton
+from amprep.threemf.write.prusaslicer import merged_document, prusaslicer_config
+from amprep.threemf.write.skeleton import Skeleton, is_readable, make_skeleton
 
-PREFIXES = {NAMESPACE: "amprep", CURA_NAMESPACE: "cura", SLICER_NAMESPACE: "slic3rpe"}
-"""Prefixes by the letters of which other programs know a namespace, and our own to be read by people."""
+PREFIXES = {NAMESPACE: "amprep", CURA_NAMESPACE: "cura", PRUSASLICER_NAMESPACE: "slic3rpe"}
+"""Namespace -> prefix; other programs recognise a namespace only by its usual prefix."""
 
 _MESH = re.compile(rb"<mesh>.*?</mesh>", re.DOTALL)
 _METADATA_TEXT = re.compile(rb"(?<=>)[^<]*(?=</metadata>)")
 _PADDINGS = range(0, 8000, 1000)
+"""Numbers of blanks to try in `_write_readable`."""
 
 
 def write_build(build: Build, path: Path) -> None:
-    """Write the build as 3MF in the dialect of its target; equal builds give equal bytes.
+    """Write a build as 3MF in the dialect of its target; equal builds give equal bytes.
 
     Parameters
     ----------
     path
-        Appears whole or, after any error or interruption, not at all.
+        The file appears complete; after an error or an interruption it does not appear.
 
     Raises
     ------
     AmprepError
-        If the file cannot be written, a mesh is nothing that 3MF can hold, or the target is a slicer and a
-        support has no thickness: slicers fill or drop what is open.
+        If the file cannot be written, if 3MF cannot store a mesh, or if the target is a slicer and a support
+        has no thickness: slicers fill or drop open meshes.
     """
     _refuse_surfaces(build)
     merged = build.settings.target == "prusaslicer"
-    write_document(merged_document(build) if merged else components_document(build), path, slicer=merged)
+    write_document(
+        merged_document(build) if merged else components_document(build), path, with_volumes=merged
+    )
 
 
-def write_document(document: Document, path: Path, *, slicer: bool) -> None:
-    """Write a 3MF package; with `slicer`, PrusaSlicer's own list of objects and volumes beside the model."""
-    for body in document.bodies:
-        check_geometry(body)
-    skeleton = make_skeleton(document, ["config"] if slicer else [])
+def write_document(document: Document, path: Path, *, with_volumes: bool) -> None:
+    """Write a 3MF package.
+
+    Parameters
+    ----------
+    with_volumes
+        Add PrusaSlicer's list of objects and volumes.
+
+    Raises
+    ------
+    AmprepError
+        If the file cannot be written, or 3MF cannot store an object.
+    """
+    for each in document.objects:
+        check_geometry(each)
+    skeleton = make_skeleton(document, ["config"] if with_volumes else [])
     others = dict(skeleton.others)
-    if slicer:
-        others[CONFIG_NAME] = slicer_config(document.bodies, skeleton.object_ids)
+    if with_volumes:
+        others[PRUSASLICER_CONFIG] = prusaslicer_config(document.objects, skeleton.object_ids)
     with replacing(path) as temporary:
         _write_readable(temporary, document, replace(skeleton, model=_finished(skeleton), others=others))
 
@@ -59,14 +79,14 @@ def write_document(document: Document, path: Path, *, slicer: bool) -> None:
 def _write_readable(path: Path, document: Document, skeleton: Skeleton) -> None:
     """Write the package so that lib3mf can read it.
 
-    lib3mf 2.5.0 fails on a tag or text with an escaped character that its buffer of 64 KiB cuts; some blanks
-    before the first tag with a mesh move the cut.
+    lib3mf 2.5.0 fails on a tag or text with an escaped character if the end of its buffer of 64 KiB falls within it.
+    Blanks before the resources move that boundary.
     """
-    size = 2 * len(skeleton.model) + sum(map(text_size, document.bodies))
+    size = 2 * len(skeleton.model) + sum(map(text_size, document.objects))
     others = [(name, len(data), [data]) for name, data in skeleton.others.items()]
     for padding in _PADDINGS:
         model = (MODEL_NAME, size, _model_text(document, skeleton, padding))
-        write_package(path, [*others, model], regular=any(body.beams for body in document.bodies))
+        write_package(path, [*others, model], repetitive=any(each.beams for each in document.objects))
         if b"&" not in skeleton.model or is_readable(path):
             return
     raise AmprepError(
@@ -78,31 +98,31 @@ def _refuse_surfaces(build: Build) -> None:
     surfaces = [support.name for support in build.supports if support.surface]
     if surfaces and build.settings.target != "generic":
         raise AmprepError(
-            f"cannot write support {surfaces[0]!r} for {build.settings.target}: a slicer needs walls with a "
-            "thickness; give the cells a wall_mm above 0 or write for generic"
+            f"cannot write support {surfaces[0]!r} for {build.settings.target}: it has no thickness, "
+            "and a slicer needs solids; set wall_mm of the cells above 0, or use the target generic"
         )
 
 
 def _finished(skeleton: Skeleton) -> bytes:
-    """Return the model as it is to be, but for its meshes: quotes are escaped only where they must be."""
+    """Return the final model without its meshes; quotes are escaped only where XML requires it."""
     text = _with_placements(_with_prefixes(skeleton.model), skeleton.placements).replace(b"&apos;", b"'")
     return _METADATA_TEXT.sub(lambda found: found.group().replace(b"&quot;", b'"'), text)
 
 
 def _model_text(document: Document, skeleton: Skeleton, padding: int) -> Iterator[bytes]:
-    """Yield the model with the bodies' own meshes in the place of lib3mf's triangles."""
+    """Yield the model with the objects' meshes in place of the skeleton's triangles."""
     text = skeleton.model.replace(b"<resources>", b" " * padding + b"<resources>", 1)
     start = 0
-    places = _MESH.finditer(text)
-    for body, palette, place in zip(document.bodies, skeleton.palettes, places, strict=True):
-        yield text[start : place.start()]
-        yield from mesh_text(body, palette, skeleton.object_ids)
-        start = place.end()
+    gaps = _MESH.finditer(text)
+    for each, palette, gap in zip(document.objects, skeleton.palettes, gaps, strict=True):
+        yield text[start : gap.start()]
+        yield from mesh_text(each, palette, skeleton.object_ids)
+        start = gap.end()
     yield text[start:]
 
 
 def _with_prefixes(text: bytes) -> bytes:
-    """Return the model with the prefixes that lib3mf numbers changed into the known ones."""
+    """Return the model with the prefixes of `PREFIXES` instead of those that lib3mf numbers."""
     for namespace, prefix in PREFIXES.items():
         declared = re.search(rb'xmlns:(\w+)="' + re.escape(namespace.encode()) + rb'"', text)
         if declared:
@@ -113,7 +133,7 @@ def _with_prefixes(text: bytes) -> bytes:
 
 
 def _with_placements(text: bytes, placements: Mapping[str, Floats]) -> bytes:
-    """Return the model with placements of nine digits; lib3mf itself keeps six, 0.5 um at 300 mm."""
+    """Return the model with placements of nine digits; lib3mf itself writes six, 0.5 um at 300 mm."""
 
     def placed(found: re.Match[bytes]) -> bytes:
         matrix = placements.get(found.group(1).decode())

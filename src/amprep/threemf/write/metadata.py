@@ -1,4 +1,4 @@
-"""What the file records of parts and supports, in every dialect."""
+"""The metadata of a build file, the same in every dialect."""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,7 +6,8 @@ from amprep import __version__
 from amprep.model.build import Build
 from amprep.model.part import Part
 from amprep.threemf.build import record
-from amprep.threemf.build.values import Record, to_json
+from amprep.threemf.build.values import JsonObject, to_json
+from amprep.threemf.names import NAMESPACE
 from amprep.threemf.write.document import Metadata
 
 STANDARD_NAMES = frozenset(
@@ -24,8 +25,8 @@ STANDARD_NAMES = frozenset(
 )
 """Metadata names that 3MF Core allows without a namespace."""
 
-_LONGEST = 10_000
-"""Characters of a metadata value: lib3mf cannot read back 64 KiB of text or more."""
+_LONGEST_VALUE = 10_000
+"""Longest metadata value in characters; lib3mf cannot read back 64 KiB of text or more."""
 
 
 def distinct_parts(build: Build) -> list[Part]:
@@ -33,8 +34,13 @@ def distinct_parts(build: Build) -> list[Part]:
     return list(dict.fromkeys(placed.part for placed in build.parts))
 
 
+def title_metadata(title: str) -> Metadata:
+    """Return the title and the name of this program."""
+    return (("", "Title", title), ("", "Application", f"amprep {__version__}"))
+
+
 def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
-    """Return the metadata of the whole file."""
+    """Return the metadata of a build's model; `parts` are its distinct parts."""
     entries = {
         record.FORMAT: record.FORMAT_VERSION,
         record.SETTINGS: to_json(record.settings_record(build.settings)),
@@ -42,14 +48,24 @@ def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
         record.PARTS: to_json([record.part_record(part) for part in parts]),
         record.UNSUPPORTED: to_json([record.unsupported_record(region) for region in build.unsupported]),
     }
-    titles = (("", "Title", build.settings.build_id), ("", "Application", f"amprep {__version__}"))
-    return titles + tuple(part for name, value in entries.items() for part in recorded(name, value))
+    own = tuple(section for name, value in entries.items() for section in own_metadata(name, value))
+    return title_metadata(build.settings.build_id) + own
 
 
-def part_piece(build: Build, index: int, parts: Sequence[Part], digest: str) -> Record:
-    """Return the record of a placed part; `digest` is that of its geometry as the file will give it back."""
+def placed_part_record(build: Build, index: int, parts: Sequence[Part], digest: str) -> JsonObject:
+    """Return the record of a placed part.
+
+    Parameters
+    ----------
+    index
+        Index of the placed part in the build.
+    parts
+        The distinct parts of the build.
+    digest
+        `Mesh.digest` of the geometry that a reader of the file gets.
+    """
     placed = build.parts[index]
-    piece = {
+    entry = {
         "role": "part",
         "index": index,
         "label": placed.label,
@@ -57,41 +73,41 @@ def part_piece(build: Build, index: int, parts: Sequence[Part], digest: str) -> 
         "sha256": digest,
     }
     own, common = (record.orientations_record(each.orientations) for each in (placed, placed.part))
-    return piece if own == common else {**piece, "orientations": own}
+    return entry if own == common else {**entry, "orientations": own}
 
 
-def support_piece(build: Build, index: int) -> Record:
-    """Return the record of a support."""
+def support_record(build: Build, index: int) -> JsonObject:
+    """Return the record of the support with this index in the build."""
     support = build.supports[index]
     return {"role": "support", "index": index, "name": support.name, "holds": list(support.parts)}
 
 
-def pieces_metadata(pieces: Iterable[Record]) -> Metadata:
-    """Return the metadata of an item that holds the pieces."""
-    return recorded(record.PIECES, to_json(list(pieces)))
+def item_metadata(records: Iterable[JsonObject]) -> Metadata:
+    """Return the metadata of a build item that contains parts and supports with these records."""
+    return own_metadata(record.BODIES, to_json(list(records)))
 
 
-def recorded(name: str, value: str) -> Metadata:
-    """Return an entry in amprep's namespace, cut into ``name``, ``name.2`` and so on if it is long."""
-    cuts = range(0, max(len(value), 1), _LONGEST)
+def own_metadata(name: str, value: str) -> Metadata:
+    """Return an entry in amprep's namespace; a long one is split into ``name``, ``name.2`` and so on."""
+    cuts = range(0, max(len(value), 1), _LONGEST_VALUE)
     return tuple(
-        (record.NAMESPACE, record.numbered(name, number), value[cut : cut + _LONGEST])
+        (NAMESPACE, record.numbered(name, number), value[cut : cut + _LONGEST_VALUE])
         for number, cut in enumerate(cuts, start=1)
     )
 
 
 def part_metadata(part: Part) -> Metadata:
-    """Return what came with the part and other programs may read.
+    """Return the metadata that a part brought along and that other programs may read.
 
-    Entries of amprep's own namespace are left out: they are instructions of the job, done by now. So is what
-    lib3mf could not write or read again; amprep's record has it all the same.
+    It leaves out amprep's own entries, which are instructions of the finished job, and entries that lib3mf cannot
+    write or read again; amprep's record of the part has those, too.
     """
     return tuple(
         (namespace, name, value)
         for (namespace, name), value in part.metadata.items()
-        if namespace != record.NAMESPACE
+        if namespace != NAMESPACE
         and (name in STANDARD_NAMES if not namespace else _is_name(name))
-        and len(value) <= _LONGEST
+        and len(value) <= _LONGEST_VALUE
     )
 
 

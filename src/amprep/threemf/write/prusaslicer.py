@@ -1,6 +1,7 @@
-"""The dialect `prusaslicer`: a support stays with its part only as a volume of one and the same mesh.
+"""Documents for the target `prusaslicer`: each group of parts and supports is one merged mesh.
 
-PrusaSlicer 2.5.0 refuses every item or component that is not of type `model`, and scatters separate objects.
+PrusaSlicer 2.5.0 refuses every item or component whose type is not `model`, and moves separate objects apart.
+Therefore a support stays with its part only as a volume of the same mesh.
 """
 
 from collections.abc import Sequence
@@ -12,156 +13,147 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.model.build import Build
-from amprep.model.mesh import Mesh
+from amprep.model.mesh import Mesh, join_meshes
 from amprep.model.part import Appearance, Part
-from amprep.threemf.build.values import Record, plain, xml_text
-from amprep.threemf.write.document import Body, Document, Group, Instance, Item, Metadata, Volume, groups_of
+from amprep.threemf.build.values import JsonObject, plain, xml_text
+from amprep.threemf.names import PRUSASLICER_NAMESPACE
+from amprep.threemf.slicer_volumes import PRUSASLICER_NAMES, SlicerVolume
+from amprep.threemf.transforms import inverse, round_as_stored, transform_exactly
+from amprep.threemf.write.document import (
+    BuildItem,
+    Document,
+    MeshObject,
+    Metadata,
+    PartGroup,
+    PlacedObject,
+    group_parts,
+)
 from amprep.threemf.write.metadata import (
     build_metadata,
     distinct_parts,
+    item_metadata,
     part_metadata,
-    part_piece,
-    pieces_metadata,
-    support_piece,
+    placed_part_record,
+    support_record,
 )
-
-SLICER_NAMESPACE = "http://schemas.slic3r.org/3mf/2017/06"
-CONFIG_NAME = "Metadata/Slic3r_PE_model.config"
-
-
-def moved_exactly(vertices: Floats, matrix: Floats) -> Floats:
-    """Return the vertices under the matrix, the same bits on every machine (a BLAS may differ in the last).
-
-    Parameters
-    ----------
-    vertices
-        ``(n, 3)`` mm.
-    matrix
-        ``(4, 4)`` affine, column vectors.
-    """
-    x, y, z = vertices.T
-    rows = [a * x + b * y + c * z + d for a, b, c, d in matrix[:3].tolist()]
-    return np.stack(rows, axis=1)
-
-
-def inverse(matrix: Floats) -> Floats:
-    """Return the inverse of a ``(4, 4)`` matrix; raises ValueError (LinAlgError) if it has none."""
-    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-
-
-def rounded_as_kept(vertices: Floats) -> Floats:
-    """Return the vertices as they come back from a file: float32 of six decimals."""
-    return np.round(vertices, 6).astype(np.float32).astype(np.float64)
 
 
 def merged_document(build: Build) -> Document:
-    """Return the file: one object for each group, in the coordinates of its first part."""
+    """Return the document of a build: one object per group, in the coordinates of the group's first part."""
     parts = distinct_parts(build)
-    bodies: list[Body] = []
-    items: list[Item] = []
+    objects: list[MeshObject] = []
+    items: list[BuildItem] = []
     shared: dict[Part, int] = {}  # copies without supports are instances of one object
-    for group in groups_of(build):
+    for group in group_parts(build):
         part = build.parts[group.parts[0]].part
         alone = len(group.parts) + len(group.supports) == 1
-        body, item = _merged(build, parts, group, shared.get(part, len(bodies)) if alone else len(bodies))
-        if item.instances[0].body == len(bodies):
-            bodies.append(body)
+        index = shared.get(part, len(objects)) if alone else len(objects)
+        merged, item = _merged(build, parts, group, index)
+        if index == len(objects):
+            objects.append(merged)
         if alone:
-            shared[part] = item.instances[0].body
+            shared[part] = index
         items.append(item)
-    metadata = ((SLICER_NAMESPACE, "Version3mf", "1"), *build_metadata(build, parts))
-    return Document(build.settings.build_id, metadata, tuple(bodies), tuple(items))
+    metadata = ((PRUSASLICER_NAMESPACE, "Version3mf", "1"), *build_metadata(build, parts))
+    return Document(build.settings.build_id, metadata, tuple(objects), tuple(items))
 
 
-def _merged(build: Build, parts: Sequence[Part], group: Group, index: int) -> tuple[Body, Item]:
-    """Return the object of a group, body `index` of the file, and the item that places it."""
+def _merged(
+    build: Build, parts: Sequence[Part], group: PartGroup, index: int
+) -> tuple[MeshObject, BuildItem]:
+    """Return the merged object of a group, which has this index in the file, and the item that places it."""
     first = build.parts[group.parts[0]]
-    frame = first.matrix.astype(np.float32).astype(np.float64)  # what readers of the file work with
+    frame = first.matrix.astype(np.float32).astype(np.float64)  # readers of the file work with float32
     to_frame = inverse(frame)
-    meshes, pieces = [first.part.mesh], [part_piece(build, group.parts[0], parts, first.part.mesh.digest)]
-    for place in group.parts[1:]:
-        mesh, piece = _further_part(build, parts, place, to_frame)
+    meshes = [first.part.mesh]
+    records = [placed_part_record(build, group.parts[0], parts, first.part.mesh.digest)]
+    for number in group.parts[1:]:
+        mesh, entry = _further_part(build, parts, number, to_frame)
         meshes.append(mesh)
-        pieces.append(piece)
-    for place in group.supports:
-        mesh = build.supports[place].mesh
-        meshes.append(Mesh(moved_exactly(mesh.vertices, to_frame), mesh.triangles))
-        pieces.append(support_piece(build, place))
-    names = [build.parts[place].label for place in group.parts]
-    body = Body(
-        f"{' + '.join(names)} ({build.settings.build_id})",
-        _joined(meshes),
+        records.append(entry)
+    for number in group.supports:
+        mesh = build.supports[number].mesh
+        meshes.append(Mesh(transform_exactly(mesh.vertices, to_frame), mesh.triangles))
+        records.append(support_record(build, number))
+    labels = [build.parts[number].label for number in group.parts]
+    own_parts = [build.parts[number].part for number in group.parts]
+    merged = MeshObject(
+        f"{' + '.join(labels)} ({build.settings.build_id})",
+        join_meshes(meshes),
         part_number=first.part.part_number,
-        appearance=_joined_appearance([build.parts[place].part for place in group.parts], meshes),
-        metadata=_joined_metadata([build.parts[place].part for place in group.parts]),
-        volumes=_volumes(names + [build.supports[place].name for place in group.supports], meshes),
+        appearance=_joined_appearance(own_parts, meshes),
+        metadata=_joined_metadata(own_parts),
+        volumes=_volumes(labels + [build.supports[number].name for number in group.supports], meshes),
     )
     counted = [
-        {**piece, "vertices": len(mesh.vertices), "triangles": len(mesh.triangles)}
-        for piece, mesh in zip(pieces, meshes, strict=True)
+        {**entry, "vertices": len(mesh.vertices), "triangles": len(mesh.triangles)}
+        for entry, mesh in zip(records, meshes, strict=True)
     ]
-    return body, Item((Instance(index, frame),), pieces_metadata(counted))
+    return merged, BuildItem((PlacedObject(index, frame),), item_metadata(counted))
 
 
-def _further_part(build: Build, parts: Sequence[Part], place: int, to_frame: Floats) -> tuple[Mesh, Record]:
-    """Return a part in the coordinates of its group, and the record that brings it back to its own.
+def _further_part(
+    build: Build, parts: Sequence[Part], number: int, to_frame: Floats
+) -> tuple[Mesh, JsonObject]:
+    """Return a part's mesh in the coordinates of its group, and its record with the way back.
 
-    Both ways round to what a file keeps, so the digest is that of the mesh which a reader gets.
+    The mesh is rounded as the file stores it before it is transformed back. The recorded digest is therefore that
+    of the mesh which a reader gets.
     """
-    placed = build.parts[place]
+    placed = build.parts[number]
     into = to_frame @ placed.matrix
     back = inverse(into)
-    mesh = Mesh(moved_exactly(placed.part.mesh.vertices, into), placed.part.mesh.triangles)
-    restored = Mesh(moved_exactly(rounded_as_kept(mesh.vertices), back), mesh.triangles)
-    piece = part_piece(build, place, parts, restored.digest)
-    return mesh, {**piece, "to_part": plain(back.reshape(-1))}
-
-
-def _joined(meshes: Sequence[Mesh]) -> Mesh:
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
-    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
-    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+    mesh = Mesh(transform_exactly(placed.part.mesh.vertices, into), placed.part.mesh.triangles)
+    restored = Mesh(transform_exactly(round_as_stored(mesh.vertices), back), mesh.triangles)
+    entry = placed_part_record(build, number, parts, restored.digest)
+    return mesh, {**entry, "to_part": plain(back.reshape(-1))}
 
 
 def _joined_appearance(parts: Sequence[Part], meshes: Sequence[Mesh]) -> Appearance:
-    """Return the first part's colour and material, and the triangle colours of all (-1: none)."""
-    looks = [part.appearance for part in parts] + [Appearance()] * (len(meshes) - len(parts))
+    """Return the first part's colour and material, and the triangle colours of all meshes (-1: none)."""
+    appearances = [part.appearance for part in parts] + [Appearance()] * (len(meshes) - len(parts))
     colours = None
-    if any(look.triangle_colours is not None for look in looks):
+    if any(each.triangle_colours is not None for each in appearances):
         colours = np.concatenate(
             [
                 np.full((len(mesh.triangles), 3), -1)
-                if look.triangle_colours is None
-                else look.triangle_colours
-                for look, mesh in zip(looks, meshes, strict=True)
+                if each.triangle_colours is None
+                else each.triangle_colours
+                for each, mesh in zip(appearances, meshes, strict=True)
             ]
         ).astype(np.int64)
-    return Appearance(looks[0].colour, looks[0].material, colours)
+    return Appearance(appearances[0].colour, appearances[0].material, colours)
 
 
 def _joined_metadata(parts: Sequence[Part]) -> Metadata:
-    """Return the metadata of all parts; of entries with the same name the first part's is kept."""
+    """Return the metadata of all parts; the first part's entry is kept if several have the same name."""
     entries = {entry[:2]: entry for part in reversed(parts) for entry in part_metadata(part)}
     return tuple(entries.values())
 
 
-def _volumes(names: Sequence[str], meshes: Sequence[Mesh]) -> tuple[Volume, ...]:
+def _volumes(names: Sequence[str], meshes: Sequence[Mesh]) -> tuple[SlicerVolume, ...]:
     ends = np.cumsum([0] + [len(mesh.triangles) for mesh in meshes]).tolist()
     return tuple(
-        Volume(name, start, end - 1) for name, (start, end) in zip(names, pairwise(ends), strict=True)
+        SlicerVolume(name, start, end - 1) for name, (start, end) in zip(names, pairwise(ends), strict=True)
     )
 
 
-def slicer_config(bodies: Sequence[Body], object_ids: Sequence[int]) -> bytes:
-    """Return PrusaSlicer's own list of objects and volumes; supports are volumes to print as they are."""
+def prusaslicer_config(objects: Sequence[MeshObject], object_ids: Sequence[int]) -> bytes:
+    """Return PrusaSlicer's list of objects and volumes; a support is a volume that is printed as it is.
+
+    Parameters
+    ----------
+    object_ids
+        The id of each object in the file.
+    """
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<config>"]
-    for body, number in zip(bodies, object_ids, strict=True):
-        lines += [f' <object id="{number}">', "  " + _entry("object", "name", body.name)]
-        for volume in body.volumes:
+    for each, number in zip(objects, object_ids, strict=True):
+        lines += [f' <object id="{number}">', "  " + _entry("object", "name", each.name)]
+        for volume in each.volumes:
             lines += [
                 f'  <volume firstid="{volume.first}" lastid="{volume.last}">',
                 "   " + _entry("volume", "name", volume.name),
-                "   " + _entry("volume", "volume_type", volume.kind),
+                "   " + _entry("volume", "volume_type", PRUSASLICER_NAMES[volume.kind]),
                 "  </volume>",
             ]
         lines.append(" </object>")

@@ -1,4 +1,4 @@
-"""The structure of a 3MF by lib3mf: everything but the meshes, which are one triangle each here."""
+"""Make the structure of a 3MF file with lib3mf; one triangle takes the place of each mesh."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,32 +13,40 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.errors import AmprepError
 from amprep.model.part import Appearance
-from amprep.threemf.build.record import NAMESPACE
 from amprep.threemf.build.values import xml_text
-from amprep.threemf.write.document import BeamSet, Body, Document, Instance, Item, Metadata, ObjectKind
+from amprep.threemf.names import MODEL_NAME, NAMESPACE
+from amprep.threemf.write.document import (
+    BeamSet,
+    BuildItem,
+    Document,
+    MeshObject,
+    Metadata,
+    ObjectType,
+    PlacedObject,
+)
 from amprep.threemf.write.geometry import Palette
 
-MODEL_NAME = "3D/3dmodel.model"
 _GREY = 0x808080FF
 _LONGEST_NAME = 1000
+"""Characters; with escapes, lib3mf reads no more than 64 KiB."""
 
 
 @dataclass(frozen=True)
 class Skeleton:
-    """A package without meshes and placements.
+    """A package without its meshes and placements.
 
     Attributes
     ----------
     model
-        XML text; each body, in order, has a ``<mesh>`` of one triangle.
+        XML text; each object has, in order, a ``<mesh>`` of one triangle.
     others
-        The other files of the package, by name.
+        Name -> content of the other entries of the package.
     palettes
-        For each body, the colours of its triangles, if it has any.
+        The colours of each object's triangles, if it has any.
     object_ids
-        The number by which the file calls each body.
+        Id of each object in the file.
     placements
-        UUID of each item and component that stands elsewhere than its coordinates say, with its matrix.
+        UUID of an item or component -> its matrix, unless that is the identity.
     """
 
     model: bytes
@@ -49,12 +57,17 @@ class Skeleton:
 
 
 def make_skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
-    """Return the package without its meshes; `suffixes` are those of files that will be added to it.
+    """Return the package without its meshes.
+
+    Parameters
+    ----------
+    suffixes
+        File name suffixes of the entries that will be added to the package.
 
     Raises
     ------
     AmprepError
-        If lib3mf refuses anything in it.
+        If lib3mf refuses the document.
     """
     import lib3mf
 
@@ -67,8 +80,8 @@ def make_skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
 def _skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
     builder = _Builder(document.name)
     builder.annotate(builder.model.GetMetaDataGroup(), document.metadata)
-    for body in document.bodies:
-        builder.add_body(body)
+    for each in document.objects:
+        builder.add_object(each)
     for item in document.items:
         builder.add_item(item)
     for suffix in suffixes:
@@ -81,7 +94,7 @@ def _skeleton(document: Document, suffixes: Sequence[str]) -> Skeleton:
 
 
 def is_readable(path: Path) -> bool:
-    """Return whether lib3mf reads the package strictly."""
+    """Return whether lib3mf reads the package in its strict mode."""
     import lib3mf
 
     reader = lib3mf.get_wrapper().CreateModel().QueryReader("3mf")
@@ -94,12 +107,12 @@ def is_readable(path: Path) -> bool:
 
 
 def _name(text: str) -> str:
-    """Return a name that lib3mf can read again: no more than 64 KiB, escapes included."""
+    """Return a name that lib3mf can read again."""
     return xml_text(text)[:_LONGEST_NAME]
 
 
 class _Builder:
-    """Fills a lib3mf model; every identifier follows from the document's name and the order of the calls."""
+    """Fills a lib3mf model; every identifier follows from the document's name and the order of calls."""
 
     def __init__(self, name: str) -> None:
         import lib3mf
@@ -108,7 +121,7 @@ class _Builder:
         self.wrapper = lib3mf.get_wrapper()
         self.model = self.wrapper.CreateModel()
         types = lib3mf.ObjectType
-        self.kinds: dict[ObjectKind, Any] = {
+        self.types: dict[ObjectType, Any] = {
             "model": types.Model,
             "surface": types.Surface,
             "solidsupport": types.SolidSupport,
@@ -119,7 +132,7 @@ class _Builder:
         self.meshes: list[Any] = []
         self.palettes: list[Palette | None] = []
         self.placements: dict[str, Floats] = {}
-        self.paints: dict[tuple[str | None, str | None], tuple[int, int]] = {}
+        self.properties: dict[tuple[str | None, str | None], tuple[int, int]] = {}
         self.model.SetBuildUUID(self.next_uuid())
 
     def next_uuid(self) -> str:
@@ -130,22 +143,22 @@ class _Builder:
         for namespace, name, value in entries:
             group.AddMetaData(namespace, name, xml_text(value), "xs:string", True)
 
-    def add_body(self, body: Body) -> None:
+    def add_object(self, thing: MeshObject) -> None:
         mesh = self.model.AddMeshObject()
         corners = [self.lib3mf.Position(row) for row in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))]
         mesh.SetGeometry(corners, [self.lib3mf.Triangle((0, 1, 2))])
-        mesh.SetType(self.kinds[body.kind])
-        mesh.SetName(_name(body.name))
-        mesh.SetPartNumber(_name(body.part_number))
+        mesh.SetType(self.types[thing.type])
+        mesh.SetName(_name(thing.name))
+        mesh.SetPartNumber(_name(thing.part_number))
         mesh.SetUUID(self.next_uuid())
-        self.annotate(mesh.GetMetaDataGroup(), body.metadata)
-        self.paint(mesh, body.appearance)
-        if body.beams is not None:
-            self.add_lattice(mesh, body.beams)
+        self.annotate(mesh.GetMetaDataGroup(), thing.metadata)
+        self.add_appearance(mesh, thing.appearance)
+        if thing.beams is not None:
+            self.add_lattice(mesh, thing.beams)
         self.meshes.append(mesh)
 
     def add_lattice(self, mesh: Any, beams: BeamSet) -> None:
-        """Give the object one beam, so that the file names the extension and keeps the meshes it refers to."""
+        """Give the object one beam, so that the file declares the extension and keeps the meshes it refers to."""
         lattice, beam = mesh.BeamLattice(), self.lib3mf.Beam()
         beam.Indices[0], beam.Indices[1] = 0, 1
         beam.Radii[0] = beam.Radii[1] = 1.0
@@ -155,14 +168,14 @@ class _Builder:
             inside = self.lib3mf.BeamLatticeClipMode.Inside
             lattice.SetClipping(inside, self.meshes[beams.clipping].GetResourceID())
 
-    def paint(self, mesh: Any, appearance: Appearance) -> None:
-        """Give the object its material or colour, and a palette for its triangles."""
+    def add_appearance(self, mesh: Any, appearance: Appearance) -> None:
+        """Give the object its material or colour, and collect the palette of its triangles."""
         palette = None
         if appearance.triangle_colours is not None:
             colours = np.unique(np.asarray(appearance.triangle_colours).astype(np.int64))
             palette = self.add_palette(colours[colours >= 0])
         if appearance.material is not None or appearance.colour is not None:
-            mesh.SetObjectLevelProperty(*self.paint_of(appearance.material, appearance.colour))
+            mesh.SetObjectLevelProperty(*self.property_of(appearance.material, appearance.colour))
         self.palettes.append(palette)
 
     def add_palette(self, colours: Any) -> Palette:
@@ -171,36 +184,36 @@ class _Builder:
             group.AddColor(self.colour(value))
         return Palette(group.GetModelResourceID(), colours)
 
-    def paint_of(self, material: str | None, colour: str | None) -> tuple[int, int]:
-        """Return resource and property of a whole object's look; equal looks share theirs."""
-        if (material, colour) not in self.paints:
+    def property_of(self, material: str | None, colour: str | None) -> tuple[int, int]:
+        """Return the resource and property of a material or colour; equal ones are shared."""
+        if (material, colour) not in self.properties:
             value = self.colour(_GREY if colour is None else int(colour.removeprefix("#"), 16))
             group = self.model.AddColorGroup() if material is None else self.model.AddBaseMaterialGroup()
             added = group.AddColor(value) if material is None else group.AddMaterial(_name(material), value)
-            self.paints[material, colour] = (group.GetResourceID(), added)
-        return self.paints[material, colour]
+            self.properties[material, colour] = (group.GetResourceID(), added)
+        return self.properties[material, colour]
 
     def colour(self, value: int) -> Any:
-        """Return lib3mf's colour of 0xRRGGBBAA."""
+        """Return the colour 0xRRGGBBAA for lib3mf."""
         return self.wrapper.RGBAToColor(*value.to_bytes(4, "big"))
 
-    def add_item(self, item: Item) -> None:
+    def add_item(self, item: BuildItem) -> None:
         identity = self.wrapper.GetIdentityTransform()
         if item.group:
             target = self.model.AddComponentsObject()
             target.SetName(_name(item.group))
             target.SetUUID(self.next_uuid())
-            for instance in item.instances:
-                self.place(target.AddComponent(self.meshes[instance.body], identity), instance)
-            placed = self.model.AddBuildItem(target, identity)
-            placed.SetUUID(self.next_uuid())
+            for placed in item.objects:
+                self.place(target.AddComponent(self.meshes[placed.index], identity), placed)
+            added = self.model.AddBuildItem(target, identity)
+            added.SetUUID(self.next_uuid())
         else:
-            placed = self.model.AddBuildItem(self.meshes[item.instances[0].body], identity)
-            self.place(placed, item.instances[0])
-        self.annotate(placed.GetMetaDataGroup(), item.metadata)
+            added = self.model.AddBuildItem(self.meshes[item.objects[0].index], identity)
+            self.place(added, item.objects[0])
+        self.annotate(added.GetMetaDataGroup(), item.metadata)
 
-    def place(self, placed: Any, instance: Instance) -> None:
+    def place(self, added: Any, placed: PlacedObject) -> None:
         uuid = self.next_uuid()
-        placed.SetUUID(uuid)
-        if (instance.matrix != np.eye(4)).any():
-            self.placements[uuid] = instance.matrix
+        added.SetUUID(uuid)
+        if (placed.matrix != np.eye(4)).any():
+            self.placements[uuid] = placed.matrix

@@ -233,7 +233,7 @@ BROKEN = {
     "a region's triangle is negative": ('"triangles": [1, 3]', '"triangles": [-1, 3]'),
     "a piece has no record": ('"role": "part", "index": 0', '"role": "part"'),
     "a piece's role is unknown": ('"role": "support"', '"role": "helper"'),
-    "two pieces have one index": ('"role": "part", "index": 1', '"role": "part", "index": 0'),
+    "two bodies have one index": ('"role": "part", "index": 1', '"role": "part", "index": 0'),
     "an index leaves a gap": ('"role": "part", "index": 2', '"role": "part", "index": 3'),
     "a piece is of no known part": ('"part": 1, "sha256"', '"part": 2, "sha256"'),
     "two parts have one label": ('"label": "bar"', '"label": "plate &amp; &lt;tray&gt;"'),
@@ -242,7 +242,7 @@ BROKEN = {
     "a listed region is of no part": ('"part": 2, "label"', '"part": 3, "label"'),
     "a listed region is of an unknown kind": ('"kind": "face"', '"kind": "hole"'),
     "a listed point has two coordinates": ("[4, 5, 6]", "[4, 5]"),
-    "an item has no record": ("amprep:pieces", "amprep:peaces"),
+    "an item has no record": ("amprep:bodies", "amprep:bodis"),
     "an item has a piece too few": (
         ',\n{"role": "support", "index": 0',
         ']</metadata><metadata name="amprep:x">[{"a": 0',
@@ -252,9 +252,7 @@ BROKEN = {
 
 @pytest.mark.parametrize("claim", BROKEN)
 def test_a_damaged_record_is_refused_in_one_line(edited, claim):
-    with pytest.raises(
-        InputError, match=r"edited\.3mf: what amprep recorded in the file is damaged"
-    ) as refused:
+    with pytest.raises(InputError, match=r"edited\.3mf: amprep's metadata in the file is damaged") as refused:
         edited(*BROKEN[claim])
     assert "\n" not in str(refused.value)
 

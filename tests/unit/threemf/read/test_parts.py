@@ -301,7 +301,7 @@ def test_items_marked_as_not_printable_are_left_out_and_that_is_said(tmp_path):
     build = '<item objectid="1" printable="0"/><item objectid="1"/><item objectid="1" printable="0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", box_object(), build))
     assert part.quantity == 1
-    assert part.notes == ("left out 2 items that the file marks as not to be printed",)
+    assert part.notes == ("left out 2 items that the file marks as not printable",)
 
 
 THUMBNAIL = (
@@ -313,9 +313,7 @@ THUMBNAIL = (
 def test_a_relationship_to_a_thumbnail_that_is_not_there_is_mended_and_that_is_said(tmp_path):
     path = pack(tmp_path / "a.3mf", box_object(), '<item objectid="1"/>', rels=relations(THUMBNAIL))
     (part,) = settled(path)
-    assert part.notes == (
-        "left out a relationship to '/Metadata/thumbnail.png', which is not in the package",
-    )
+    assert part.notes == ("removed a relationship to '/Metadata/thumbnail.png', which is not in the package",)
 
 
 def test_a_file_that_lib3mf_refuses_is_read_by_trimesh_and_that_is_said(tmp_path):

@@ -13,7 +13,7 @@ from amprep.files import replacing
 from amprep.model import TARGETS, Mesh, SupportBody
 from amprep.threemf import write as writing
 from amprep.threemf import write_build
-from amprep.threemf.write import metadata as writing_pieces
+from amprep.threemf.write import metadata as writing_metadata
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
@@ -134,7 +134,7 @@ def test_a_part_that_is_no_solid_says_so_where_that_is_understood(make_build, wr
 
 
 def test_what_lib3mf_refuses_is_an_error_of_one_line(make_build, written, monkeypatch):
-    monkeypatch.setattr(writing_pieces, "STANDARD_NAMES", frozenset(["not a standard name"]))
+    monkeypatch.setattr(writing_metadata, "STANDARD_NAMES", frozenset(["not a standard name"]))
     with pytest.raises(AmprepError, match=r"lib3mf refuses it"):
         written(make_build())
 
@@ -240,12 +240,12 @@ def test_any_name_makes_well_formed_xml(make_build, written, name, target):
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [], "no triangles"),
         ([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]], "not finite"),
         ([[0, 0, 0], [1, 0, 0], [0, 1e9, 0]], [[0, 1, 2]], "beyond 1e9 mm"),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]], "not there"),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]], "not there"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]], "does not exist"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]], "does not exist"),
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 0]], "same vertex twice"),
     ],
 )
-def test_a_mesh_that_3mf_cannot_hold_is_refused_by_name(
+def test_a_mesh_that_3mf_cannot_store_is_refused_by_name(
     make_build, written, tmp_path, vertices, triangles, why
 ):
     body = SupportBody("bad support", Mesh(vertices, np.reshape(triangles, (-1, 3))), (0,))
