@@ -8,8 +8,8 @@ import numpy as np
 
 from amprep.arrays import Floats, Ints, MeshArrays
 from amprep.bench.routing.run import peak_mb
-from amprep.geometry.merging.merge_cells import join_cells
-from amprep.geometry.merging.voxel_contents import Pieces
+from amprep.geometry.merging.merge_cells import unite_cells
+from amprep.geometry.merging.voxel_contents import ContentsTable
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import edges_match
 from amprep.model import DIRECTIONS
@@ -164,7 +164,7 @@ def run_merging(cells: int, sample: int, *, oblique: float = 0.12, seed: int = 0
 def _merged(cell: MeshArrays, layout: Layout) -> tuple[float, tuple[Floats, Ints]]:
     start = time.perf_counter()
     template = np.zeros(len(layout.square), np.int64)
-    mesh = join_cells(Pieces([cell]), template, layout.square, layout.shift, np.zeros(3), SIZE)
+    mesh = unite_cells(ContentsTable([cell]), template, layout.square, layout.shift, np.zeros(3), SIZE)
     if mesh is None:
         raise AssertionError("these cells join on arrays")
     return time.perf_counter() - start, mesh

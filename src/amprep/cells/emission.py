@@ -168,7 +168,7 @@ def _factors(shape: Shape, load: Ints) -> Floats:
 def _conforming(shape: MeshCell) -> Mesh:
     if shape.surface:
         return shape.mesh
-    return _mesh(*conform(shape.mesh.vertices, shape.mesh.triangles.astype(np.int64)))
+    return _mesh(*conform(*shape.mesh.arrays))
 
 
 def _mesh(points: Floats, triangles: Ints) -> Mesh:

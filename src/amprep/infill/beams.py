@@ -3,7 +3,6 @@
 import numpy as np
 
 from amprep.cells.answers import Emit, checked
-from amprep.cells.instances import arrays
 from amprep.errors import JobError
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.supports.beams import near_surface, sample
@@ -43,7 +42,7 @@ def lattice_of(beams: Beams, part: Mesh, islands: Mesh, *, shell: Mesh, whole: M
         none, or else, where that has very many triangles, the part as it was.
     """
     places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii)
-    vertices, triangles = arrays(part)
+    vertices, triangles = part.arrays
     meets = inside(places.centres, vertices, part.triangles)
     meets |= near_surface(places.centres, float(places.radii.max()), vertices, triangles)
     kept = np.bincount(places.strut[meets], minlength=len(beams.struts)) > 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.cells.answers import Emit, checked
-from amprep.cells.instances import arrays, sort_out, trunks
+from amprep.cells.instances import classify, expand_cells
 from amprep.errors import JobError, MeshError
 from amprep.geometry.merging.union import arrays_of, evaluated, finish, union
 from amprep.geometry.meshes.components import CRUMB, drop_detached, genus_of
@@ -109,7 +109,7 @@ def fill_region(
     progress(0.4, "trimming the cells")
     points, triangles = finish([evaluated(solid - evaluated(hole - cells))])
     progress(0.8, "looking for loose pieces")
-    parted = drop_detached(points, triangles, arrays_of(hole), arrays(part))
+    parted = drop_detached(points, triangles, arrays_of(hole), part.arrays)
     mesh, islands = Mesh(*parted.kept), Mesh(*parted.islands)
     loose = abs(islands.signed_volume) if len(islands.triangles) else 0.0
     around = evaluated(solid - hole)
@@ -134,11 +134,11 @@ def meets(part: Mesh, region: Mesh) -> bool:
     (low, high), (part_low, part_high) = region.bounds, part.bounds
     if (low > part_high).any() or (high < part_low).any():
         return False
-    return bool((as_manifold(*arrays(part)) ^ as_manifold(*arrays(region))).volume() > CRUMB)
+    return bool((as_manifold(*part.arrays) ^ as_manifold(*region.arrays)).volume() > CRUMB)
 
 
 def _solid(mesh: Mesh, name: str) -> "Manifold":
-    solid = as_manifold(*arrays(mesh))
+    solid = as_manifold(*mesh.arrays)
     if not accepted(solid) or solid.volume() <= 0.0:
         raise MeshError(f"{name} is not a solid: expected a closed mesh, right side out")
     return solid
@@ -146,11 +146,11 @@ def _solid(mesh: Mesh, name: str) -> "Manifold":
 
 def _welded(request: CellRequest, emit: Emit) -> tuple["Manifold", int]:
     """Return the cells as one solid, not yet trimmed, and how many edges have one."""
-    emitted = sort_out(request, checked(request, emit(request)))
-    solids = [as_manifold(*mesh) for mesh in trunks(emitted, ~emitted.sheet)]
-    extra = [each for each in emitted.cells.extra if not each.surface]
-    solids += [as_manifold(*arrays(each.mesh)) for each in extra]
+    instances = classify(request, checked(request, emit(request)))
+    solids = [as_manifold(*mesh) for mesh in expand_cells(instances, ~instances.sheet)]
+    extra = [each for each in instances.cells.extra if not each.surface]
+    solids += [as_manifold(*each.mesh.arrays) for each in extra]
     cells = union(solids)
     if cells.volume() <= CRUMB:
         raise JobError("the cell has no solid to fill a region with; walls without thickness cannot")
-    return cells, len(np.unique(emitted.cells.edge[~emitted.sheet])) + len(extra)
+    return cells, len(np.unique(instances.cells.edge[~instances.sheet])) + len(extra)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from amprep.arrays import Floats, Ints, frozen
+from amprep.arrays import Floats, Ints, MeshArrays, frozen
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,11 @@ class Mesh:
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices, np.float64, 3))
         object.__setattr__(self, "triangles", frozen(self.triangles, np.int32, 3))
+
+    @property
+    def arrays(self) -> MeshArrays:
+        """Vertices, and triangles as int64, as the functions of `amprep.geometry` take them."""
+        return self.vertices, self.triangles.astype(np.int64)
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:

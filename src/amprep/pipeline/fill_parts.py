@@ -6,7 +6,6 @@ from pathlib import Path
 
 from amprep import __version__
 from amprep.cells.answers import Emit
-from amprep.cells.instances import arrays
 from amprep.checks.infill import check_filled
 from amprep.errors import JobError
 from amprep.geometry.meshes.offset import offset_inwards
@@ -164,7 +163,7 @@ def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress)
 
 def _inside(part: Part, shell: float, progress: Progress) -> tuple[Region, ...]:
     progress(0.1, f"looking for the inside of {part.name}")
-    points, triangles = offset_inwards(*arrays(part.mesh), shell, shell / 2.0)
+    points, triangles = offset_inwards(*part.mesh.arrays, shell, shell / 2.0)
     if not len(triangles):
         raise JobError(
             f"{part.name} is nowhere thicker than twice the shell of {shell:g} mm; choose a thinner --shell"

@@ -56,6 +56,6 @@ def _lowest(request: CellRequest) -> CellRequest:
 
 
 def _expanded(cells: Cells) -> Mesh:
-    templates = [(each.mesh.vertices, each.mesh.triangles.astype(np.int64)) for each in cells.templates]
+    templates = [each.mesh.arrays for each in cells.templates]
     points, triangles, _ = expand(templates, cells.template.astype(np.int64), cells.matrix)
     return Mesh(points, triangles.astype(np.int32))

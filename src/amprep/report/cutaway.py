@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from amprep.cells.instances import arrays
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
@@ -46,5 +45,5 @@ def _cut_open(part: Mesh) -> Mesh:
     middle, room = (low + high) / 2.0, float((high - low).max())
     corner = [float(middle[0]), float(low[1]) - room, float(low[2]) - room]
     size = [2.0 * room, float(middle[1] - low[1]) + room, 3.0 * room]
-    cut = as_manifold(*arrays(part)) - Manifold.cube(size).translate(corner)
+    cut = as_manifold(*part.arrays) - Manifold.cube(size).translate(corner)
     return Mesh(*arrays_of(cut)) if cut.volume() > 0.0 else part

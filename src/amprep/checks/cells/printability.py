@@ -107,9 +107,7 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
         return CellMeasures(0.0, None, None, 0.0)
     place = np.column_stack([request.x, request.y, request.plane])[cells.edge]
     place = (place - place.min(axis=0)).astype(np.int64)
-    meshes = [
-        (template.mesh.vertices, template.mesh.triangles.astype(np.int64)) for template in cells.templates
-    ]
+    meshes = [template.mesh.arrays for template in cells.templates]
     chosen = np.array(solids)[cells.template]
     template = cells.template.astype(np.int64)
     hole, pocket = way_out(meshes, template[chosen], place[chosen], size, steps)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats, Int64s, MeshArrays
-from amprep.geometry.merging.nonmanifold_edges import separate_edges
+from amprep.geometry.merging.nonmanifold_edges import split_nonmanifold_edges
 from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
 
@@ -107,7 +107,7 @@ def _weld(templates: Sequence[MeshArrays], tiles: Tiles) -> tuple[MeshArrays, bo
     stays = cancel_opposite(corners)
     side = _sides(templates, tiles.template)[stays]
     conform = not _facing(tiles.place[source[stays]], side)
-    return separate_edges(*drop_unused_vertices(merged, corners[stays])), conform
+    return split_nonmanifold_edges(*drop_unused_vertices(merged, corners[stays])), conform
 
 
 def _sides(templates: Sequence[MeshArrays], template: Int64s) -> Int64s:

@@ -5,7 +5,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.connectors.columns import Patches
 from amprep.geometry.connectors.prisms import prisms_below, prisms_between
-from amprep.geometry.merging.nonmanifold_edges import separate_edges
+from amprep.geometry.merging.nonmanifold_edges import split_nonmanifold_edges
 from amprep.geometry.merging.union import arrays_of, union
 from amprep.geometry.meshes.welding import label_equal_rows, round_as_stored
 from amprep.kernels.meshes import patches as patch_kernels
@@ -69,7 +69,7 @@ def connect(
     surface_of = _label_surfaces(free)
     for each in range(int(surface_of.max(initial=-1)) + 1):
         whole = free.chosen(surface_of == each)
-        meshes.append(separate_edges(*prisms_below(whole, base[whole.owner[:, 0]], overlap)))
+        meshes.append(split_nonmanifold_edges(*prisms_below(whole, base[whole.owner[:, 0]], overlap)))
     for column in np.flatnonzero(covered).tolist():
         way = union(list(prisms_between(*held.in_column(column), overlap, base[column])))
         first, last = cutting.of_column[column : column + 2]

@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
 from amprep.geometry.connectors.columns import LOWEST, Patches
-from amprep.geometry.merging.nonmanifold_edges import separate_edges
+from amprep.geometry.merging.nonmanifold_edges import split_nonmanifold_edges
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.welding import round_as_stored, weld
 from amprep.kernels.meshes import patches as patch_kernels
@@ -43,7 +43,7 @@ def prisms_between(
     for each in range(int(colour.max(initial=-1)) + 1):
         chosen = patches.chosen(colour == each)
         base = np.full(len(chosen.owner), -level if hang else level)
-        corners, triangles = separate_edges(*prisms_below(chosen, base, 0.0))
+        corners, triangles = split_nonmanifold_edges(*prisms_below(chosen, base, 0.0))
         yield as_manifold(
             *((corners * (1.0, 1.0, -1.0), triangles[:, ::-1]) if hang else (corners, triangles))
         )

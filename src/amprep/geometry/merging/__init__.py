@@ -1,1 +1,1 @@
-"""Merging of lattice cells on the grid."""
+"""Union of lattice cells, and unions of support solids."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.cells.tiling import expand
-from amprep.geometry.merging.nonmanifold_edges import separate_edges
+from amprep.geometry.merging.nonmanifold_edges import split_nonmanifold_edges
 from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
 
@@ -26,7 +26,7 @@ _ARRIVES = {1: ("bottom", "left"), -1: ("bottom", "right")}
 """Quarters that a prism fills in the voxel below its upper square, and in the one above its lower square."""
 
 
-def join_prisms(square: Int64s, shift: Int64s, origin: Floats, size: Floats) -> MeshArrays:
+def unite_prisms(square: Int64s, shift: Int64s, origin: Floats, size: Floats) -> MeshArrays:
     """Return the union of prisms as one closed mesh, as a build file keeps it.
 
     Parameters
@@ -50,7 +50,7 @@ def join_prisms(square: Int64s, shift: Int64s, origin: Floats, size: Floats) -> 
     matrix[:, :, 3] = origin + pieces[:, :3] * size
     points, triangles, _ = expand(_templates(), pieces[:, 3], matrix)
     merged, corners = merge_vertices(points, triangles)
-    return separate_edges(*drop_unused_vertices(merged, corners[cancel_opposite(corners)]))
+    return split_nonmanifold_edges(*drop_unused_vertices(merged, corners[cancel_opposite(corners)]))
 
 
 def _packed(voxel: Int64s, extent: Int64s) -> Int64s:

@@ -84,7 +84,7 @@ def _is_low(placed: PlacedPart, height: float) -> bool:
 
 
 def _manifold(mesh: Mesh) -> "Manifold":
-    return as_manifold(mesh.vertices, mesh.triangles.astype(np.int64))
+    return as_manifold(*mesh.arrays)
 
 
 def with_base(mesh: Mesh | None, base: "Manifold | None") -> Mesh | None:

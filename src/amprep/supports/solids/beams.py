@@ -76,7 +76,7 @@ def clip_beams(
         if not placed.part.is_solid:
             continue
         mesh, depth = placed.mesh, overlap if index in held else CONTACT_TOLERANCE
-        arrays = mesh.vertices, mesh.triangles.astype(np.int64)
+        arrays = mesh.arrays
         blocked |= balls_too_deep(places.centres, _WIDER * places.radii, *arrays, depth, DIRECTIONS)
         # edges and fins of a part may come between those few points
         blocked |= balls_too_deep(places.centres, _ROUND * places.radii, *arrays, depth, _FINE)
@@ -207,7 +207,7 @@ def _middles(piece: object) -> Floats:
 def _arrays(mesh: Mesh | None) -> tuple[Floats, np.ndarray]:
     if mesh is None:
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
-    return mesh.vertices, mesh.triangles.astype(np.int64)
+    return mesh.arrays
 
 
 def of_group(cells: Cells, group: int) -> Beams:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.arrays import CONTACT_TOLERANCE
 from amprep.cells.answers import Emit, checked
-from amprep.cells.instances import Emitted, sort_out
+from amprep.cells.instances import CellInstances, classify
 from amprep.errors import JobError
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop, SupportBody
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
@@ -79,14 +79,14 @@ def build_supports(
     progress(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
 
-    def ask(*, extend: bool, beams: bool | None) -> Emitted:
+    def ask(*, extend: bool, beams: bool | None) -> CellInstances:
         request = make_request(
             layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=extend, beams=beams
         )
-        return sort_out(request, checked(request, emit(request)))
+        return classify(request, checked(request, emit(request)))
 
-    emitted, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
-    if emitted.sheet.any():
+    instances, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
+    if instances.sheet.any():
         _require_no_feet(layout, base)
     clearance = WallClearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
     surfaces, obstacles = find_column_surfaces(layout, layout.meshes), PartObstacles(parts, clearance)
@@ -97,13 +97,15 @@ def build_supports(
             break
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
-        solids.append(work.drained_solid(group, emitted))
+        solids.append(work.drained_solid(group, instances))
     bodies: list[SupportBody] = []
     bases = make_bases(solids, parts, base, space, gap)
     for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
         held = layout.group_parts[group]
         whole = with_base(solid, stand)
-        sheet = sheet_of(group, emitted, layout, surfaces, overlap=overlap) if emitted.sheet.any() else None
+        sheet = (
+            sheet_of(group, instances, layout, surfaces, overlap=overlap) if instances.sheet.any() else None
+        )
         if whole is not None and len(whole.triangles):
             lattice = None
             if bare is not None and space is not None:
@@ -117,20 +119,22 @@ def build_supports(
     return tuple(bodies)
 
 
-def _ask(ask: Callable[..., Emitted], *, extend: bool, beams: bool | None) -> tuple[Emitted, Emitted | None]:
+def _ask(
+    ask: Callable[..., CellInstances], *, extend: bool, beams: bool | None
+) -> tuple[CellInstances, CellInstances | None]:
     """Return what the cell made without beams, and with beams if it makes any; walls run up to the part."""
-    emitted, bare = ask(extend=extend, beams=beams), None
-    if emitted.cells.beams is not None and len(emitted.cells.beams.struts):
+    instances, bare = ask(extend=extend, beams=beams), None
+    if instances.cells.beams is not None and len(instances.cells.beams.struts):
         if extend:
             raise JobError(
                 "beams end at connectors that are solids: set cells.connector = 'full', 'teeth' or 'point', "
                 "or cells.lattice = 'mesh'"
             )
-        bare, beams = emitted, False
-        emitted = ask(extend=False, beams=False)
-    if not extend and any(template.surface for template in emitted.cells.templates):
-        emitted = ask(extend=True, beams=beams)
-    return emitted, bare
+        bare, beams = instances, False
+        instances = ask(extend=False, beams=False)
+    if not extend and any(template.surface for template in instances.cells.templates):
+        instances = ask(extend=True, beams=beams)
+    return instances, bare
 
 
 def _require_no_feet(layout: SupportLayout, base: Base) -> None:
@@ -156,11 +160,11 @@ class _SupportBuilder(NamedTuple):
     connector: Connector
     gap: float
 
-    def solid(self, group: int, emitted: Emitted, *, on_beams: bool = False) -> Mesh | None:
+    def solid(self, group: int, instances: CellInstances, *, on_beams: bool = False) -> Mesh | None:
         """Return the solid of a group, or with `on_beams` what of it beams carry."""
         return solid_of(
             group,
-            emitted,
+            instances,
             self.layout,
             self.surfaces,
             self.obstacles,
@@ -169,9 +173,9 @@ class _SupportBuilder(NamedTuple):
             on_beams=on_beams,
         )
 
-    def drained_solid(self, group: int, emitted: Emitted) -> Mesh | None:
+    def drained_solid(self, group: int, instances: CellInstances) -> Mesh | None:
         """Return the solid of a group, with surfaces out for powder where the cell promises them."""
-        solid, hole = self.solid(group, emitted), emitted.cells.hole
+        solid, hole = self.solid(group, instances), instances.cells.hole
         if solid is None or hole == 0.0:
             return solid
         held = [self.parts[part].mesh for part in self.layout.group_parts[group]]
@@ -180,7 +184,7 @@ class _SupportBuilder(NamedTuple):
         )
 
     def lattice(
-        self, group: int, bare: Emitted, whole: Mesh, stand: "Manifold | None", space: BuildVolume
+        self, group: int, bare: CellInstances, whole: Mesh, stand: "Manifold | None", space: BuildVolume
     ) -> Lattice | None:
         """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
         overlap, held = max(self.overlap, CONTACT_TOLERANCE), self.layout.group_parts[group]
@@ -188,6 +192,6 @@ class _SupportBuilder(NamedTuple):
         beams = clip_beams(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
         coarse = None
         if len(whole.triangles) > MAX_STAND_IN_TRIANGLES:
-            coarse = with_base(self.solid(group, sort_out(bare.request, prisms(bare.request))), stand)
+            coarse = with_base(self.solid(group, classify(bare.request, prisms(bare.request))), stand)
         solids = with_base(self.solid(group, bare, on_beams=True), stand)
         return lattice_of(beams, solids, whole, coarse, foot_boxes(self.layout, group, overlap), space)

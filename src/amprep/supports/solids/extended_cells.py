@@ -5,22 +5,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints, MeshArrays
-from amprep.cells.instances import Emitted, trunks
+from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import Tiles, tile
 from amprep.model import Grid
 from amprep.supports.layout import SupportLayout
 
 
-def ends(emitted: Emitted, chosen: Bools, seat: Floats, layout: SupportLayout) -> Iterator[MeshArrays]:
+def extended_cells(
+    instances: CellInstances, chosen: Bools, seat: Floats, layout: SupportLayout
+) -> Iterator[MeshArrays]:
     """Yield closed meshes of cells that run on above red squares, and of one more below each."""
-    yield from trunks(emitted, chosen)
-    lowest = np.flatnonzero(chosen & on_red(emitted, layout, seat > 0.0))
-    cells, request = emitted.cells, emitted.request
+    yield from expand_cells(instances, chosen)
+    lowest = np.flatnonzero(chosen & on_red(instances, layout, seat > 0.0))
+    cells, request = instances.cells, instances.request
     edge = cells.edge[lowest]
     square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 2]).astype(np.int64)
     square, first = np.unique(square, axis=0, return_index=True)
     template = cells.template[lowest][first].astype(np.int64)
-    yield from tile(emitted.templates, _upright(template, square, request.frame))
+    yield from tile(instances.templates, _upright(template, square, request.frame))
 
 
 def _upright(template: Ints, voxel: Ints, frame: Grid) -> Tiles:
@@ -38,8 +40,8 @@ def squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
     return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 
 
-def on_red(emitted: Emitted, layout: SupportLayout, chosen: Bools) -> Bools:
+def on_red(instances: CellInstances, layout: SupportLayout, chosen: Bools) -> Bools:
     """Which instances stand on one of the chosen red squares."""
-    request, edge = emitted.request, emitted.cells.edge
+    request, edge = instances.request, instances.cells.edge
     lower = squares(layout, request.plane - 1, request.y, request.x)[edge]
     return np.isin(lower, squares(layout, *layout.red[chosen].T))

@@ -57,7 +57,7 @@ class PartObstacles:
 
     def _arrays(self, index: int) -> tuple[Floats, Ints]:
         mesh = dict(self._parts)[index]
-        return mesh.vertices, mesh.triangles.astype(np.int64)
+        return mesh.arrays
 
     def subtract_from(
         self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints, MeshArrays
-from amprep.cells.instances import Emitted, arrays, trunks
+from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
 from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
@@ -15,7 +15,7 @@ from amprep.model import Mesh
 from amprep.model.contacts import Connector
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
-from amprep.supports.solids.extended_cells import ends, on_red, squares
+from amprep.supports.solids.extended_cells import extended_cells, on_red, squares
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
@@ -28,7 +28,7 @@ SEAT = 0.2
 
 def solid_of(
     group: int,
-    emitted: Emitted,
+    instances: CellInstances,
     layout: SupportLayout,
     surfaces: ColumnSurfaces,
     obstacles: PartObstacles,
@@ -41,9 +41,9 @@ def solid_of(
 
     With `on_beams` what hangs in the air stays: beams may carry it.
     """
-    mine, extend = emitted.of(group) & ~emitted.sheet, connector.kind == "extend"
-    if emitted.sheet.any() and not mine.any() and not on_beams:
-        solids = _extras(emitted, group)
+    mine, extend = instances.of(group) & ~instances.sheet, connector.kind == "extend"
+    if instances.sheet.any() and not mine.any() and not on_beams:
+        solids = _extras(instances, group)
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
@@ -51,7 +51,9 @@ def solid_of(
     connectors = _connectors(red, np.maximum(seat / 2, sink), layout, surfaces, overlap)
     ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
     if extend:
-        lids = [as_manifold(*mesh) for mesh in ends(emitted, mine & emitted.connector, seat, layout)]
+        lids = [
+            as_manifold(*mesh) for mesh in extended_cells(instances, mine & instances.connector, seat, layout)
+        ]
         ups = [union(ups) ^ union(lids)] if ups and lids else []
     notch = union([])
     if ups:
@@ -61,9 +63,11 @@ def solid_of(
             up, notch = _shaped(up, contact, red, seat / 2, sink, surfaces, connector, overlap)
         ups = [up]
     ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
-    seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(emitted, layout) & (not extend)
-    stems = trunks(emitted, mine & ~emitted.connector, layout.red[seats], float(seat.max(initial=0.0)))
-    cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(emitted, group)]
+    seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
+    stems = expand_cells(
+        instances, mine & ~instances.connector, layout.red[seats], float(seat.max(initial=0.0))
+    )
+    cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
     solids = obstacles.clip(cells + ups)
     if on_beams:
@@ -109,16 +113,16 @@ def _shaped(
     return shape_connectors(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
 
 
-def _extras(emitted: Emitted, group: int) -> list["Manifold"]:
-    extras = [extra for extra in emitted.cells.extra if extra.group == group and not extra.surface]
-    return [as_manifold(*arrays(extra.mesh)) for extra in extras]
+def _extras(instances: CellInstances, group: int) -> list["Manifold"]:
+    extras = [extra for extra in instances.cells.extra if extra.group == group and not extra.surface]
+    return [as_manifold(*extra.mesh.arrays) for extra in extras]
 
 
-def _stands_on_full_square(emitted: Emitted, layout: SupportLayout) -> Bools:
+def _stands_on_full_square(instances: CellInstances, layout: SupportLayout) -> Bools:
     """Which red squares have a cell below them whose top is the whole square."""
-    whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in emitted.templates], np.bool_)
-    edge = emitted.cells.edge[emitted.tiles & whole[emitted.cells.template]]
-    request = emitted.request
+    whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in instances.templates], np.bool_)
+    edge = instances.cells.edge[instances.tiles & whole[instances.cells.template]]
+    request = instances.request
     full = squares(layout, request.plane[edge], request.y[edge], request.x[edge])
     return np.isin(squares(layout, *layout.red.T), full)
 
@@ -131,26 +135,26 @@ def _top_area(points: Floats, triangles: Ints) -> float:
 
 
 def sheet_of(
-    group: int, emitted: Emitted, layout: SupportLayout, surfaces: ColumnSurfaces, *, overlap: float
+    group: int, instances: CellInstances, layout: SupportLayout, surfaces: ColumnSurfaces, *, overlap: float
 ) -> Mesh | None:
     """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
-    mine = emitted.of(group) & emitted.sheet
-    cells, request = emitted.cells, emitted.request
-    sheets = [arrays(extra.mesh) for extra in cells.extra if extra.group == group and extra.surface]
-    trunk = mine & ~emitted.connector
+    mine = instances.of(group) & instances.sheet
+    cells, request = instances.cells, instances.request
+    sheets = [extra.mesh.arrays for extra in cells.extra if extra.group == group and extra.surface]
+    trunk = mine & ~instances.connector
     if trunk.any():
         sheets.append(
-            expand(emitted.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2]
+            expand(instances.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2]
         )
     red = np.flatnonzero(layout.connected & (layout.red_group == group))
-    tops = np.flatnonzero(mine & emitted.connector & on_red(emitted, layout, layout.connected))
+    tops = np.flatnonzero(mine & instances.connector & on_red(instances, layout, layout.connected))
     columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]
     square = squares(layout, *layout.red[red].T)
     order = np.argsort(square, kind="stable")
     for index in tops:
         edge = cells.edge[index]
         number = squares(layout, request.plane[edge : edge + 1] - 1, request.y[edge], request.x[edge])
-        plan = plan_segments(*emitted.templates[cells.template[index]])
+        plan = plan_segments(*instances.templates[cells.template[index]])
         matrix = cells.matrix[index]
         begin, end = (int(np.searchsorted(square[order], number, side=side)[0]) for side in ("left", "right"))
         for column in red[order[begin:end]]:

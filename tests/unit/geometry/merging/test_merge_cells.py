@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from tests.shared.examples import examples
 
 from amprep.bench.merging import barrel, random_layout, run_merging
-from amprep.cells import instances as cell_trunks
-from amprep.cells.instances import sort_out, trunks
-from amprep.geometry.merging.interfaces import seam
-from amprep.geometry.merging.merge_cells import join_cells
+from amprep.cells import instances as instances_module
+from amprep.cells.instances import classify, expand_cells
+from amprep.geometry.merging.interfaces import make_interface
+from amprep.geometry.merging.merge_cells import unite_cells
 from amprep.geometry.merging.union import arrays_of, union
-from amprep.geometry.merging.voxel_contents import LATTICE, Pieces
+from amprep.geometry.merging.voxel_contents import RESOLUTION, ContentsTable
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import degenerate, edges_match
 from amprep.host import Host
@@ -29,7 +29,7 @@ def box(lo, hi):
 
 
 def joined(templates, template, square, shift):
-    mesh = join_cells(Pieces(templates), template, square, shift, ORIGIN, SIZE)
+    mesh = unite_cells(ContentsTable(templates), template, square, shift, ORIGIN, SIZE)
     assert mesh is not None
     assert edges_match(mesh[1])
     assert not degenerate(mesh[1]).any()
@@ -64,28 +64,30 @@ ROWS = st.lists(
 
 
 def outline(*corners):
-    points = (np.array(corners) * LATTICE).round().astype(np.int64)
+    points = (np.array(corners) * RESOLUTION).round().astype(np.int64)
     return np.stack([points, np.roll(points, -1, axis=0)], axis=1)
 
 
 def area(points, triangles):
-    corners = points[triangles] / LATTICE
+    corners = points[triangles] / RESOLUTION
     sides = corners[:, 1:] - corners[:, :1]
     return float(np.linalg.det(sides).sum() / 2)
 
 
 def test_equal_regions_leave_nothing_of_one_another():
     square = outline((0, 0), (1, 0), (1, 1), (0, 1))
-    found = seam(square, square)
+    found = make_interface(square, square)
     assert found is not None
-    assert len(found.ours) == len(found.theirs) == len(found.splits) == 0
+    assert len(found.low) == len(found.high) == len(found.splits) == 0
 
 
 def test_a_corner_on_the_other_s_edge_splits_it():
-    found = seam(outline((0, 0), (1, 0), (1, 1), (0, 1)), outline((0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1)))
+    found = make_interface(
+        outline((0, 0), (1, 0), (1, 1), (0, 1)), outline((0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1))
+    )
     assert found is not None
-    assert len(found.ours) == len(found.theirs) == 0
-    assert (found.points[found.splits[:, 2]] == [[LATTICE // 2, 0]]).all()
+    assert len(found.low) == len(found.high) == 0
+    assert (found.points[found.splits[:, 2]] == [[RESOLUTION // 2, 0]]).all()
 
 
 RADII = st.lists(st.floats(0.05, 0.45), min_size=3, max_size=9)
@@ -103,11 +105,11 @@ def test_what_is_left_of_two_regions_has_the_area_that_clipping_gives(ours, thei
     from manifold3d import CrossSection, FillRule
 
     first, second = star(ours, 0.0), star(theirs, turn)
-    found = seam(first, second)
+    found = make_interface(first, second)
     assert found is not None
-    a, b = (CrossSection([each[:, 0] / LATTICE], FillRule.Positive) for each in (first, second))
-    assert area(found.points, found.ours) == pytest.approx((a - b).area(), abs=1e-5)
-    assert area(found.points, found.theirs) == pytest.approx((b - a).area(), abs=1e-5)
+    a, b = (CrossSection([each[:, 0] / RESOLUTION], FillRule.Positive) for each in (first, second))
+    assert area(found.points, found.low) == pytest.approx((a - b).area(), abs=1e-5)
+    assert area(found.points, found.high) == pytest.approx((b - a).area(), abs=1e-5)
 
 
 # ------------------------------------------------------------------------------------------ cells
@@ -148,7 +150,8 @@ def test_the_same_cells_give_the_same_mesh():
     which = random_layout(300, 0.2, seed=4)
     template = np.zeros(len(which.square), np.int64)
     first, second = (
-        join_cells(Pieces([barrel()]), template, which.square, which.shift, ORIGIN, SIZE) for _ in range(2)
+        unite_cells(ContentsTable([barrel()]), template, which.square, which.shift, ORIGIN, SIZE)
+        for _ in range(2)
     )
     assert (first[0] == second[0]).all()
     assert (first[1] == second[1]).all()
@@ -164,7 +167,7 @@ def emitted(cell, seed, count=30, **params):
     request = CellRequest(frame, plane, y, x, direction, zero, zero + 1, zero)
     host = Host.load(plugins_enabled=False)
     listed = host.choose("cell", cell)
-    return sort_out(
+    return classify(
         request, host.call(listed, request, params=host.params(listed, params), stop=Stop(), progress=silent)
     )
 
@@ -180,7 +183,7 @@ def each_by_itself(found):
 @pytest.mark.parametrize("cell", ["prism", "x-wall", "strut", "bcc", "hatch"])
 def test_built_in_cells_become_one_closed_mesh_of_the_union_s_volume(cell):
     found = emitted(cell, seed=len(cell))
-    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_))
+    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_))
     assert edges_match(mesh[1])
     assert as_manifold(*mesh).volume() == pytest.approx(each_by_itself(found).volume(), rel=1e-6)
 
@@ -188,14 +191,14 @@ def test_built_in_cells_become_one_closed_mesh_of_the_union_s_volume(cell):
 def test_struts_have_the_genus_of_the_union_too():
     """Other built-in cells touch in edges, where manifold3d's answer depends on the order of the cells."""
     found = emitted("strut", seed=2, count=60)
-    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_))
+    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_))
     assert as_manifold(*mesh).genus() == each_by_itself(found).genus()
 
 
 def test_seats_are_united_with_the_cells_they_lie_in():
     found = emitted("strut", seed=1)
     seats = np.array([[2, 3, 3], [2, 3, 4], [3, 4, 4]])
-    (mesh,) = trunks(found, np.ones(len(found.tiles), np.bool_), seats, 0.2)
+    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_), seats, 0.2)
     plates = [(square[::-1] - (0, 0, 1)) * 2.0 + (1.0, 1.0, 1.9) for square in seats]
     from manifold3d import Manifold
 
@@ -207,9 +210,9 @@ def test_seats_are_united_with_the_cells_they_lie_in():
 def test_cells_that_cannot_be_joined_on_arrays_come_one_mesh_a_direction(monkeypatch):
     found = emitted("strut", seed=3)
     every = np.ones(len(found.tiles), np.bool_)
-    (mesh,) = trunks(found, every)
-    monkeypatch.setattr(cell_trunks, "join_cells", lambda *_: None)
-    meshes = [as_manifold(*each) for each in trunks(found, every)]
+    (mesh,) = expand_cells(found, every)
+    monkeypatch.setattr(instances_module, "unite_cells", lambda *_: None)
+    meshes = [as_manifold(*each) for each in expand_cells(found, every)]
     assert len(meshes) >= 5
     assert union(meshes).volume() == pytest.approx(as_manifold(*mesh).volume(), rel=1e-6)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from amprep.cells.instances import sort_out, trunks
+from amprep.cells.instances import classify, expand_cells
 from amprep.checks.supports.bodies import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
@@ -40,8 +40,8 @@ def solid_of(cell: str, request: CellRequest, **params):
     host = Host.load(plugins_enabled=False)
     listed = host.choose("cell", cell)
     cells = host.call(listed, request, params=host.params(listed, params), stop=Stop(), progress=silent)
-    emitted = sort_out(request, cells)
-    meshes = trunks(emitted, np.ones(len(cells.edge), np.bool_))
+    instances = classify(request, cells)
+    meshes = expand_cells(instances, np.ones(len(cells.edge), np.bool_))
     return Manifold.batch_boolean([as_manifold(*mesh) for mesh in meshes], OpType.Add)
 
 
