@@ -1,34 +1,42 @@
-"""Maximal empty spaces, compiled: cut by what is placed, chosen by corner, judged by what they touch.
+"""Maximal empty spaces: cut them by a placed box, choose the next one, and measure what a box in it touches.
 
-Lengths are whole numbers here, so that nothing depends on rounding. A space is a row ``x0, y0, z0, x1, y1, z1,
-distance, corner``: the corner (bits 1, 2, 4: at the far side in x, y, z) that is nearest to the same corner of
-the room, and its Manhattan distance.
+Lengths are whole numbers, so no decision depends on rounding. A space is a row ``x0, y0, z0, x1, y1, z1,
+distance, corner``. ``corner`` is the corner of the space that is nearest to the same corner of the container
+(bits 1, 2 and 4: at the far side in x, y and z), and ``distance`` is the Manhattan distance between the two.
 """
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.kernels.boxes.places import helper
 
-FAR, CORNER = 6, 7
-"""Places in a space after its corners."""
+DISTANCE, CORNER = 6, 7
+"""Columns of a space after the coordinates of its corners."""
+
+# Strategy. The free volume of a container is kept as the set of all maximal boxes in it (Lai and Chan 1997,
+# doi:10.1016/S0360-8352(96)00205-7). A placed box replaces every space that it overlaps by up to six new ones,
+# one per face. A new space is not maximal if another space contains it. Two facts keep that test cheap. A new
+# space lies beside one face of the box, so among the old spaces only those that touch the box can contain it;
+# and among the new ones only those of the same face can. Spaces too small for any box left are dropped at
+# once. With n spaces, m of them overlapping, the cut takes O(n + m (m + touching spaces)) steps.
 
 
 @helper
-def anchor(space, room, flat):
-    """Write the nearest corner and its distance into the space; when flat, only corners on the plate."""
+def anchor(space: Int64s, container: Int64s, flat: bool) -> None:
+    """Write the nearest corner and its distance into the space; when flat, only corners on the plate count."""
     distance, corner = 0, 0
     for a in range(3):
-        near, far = space[a] - room[a], room[3 + a] - space[3 + a]
+        near, far = space[a] - container[a], container[3 + a] - space[3 + a]
         if far < near and not (flat and a == 2):
             near = far
             corner |= 1 << a
         distance += near
-    space[FAR], space[CORNER] = distance, corner
+    space[DISTANCE], space[CORNER] = distance, corner
 
 
 @helper
-def _within(one, i, other, j):
-    """Whether a space lies within another."""
+def _is_within(one: Int64s, i: int, other: Int64s, j: int) -> bool:
+    """Return whether space i of `one` is contained in space j of `other`."""
     inside = True
     for a in range(3):
         inside = inside and one[i, a] >= other[j, a] and one[i, 3 + a] <= other[j, 3 + a]
@@ -36,37 +44,42 @@ def _within(one, i, other, j):
 
 
 @helper
-def _holds(spaces, s, small, number):
-    """Whether one of the small boxes fits the space."""
+def _holds_any(spaces: Int64s, s: int, smallest: Int64s, number: int) -> bool:
+    """Return whether one of the first `number` smallest boxes fits the space."""
     x, y, z = spaces[s, 3] - spaces[s, 0], spaces[s, 4] - spaces[s, 1], spaces[s, 5] - spaces[s, 2]
     k = 0
-    while k < number and (small[k, 0] > x or small[k, 1] > y or small[k, 2] > z):
+    while k < number and (smallest[k, 0] > x or smallest[k, 1] > y or smallest[k, 2] > z):
         k += 1
     return k < number
 
 
 @helper
-def sift(spaces, count, small, number):
-    """Drop the spaces in which none of the small boxes fits (in place); return how many are left."""
+def _copy_row(source: Int64s, i: int, target: Int64s, j: int, columns: int) -> None:
+    for c in range(columns):
+        target[j, c] = source[i, c]
+
+
+@helper
+def drop_useless(spaces: Int64s, count: int, smallest: Int64s, number: int) -> int:
+    """Remove the spaces that hold none of the smallest boxes (in place); return how many are left."""
     kept = 0
     for s in range(count):
-        if _holds(spaces, s, small, number):
+        if _holds_any(spaces, s, smallest, number):
             if kept < s:
-                for c in range(8):
-                    spaces[kept, c] = spaces[s, c]
+                _copy_row(spaces, s, spaces, kept, np.int64(8))
             kept += 1
     return kept
 
 
 @helper
-def cut(spaces, count, box, room, small, number, flat, fresh, touching):
-    """Cut what the box takes out of the spaces (in place); return how many there are then.
+def _split_off(
+    spaces: Int64s, count: int, box: Int64s, flat: bool, fresh: Int64s, touching: Int64s
+) -> tuple[int, int, int]:
+    """Move the spaces that the box overlaps to `fresh`; return the numbers kept, moved and touching.
 
-    Each space that the box meets gives way to the up to six that remain beside the box; those in which none
-    of the small boxes fits, or that lie within another one, are dropped (Lai and Chan 1997). When flat,
-    nothing may lie above the box or below it. `fresh` ``(f, 8)`` and `touching` ``(s,)`` are scratch.
+    `touching` receives the numbers of the kept spaces that share a face plane with the box.
     """
-    kept, gone, near = 0, 0, 0
+    kept, moved, near = 0, 0, 0
     for s in range(count):
         apart, touches = False, False
         for a in range(3):
@@ -74,76 +87,110 @@ def cut(spaces, count, box, room, small, number, flat, fresh, touching):
                 apart = apart or box[a] >= spaces[s, 3 + a] or box[3 + a] <= spaces[s, a]
                 touches = touches or box[a] == spaces[s, 3 + a] or box[3 + a] == spaces[s, a]
         if not apart:
-            for c in range(6):
-                fresh[gone, c] = spaces[s, c]
-            gone += 1
+            _copy_row(spaces, s, fresh, moved, np.int64(6))
+            moved += 1
             continue
         if kept < s:
-            for c in range(8):
-                spaces[kept, c] = spaces[s, c]
+            _copy_row(spaces, s, spaces, kept, np.int64(8))
         if touches:
             touching[near] = kept
             near += 1
         kept += 1
+    return kept, moved, near
+
+
+@helper
+def _add_if_maximal(fresh: Int64s, first: int, new: int, spaces: Int64s, touching: Int64s, near: int) -> int:
+    """Keep row `new` of `fresh` unless a space contains it; return the end of the rows kept.
+
+    The rows from `first` to `new` lie beside the same face; those that the new row contains are removed.
+    """
+    inside, j = False, 0
+    while not inside and j < near:
+        inside = _is_within(fresh, new, spaces, touching[j])
+        j += 1
+    j = first
+    while not inside and j < new:
+        inside = _is_within(fresh, new, fresh, j)
+        if not inside and _is_within(fresh, j, fresh, new):
+            new -= 1
+            _copy_row(fresh, new, fresh, j, np.int64(6))
+            _copy_row(fresh, new + 1, fresh, new, np.int64(6))
+        else:
+            j += 1
+    return new if inside else new + 1
+
+
+@helper
+def cut(
+    spaces: Int64s,
+    count: int,
+    box: Int64s,
+    container: Int64s,
+    smallest: Int64s,
+    number: int,
+    flat: bool,
+    fresh: Int64s,
+    touching: Int64s,
+) -> int:
+    """Remove a box from the free space (in place); return the new number of spaces.
+
+    Parameters
+    ----------
+    spaces, count
+        ``(s, 8)`` maximal spaces, of which the first `count` rows are in use.
+    box, container
+        ``(6,)`` corners.
+    smallest, number
+        ``(MAX_SMALLEST, 3)`` sides; a space that holds none of the first `number` of them is dropped.
+    flat
+        True if nothing may be placed above or below the box.
+    fresh, touching
+        ``(f, 8)`` and ``(s,)`` work arrays.
+    """
+    kept, moved, near = _split_off(spaces, count, box, flat, fresh, touching)
     for side in range(6):
         a = side % 3
         if flat and a == 2:
             continue
-        # only a space that touches the same side of the box can hold a fresh one
-        first, new = gone, gone
-        for s in range(gone):
+        new = moved
+        for s in range(moved):
             left = box[a] - fresh[s, a] if side < 3 else fresh[s, 3 + a] - box[3 + a]
             if left <= 0:
                 continue
-            for c in range(6):
-                fresh[new, c] = fresh[s, c]
+            _copy_row(fresh, s, fresh, new, np.int64(6))
             if side < 3:
                 fresh[new, 3 + a] = box[a]
             else:
                 fresh[new, a] = box[3 + a]
-            inside, j = not _holds(fresh, new, small, number), 0
-            while not inside and j < near:
-                inside = _within(fresh, new, spaces, touching[j])
-                j += 1
-            j = first
-            while not inside and j < new:
-                inside = _within(fresh, new, fresh, j)
-                if not inside and _within(fresh, j, fresh, new):
-                    new -= 1
-                    for c in range(6):
-                        fresh[j, c] = fresh[new, c]
-                        fresh[new, c] = fresh[new + 1, c]
-                else:
-                    j += 1
-            if not inside:
-                new += 1
-        for s in range(first, new):
+            if _holds_any(fresh, new, smallest, number):
+                new = _add_if_maximal(fresh, moved, new, spaces, touching, near)
+        for s in range(moved, new):
             if kept < spaces.shape[0]:
-                for c in range(6):
-                    spaces[kept, c] = fresh[s, c]
-                anchor(spaces[kept], room, flat)
+                _copy_row(fresh, s, spaces, kept, np.int64(6))
+                anchor(spaces[kept], container, flat)
                 kept += 1
-    return kept
+    return int(kept)
 
 
 @helper
-def nearest(spaces, count):
-    """Return the space nearest to a corner of the room, of equals the largest."""
+def nearest(spaces: Int64s, count: int) -> int:
+    """Return the space nearest to a corner of the container; of equally near ones the largest."""
     best, best_volume = 0, -1.0
     for s in range(count):
-        if spaces[s, FAR] > spaces[best, FAR]:
+        if spaces[s, DISTANCE] > spaces[best, DISTANCE]:
             continue
         volume = 1.0
         for a in range(3):
             volume *= spaces[s, 3 + a] - spaces[s, a]
-        if spaces[s, FAR] < spaces[best, FAR] or volume > best_volume:
+        if spaces[s, DISTANCE] < spaces[best, DISTANCE] or volume > best_volume:
             best, best_volume = s, volume
     return best
 
 
 @helper
-def put(spaces, s, size, b, box):
-    """Write the box of block b at the corner of space s."""
+def put(spaces: Int64s, s: int, size: Int64s, b: int, box: Int64s) -> None:
+    """Write the corners of block b, placed at the corner of space s, into `box`."""
     corner = spaces[s, CORNER]
     for a in range(3):
         if corner & (1 << a):
@@ -153,8 +200,8 @@ def put(spaces, s, size, b, box):
 
 
 @helper
-def neighbours(spaces, s, placed, count, margin, near):
-    """Write the placed boxes within `margin` of the space, return their number."""
+def neighbours(spaces: Int64s, s: int, placed: Int64s, count: int, margin: Int64s, near: Int64s) -> int:
+    """Write the placed boxes within `margin` of the space into `near`; return their number."""
     found = 0
     for j in range(count):
         apart = False
@@ -168,15 +215,29 @@ def neighbours(spaces, s, placed, count, margin, near):
 
 
 @helper
-def contact(box, room, placed, near, found, margin):
-    """Return the share of the box's surface that is within `margin` of walls and placed boxes."""
-    whole, touched = 0.0, 0.0
+def touching_fraction(
+    box: Int64s, container: Int64s, placed: Int64s, near: Int64s, found: int, margin: Int64s
+) -> float:
+    """Return the fraction of the box's surface within `margin` of the container's walls or of placed boxes.
+
+    Parameters
+    ----------
+    box, container
+        ``(6,)`` corners.
+    placed
+        ``(p, 7)`` corners of the placed boxes.
+    near, found
+        The first `found` numbers of `near` are the placed boxes that may touch.
+    margin
+        ``(3,)`` distance that counts as touching.
+    """
+    surface, touched = 0.0, 0.0
     for a in range(3):
         b, c = (a + 1) % 3, (a + 2) % 3
         face = float(box[3 + b] - box[b]) * float(box[3 + c] - box[c])
-        whole += 2.0 * face
+        surface += 2.0 * face
         for high in range(2):
-            gap = room[3 + a] - box[3 + a] if high else box[a] - room[a]
+            gap = container[3 + a] - box[3 + a] if high else box[a] - container[a]
             area = face if gap <= margin[a] else 0.0
             k = 0
             while area < face and k < found:
@@ -188,34 +249,51 @@ def contact(box, room, placed, near, found, margin):
                     area += float(max(wide, 0)) * float(max(deep, 0))
                 k += 1
             touched += min(area, face)
-    return touched / whole
+    return touched / surface
 
 
 @helper
-def measure_reach(reach, words, sides, starts, stock):
-    """Write ``(3, l)`` the greatest sum of sides along each axis that is no longer than each length.
+def usable_lengths(usable: Int64s, words: np.ndarray, sides: Int64s, starts: Int64s, demand: Int64s) -> None:
+    """Write for each axis and length the longest row of boxes that is no longer than it.
 
-    `sides` ``(r, 2)`` are kind and length of the sides that may lie along an axis, those of axis a from
-    ``starts[a]`` on; there are as many of each as boxes in stock. `words` is scratch for the bits.
+    This is the bounded subset-sum problem, solved for all lengths at once by shifting a bit set: bit l is set
+    if some boxes in a row have the total length l. The boxes of a type enter in groups of 1, 2, 4, ..., so a
+    demand of d needs about log2(d) shifts.
+
+    Parameters
+    ----------
+    usable
+        ``(3, l)`` written.
+    words
+        uint64 work array of at least l bits.
+    sides, starts
+        ``(r, 2)`` item type and side length; the rows of axis a begin at ``starts[a]``.
+    demand
+        ``(k,)`` number of boxes left of each item type.
     """
     for axis in range(3):
         for w in range(words.size):
             words[w] = np.uint64(0)
         words[0] = np.uint64(1)
         for r in range(starts[axis], starts[axis + 1]):
-            left, step = stock[sides[r, 0]], 1
+            left, step = demand[sides[r, 0]], 1
             while left > 0:
-                shift = min(step, left) * sides[r, 1]
+                _or_shifted(words, min(step, left) * sides[r, 1])
                 left -= step
                 step *= 2
-                skip, bits = shift >> 6, np.uint64(shift & 63)
-                for w in range(words.size - 1, skip - 1, -1):
-                    more = words[w - skip] << bits
-                    if bits and w > skip:
-                        more |= words[w - skip - 1] >> (np.uint64(64) - bits)
-                    words[w] |= more
         top = 0
-        for length in range(reach.shape[1]):
+        for length in range(usable.shape[1]):
             if (words[length >> 6] >> np.uint64(length & 63)) & np.uint64(1):
                 top = length
-            reach[axis, length] = top
+            usable[axis, length] = top
+
+
+@helper
+def _or_shifted(words: np.ndarray, shift: int) -> None:
+    """Add to a bit set all its members plus `shift` (in place)."""
+    skip, bits = shift >> 6, np.uint64(shift & 63)
+    for w in range(words.size - 1, skip - 1, -1):
+        more = words[w - skip] << bits
+        if bits and w > skip:
+            more |= words[w - skip - 1] >> (np.uint64(64) - bits)
+        words[w] |= more

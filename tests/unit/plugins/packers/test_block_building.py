@@ -1,6 +1,4 @@
-"""The packer `block-building` fills what can be filled, keeps to its budget, and obeys the rules of the job."""
-
-import time
+"""The packer `block-building` fills the build, keeps to its work limit, and obeys the rules of the problem."""
 
 import numpy as np
 import pytest
@@ -8,13 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem, cut
 from tests.shared.examples import examples
+from tests.shared.grids import Late
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers.block_building import fill_by_blocks, pack_block_building
 from amprep.plugins.packers.block_building.blocks import build_blocks
-from amprep.plugins.packers.block_building.integer_instance import whole_scene
+from amprep.plugins.packers.block_building.integer_instance import integer_instance
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import BlockBuildingParams
 
@@ -22,7 +21,7 @@ TURNS = Orientations("list", axis_rotations())
 
 
 def problem(sizes, room=(10, 10, 10), *, turns=False, **rules):
-    """Boxes to fill one room."""
+    """Return a problem of boxes that fill one container."""
     return boxes_problem(sizes, room, orientations=TURNS if turns else None, objective="fill", **rules)
 
 
@@ -43,12 +42,12 @@ def value(task, packing):
 
 
 @pytest.mark.parametrize("count", [5, 12, 20])
-def test_a_room_cut_up_without_waste_is_put_together_again(count):
+def test_a_container_cut_into_boxes_is_filled_again_completely(count):
     packing = run(problem(cut(np.random.default_rng(count), (12, 10, 8), count), (12, 10, 8)))
     assert (packing.status, packing.stop_reason, packing.unplaced) == ("optimal", "bound met", ())
 
 
-def test_a_thousand_equal_boxes_fill_the_room_at_once():
+def test_a_thousand_equal_boxes_fill_the_container_within_little_work():
     task = problem([(1, 2, 3)] * 1000, (20, 20, 15), turns=True)
     assert run(task, work=20.0).status == "optimal"
 
@@ -60,26 +59,26 @@ def test_a_box_that_is_too_large_by_the_contact_tolerance_fits_and_by_more_does_
     assert [u.reason for u in packing.unplaced] == ["too large"]
 
 
-def test_value_decides_and_not_volume():
+def test_the_packing_of_greatest_value_wins_not_that_of_greatest_volume():
     task = problem([(10, 10, 10), (5, 10, 10), (4, 10, 10)], values=[5, 3, 3])
     packing = run(task)
     assert sorted(p.item for p in packing.builds[0]) == [1, 2]
     assert value(task, packing) == 6.0
 
 
-def test_boxes_are_turned_when_they_may_be_and_only_then():
+def test_boxes_are_rotated_only_if_their_orientations_allow_it():
     sizes = [(10, 10, 5), (10, 5, 10)]
     assert len(run(problem(sizes)).builds[0]) == 1
     assert len(run(problem(sizes, turns=True)).builds[0]) == 2
 
 
-def test_nothing_lies_above_anything_without_stacking():
+def test_without_stacking_no_box_is_above_another():
     task = problem([(5, 5, 2)] * 8, turns=True, stacking=False)
     packing = run(task, work=20.0)
     assert len(packing.builds[0]) == 8  # on their sides
 
 
-def test_what_is_fixed_stays_and_its_neighbours_keep_clear_of_it_and_of_zones():
+def test_boxes_keep_the_clearance_to_fixed_boxes_and_forbidden_zones():
     space = BuildVolume(np.full(3, 12.0), "box", np.array([[8.0, 0, 0]]), np.array([[12.0, 12, 3]]))
     items = problem(np.random.default_rng(3).integers(2, 6, (30, 3)).tolist(), turns=True).items
     fixed = (Placement(0, np.eye(3), np.array([3.0, 3.0, 0.0])),)
@@ -87,25 +86,25 @@ def test_what_is_fixed_stays_and_its_neighbours_keep_clear_of_it_and_of_zones():
     assert packing.builds[0][0].item == 0
 
 
-def test_what_is_fixed_counts_in_the_worth_of_a_filling():
+def test_fixed_items_count_in_the_value_of_a_packing():
     task = problem([(4, 4, 4)] * 5, fixed=(Placement(0, np.eye(3), np.zeros(3)),))
     found, _ = fill_by_blocks(prepare(task), BlockBuildingParams(work=10.0), Stop(), silent)
     assert found.rank == (-5 * 64.0,)
 
 
-def test_boxes_come_to_rest_below_and_in_the_corner():
+def test_a_single_box_is_pushed_into_the_lower_corner():
     corner = run(problem([(2, 3, 4)])).builds[0][0]
     assert corner.translation.tolist() == [0.0, 0.0, 0.0]
 
 
-def test_the_same_work_gives_the_same_packing_however_the_workers_run():
+def test_the_same_work_limit_gives_the_same_packing_however_the_threads_run():
     task = problem(np.random.default_rng(7).integers(2, 6, (60, 3)).tolist(), turns=True)
     one, other = run(task, work=15.0), run(task, work=15.0)
     assert [p.matrix.tolist() for p in one.builds[0]] == [p.matrix.tolist() for p in other.builds[0]]
     assert one.stop_reason == "work used up"
 
 
-def test_more_work_is_never_worse_and_beats_single_boxes():
+def test_blocks_with_much_work_are_at_least_as_good_as_single_boxes_and_fill_93_percent():
     rng = np.random.default_rng(11)
     task = problem(np.repeat(rng.integers(3, 9, (12, 3)), 6, axis=0).tolist(), (25, 20, 18), turns=True)
     found = [
@@ -117,22 +116,20 @@ def test_more_work_is_never_worse_and_beats_single_boxes():
     assert found[2] / task.space.volume_mm3 > 0.93
 
 
-def test_it_ends_in_time_with_thousands_of_boxes():
+def test_it_stops_at_a_request_made_during_a_search_over_thousands_of_boxes():
     task = problem(np.random.default_rng(8).uniform(0.5, 1.5, (1500, 3)).tolist())
-    run(task, Stop.after(0.1))  # loads and compiles
-    start = time.process_time()
-    assert run(task, Stop.after(0.5)).stop_reason == "time limit"
-    # two workers for half a second, what comes before and after, and the judge
-    assert time.process_time() - start < 5.0
+    packing = run(task, Late(3))
+    assert packing.stop_reason == "time limit"
+    assert len(packing.builds[0]) > 100
 
 
-def test_a_search_over_few_boxes_ends_by_itself():
+def test_a_search_over_few_boxes_ends_without_a_limit():
     packing = run(problem([(6, 6, 6), (5, 5, 5), (7, 2, 2)]))
     assert packing.stop_reason == "no better one found"
     assert packing.status == "feasible"
 
 
-def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
+def test_it_stops_at_once_and_accepts_problems_without_a_box_that_fits():
     task = problem(np.random.default_rng(7).integers(2, 6, (60, 3)).tolist())
     assert run(task, Stop.after(0.0)).stop_reason == "time limit"
     assert run(problem([])).builds == ()
@@ -143,21 +140,22 @@ def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
 @given(
     st.lists(st.tuples(*[st.integers(1, 6)] * 3), min_size=1, max_size=8), st.sampled_from([0.9, 0.98, 1.0])
 )
-def test_every_block_is_made_of_boxes_in_stock_that_lie_inside_it_and_apart(sizes, fill):
-    whole = whole_scene(prepare(problem(sizes, turns=True)))
-    built = build_blocks(whole, 200, fill=fill, grids=0.3, powers=(0.2, 0.0), flat=False)
-    assert len(built.origin) <= max(200, len(whole.singles))
-    for block in range(len(built.origin)):
-        boxes = built.boxes(block, np.zeros(3, np.int64))
+def test_every_block_holds_disjoint_boxes_inside_it_within_the_demand(sizes, fill):
+    instance = integer_instance(prepare(problem(sizes, turns=True)))
+    known, demand = instance.boxes, instance.boxes.demand
+    found = build_blocks(instance, 200, min_fill=fill, grids=0.3, exponents=(0.2, 0.0), flat=False)
+    assert len(found.origin) <= max(200, len(known.size))
+    for block in range(len(found.origin)):
+        boxes = found.boxes(block, np.zeros(3, np.int64))
         lo = np.array([corner for _, corner in boxes])
-        size = whole.singles[[single for single, _ in boxes]]
+        size = known.size[[box for box, _ in boxes]]
         assert (lo >= 0).all()
-        assert (lo + size <= built.blocks.size[block]).all()
+        assert (lo + size <= found.blocks.size[block]).all()
         overlap = np.minimum((lo + size)[:, None], (lo + size)[None]) - np.maximum(lo[:, None], lo[None])
-        assert ((overlap > 0).all(axis=2).sum(axis=1) == 1).all()  # each meets itself alone
-        taken = np.bincount(whole.kind[[single for single, _ in boxes]], minlength=len(whole.stock))
-        assert (taken <= whole.stock).all()
-        assert size.prod(axis=1).sum() >= fill * built.blocks.size[block].prod() - 1e-9
+        assert ((overlap > 0).all(axis=2).sum(axis=1) == 1).all()  # each box overlaps only itself
+        taken = np.bincount(known.item_type[[box for box, _ in boxes]], minlength=len(demand))
+        assert (taken <= demand).all()
+        assert size.prod(axis=1).sum() >= fill * found.blocks.size[block].prod() - 1e-9
 
 
 def test_parameters_out_of_bounds_are_refused():

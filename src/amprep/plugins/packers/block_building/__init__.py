@@ -1,4 +1,4 @@
-"""The packer `block-building`: fills one build with blocks of boxes, by beam searches side by side."""
+"""The packer `block-building`: fill one build with blocks of boxes, by two beam searches in parallel."""
 
 import time
 from collections.abc import Sequence
@@ -6,21 +6,21 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from amprep.kernels.blocks import beam_search as kernel
+from amprep.kernels.blocks import records
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packers.block_building.beam_search import Filling, Manner, Worker
-from amprep.plugins.packers.block_building.integer_instance import Whole, whole_scene
+from amprep.plugins.packers.block_building.beam_search import PackedBoxes, SearchSettings, Worker
+from amprep.plugins.packers.block_building.integer_instance import IntegerInstance, integer_instance
 from amprep.plugins.packers.instance.orders import Pass
 from amprep.plugins.packers.instance.prepare import Scene, prepare
 from amprep.plugins.packers.instance.solution import Solution, as_packing, value_of
 from amprep.plugins.packers.params import BlockBuildingParams
 
-MANNERS = (Manner(), Manner(fill=1.0, power=3, margin=0.0, density=1.0))
-"""How the workers differ: blocks that waste little, and such that waste nothing."""
+WORKERS = (SearchSettings(), SearchSettings(min_fill=1.0, power=3, margin=0.0, density=1.0))
+"""Settings of the two workers: blocks with little waste, and blocks with none."""
 
-PAUSE = 0.01
-"""Seconds between two looks at `stop`."""
+POLL_INTERVAL = 0.01
+"""Seconds between two calls of `stop`."""
 
 
 def pack_block_building(
@@ -33,11 +33,23 @@ def pack_block_building(
 ) -> Packing:
     """Fill one build with blocks of boxes (Araya and Riff 2014, doi:10.1016/j.cor.2013.09.003).
 
-    Boxes are joined to blocks that leave little unused inside. A state is a partly filled build with its
-    maximal empty spaces; the space nearest to a corner of the build takes one of the best blocks at that
-    corner; a state is worth what a greedy completion makes of it; and a beam search keeps the best states,
-    with a wider beam each time. Two searches with different blocks run side by side, and the better answer
-    counts. In the end all boxes are pushed down and to the corner, and what then finds room is added.
+    Boxes are joined to blocks that leave little unused space inside. A state is a partly filled build with its
+    maximal empty spaces. Each move places one of the best blocks in the space nearest to a corner of the
+    build, at that corner. A state is valued by the packing that a greedy completion makes of it. A beam search
+    keeps the best states and is repeated with a wider and wider beam. Two searches with different blocks run
+    in parallel, and the better packing counts. At the end all boxes are pushed down and to the corner, and the
+    space gained is filled.
+
+    Parameters
+    ----------
+    problem
+        Items of one box each, to fill one build that is a box.
+    params
+        Number of blocks and work limit.
+    rng
+        Not used: the search is deterministic.
+    stop, progress
+        Checked and called about a hundred times a second.
     """
     del rng
     scene = prepare(problem)
@@ -48,70 +60,78 @@ def pack_block_building(
 def fill_by_blocks(
     scene: Scene, params: BlockBuildingParams, stop: Stop, progress: Progress
 ) -> tuple[Solution, str]:
-    """Return the best filling found and why the search ended.
+    """Return the best packing found and the reason why the search ended.
 
-    Each worker's course depends on its own work alone. Of equal answers that found with less work counts,
-    then the first worker's, so that time changes nothing as long as it does not end the search.
+    The course of each worker depends on its own work alone. Among packings of equal value, the one found with
+    less work counts, then that of the first worker. So the answer does not depend on time unless time ends the
+    search.
+
+    Parameters
+    ----------
+    scene
+        The prepared problem.
+    params
+        Number of blocks and work limit; each worker gets an equal part of the work.
+    stop, progress
+        As in `pack_block_building`.
     """
-    whole = whole_scene(scene)
-    workers = [
-        Worker(whole, manner, blocks=params.blocks, work=params.work / len(MANNERS), flat=scene.space.flat)
-        for manner in MANNERS
-    ]
-    if len(whole.singles):
+    instance = integer_instance(scene)
+    work, flat = params.work / len(WORKERS), scene.space.flat
+    workers = [Worker(instance, each, blocks=params.blocks, work=work, flat=flat) for each in WORKERS]
+    if len(instance.boxes.size):
         _run(workers, stop, progress)
-    best = min(workers, key=lambda worker: (-worker.filling.value, worker.met))
-    filling = best.settled() if len(whole.singles) else best.filling
-    return as_solution(scene, whole, filling), _reason(workers, best, stop)
+    best = min(workers, key=lambda worker: (-worker.packed.value, worker.found_at))
+    packed = best.compacted() if len(instance.boxes.size) else best.packed
+    return as_solution(scene, instance, packed), _reason(workers, best, stop)
 
 
 def _run(workers: Sequence[Worker], stop: Stop, progress: Progress) -> None:
-    """Run the workers, each in a thread of its own; the kernels leave the interpreter free."""
+    """Run each worker in its own thread; the kernels release the interpreter lock."""
     begun = time.monotonic()
-    whole = begun + stop.remaining()
+    end = begun + stop.remaining()
     with ThreadPoolExecutor(len(workers)) as pool:
         running = [pool.submit(worker.run) for worker in workers]
         while not all(future.done() for future in running):
-            time.sleep(PAUSE)
+            time.sleep(POLL_INTERVAL)
             if stop():
                 for worker in workers:
-                    worker.control[kernel.STOP] = 1
+                    worker.control[records.STOP] = 1
             for worker in workers:
-                if worker.reached:
-                    _limit(workers, worker.met)
-            progress(_share(workers, begun, whole), "building blocks")
+                if worker.reached_goal:
+                    _limit(workers, worker.found_at)
+            progress(_fraction(workers, begun, end), "building blocks")
         for future in running:
             future.result()
 
 
 def _limit(workers: Sequence[Worker], work: int) -> None:
-    """Let no worker go on beyond `work`: later answers would not count."""
+    """Stop each worker at `work`: packings found later would not count."""
     for worker in workers:
-        worker.control[kernel.LIMIT] = min(int(worker.control[kernel.LIMIT]), work)
+        worker.control[records.LIMIT] = min(int(worker.control[records.LIMIT]), work)
 
 
-def _share(workers: Sequence[Worker], begun: float, end: float) -> float:
-    """Return how much of the time or the work is used up."""
-    worked = max(worker.control[kernel.WORK] / max(worker.control[kernel.LIMIT], 1) for worker in workers)
+def _fraction(workers: Sequence[Worker], begun: float, end: float) -> float:
+    """Return the fraction of the time or of the work that is used up."""
+    worked = max(worker.control[records.WORK] / max(worker.control[records.LIMIT], 1) for worker in workers)
     return float(min(max(worked, (time.monotonic() - begun) / max(end - begun, 1e-9)), 1.0))
 
 
 def _reason(workers: Sequence[Worker], best: Worker, stop: Stop) -> str:
-    if best.reached:
+    if best.reached_goal:
         return "bound met"
     if stop():
         return stop.reason
     return "no better one found" if all(worker.finished for worker in workers) else "work used up"
 
 
-def as_solution(scene: Scene, whole: Whole, filling: Filling) -> Solution:
-    """Return the filling with an item for each box, in the form of the other packers."""
+def as_solution(scene: Scene, instance: IntegerInstance, packed: PackedBoxes) -> Solution:
+    """Return the packed boxes with an item assigned to each, in the form of the other packers."""
     n = len(scene.kind)
     build, variant, place = np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3))
-    left = [list(items) for items in whole.items]
-    for single, box in zip(filling.single.tolist(), filling.boxes, strict=True):
-        item = left[whole.kind[single]].pop(0)
-        build[item], variant[item] = 0, whole.variant[single]
-        place[item] = scene.space.lo + box[:3] * whole.unit
+    left = [list(items) for items in instance.items]
+    for box, corners in zip(packed.box.tolist(), packed.corners, strict=True):
+        item = left[instance.boxes.item_type[box]].pop(0)
+        build[item], variant[item] = 0, instance.orientation[box]
+        place[item] = scene.space.lo + corners[:3] * instance.unit
     order = Pass(np.flatnonzero(build >= 0), np.zeros(6))
     return Solution(order, (-value_of(scene, build),), True, build, variant, place)

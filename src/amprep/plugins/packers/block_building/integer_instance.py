@@ -1,65 +1,60 @@
-"""A scene of single boxes in whole numbers, as the kernels of `block-building` read it."""
+"""Convert a prepared problem of single boxes to whole numbers for the kernels of block building."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
+from amprep.kernels.blocks.records import OrientedBoxes
 from amprep.plugins.packers.bounds.volume import fill_bound
 from amprep.plugins.packers.instance.prepare import Scene
 
-GRAIN = 1e-6
-"""mm; the finest unit of length."""
+RESOLUTION = 1e-6
+"""Smallest unit of length (mm)."""
 
-MOST_UNITS = 1 << 30
-"""Units along the room's longest side, at most."""
+MAX_UNITS = 1 << 30
+"""Largest number of units along the container's longest side."""
 
 
 @dataclass(frozen=True, eq=False)
-class Whole:
-    """Boxes, room and obstacles in units, clearance added at the upper sides.
+class IntegerInstance:
+    """Boxes, container and obstacles in whole units. The clearance is added to the upper sides of each box.
 
     Attributes
     ----------
     unit
-        mm, the greatest that measures every box exactly, if there is one above `GRAIN`.
-    room
-        ``(6,)`` corners; the least one is the origin.
+        Length of a unit (mm): the greatest one that measures every box exactly, at least `RESOLUTION`.
+    container
+        ``(6,)`` corners; the lower one is the origin.
     obstacles
-        ``(m, 6)`` corners of zones and fixed boxes.
-    singles, kind, variant
-        ``(s, 3)`` sides of a box in one orientation, and ``(s,)`` its kind and the scene's variant.
+        ``(m, 6)`` corners of forbidden zones and fixed boxes.
+    boxes
+        The boxes to place. Their item types are finer than those of the prepared problem: items of one type
+        also share their value. The value of a worthless box is tiny instead of 0.
+    orientation
+        ``(s,)`` orientation of each oriented box in the prepared problem.
     items
-        Items of each kind: those of a kind share volume, orientations and value.
-    worth
-        ``(s,)`` value, above 0; that of a worthless box is next to nothing.
+        Items of each item type.
     goal
-        Value of what is to be placed that nothing can exceed.
+        Upper bound of the value that can be placed.
     """
 
     unit: float
-    room: Int64s
+    container: Int64s
     obstacles: Int64s
-    singles: Int64s
-    kind: Int64s
-    variant: Int64s
+    boxes: OrientedBoxes
+    orientation: Int64s
     items: tuple[Int64s, ...]
-    worth: Floats
     goal: float
-
-    @property
-    def stock(self) -> Int64s:
-        """``(k,)`` number of boxes of each kind."""
-        return np.array([len(items) for items in self.items], dtype=np.int64)
 
 
 def is_of_single_boxes(scene: Scene) -> bool:
-    """Whether every item is one box and the room is one, so that blocks can be built."""
+    """Return whether every item is one box and the build volume is a box, as block building requires."""
     return scene.space.radius == 0.0 and all(len(v.lo) == 1 for kind in scene.kinds for v in kind)
 
 
-def whole_scene(scene: Scene) -> Whole:
-    """Return the scene in whole numbers; rounding makes boxes larger and rooms smaller, never the reverse."""
+def integer_instance(scene: Scene) -> IntegerInstance:
+    """Return the problem in whole numbers; rounding only makes boxes larger and the container smaller."""
     gap, space, values = scene.problem.clearance, scene.space, _values(scene)
     groups, items = _groups(scene, values)
     rows = [
@@ -75,15 +70,19 @@ def whole_scene(scene: Scene) -> Whole:
     unit = _unit(sizes, lo, hi, float(far.max()))
     fixed = sum(values[placement.item] for placement in scene.problem.fixed)
     least = 1e-9 * max(float(values.max(initial=0.0)), 1e-3)
-    return Whole(
-        unit=unit * GRAIN,
-        room=np.concatenate((np.zeros(3, np.int64), _down(far + space.slack, unit))),
+    boxes = OrientedBoxes(
+        size=np.maximum(_up(sizes, unit), 1),
+        item_type=np.array([group for group, _ in rows], dtype=np.int64),
+        value=np.array([max(values[items[group][0]], least) for group, _ in rows]),
+        demand=np.array([len(members) for members in items], dtype=np.int64),
+    )
+    return IntegerInstance(
+        unit=unit * RESOLUTION,
+        container=np.concatenate((np.zeros(3, np.int64), _down(far + space.slack, unit))),
         obstacles=np.hstack((_down(lo + space.slack, unit), _up(hi - space.slack, unit))),
-        singles=np.maximum(_up(sizes, unit), 1),
-        kind=np.array([group for group, _ in rows], dtype=np.int64),
-        variant=np.array([variant for _, variant in rows], dtype=np.int64),
+        boxes=boxes,
+        orientation=np.array([variant for _, variant in rows], dtype=np.int64),
         items=tuple(items),
-        worth=np.array([max(values[items[group][0]], least) for group, _ in rows]),
         goal=(fill_bound(scene) - float(fixed)) * (1.0 - 1e-9),
     )
 
@@ -93,7 +92,7 @@ def _values(scene: Scene) -> Floats:
 
 
 def _groups(scene: Scene, values: Floats) -> tuple[list[int], list[Int64s]]:
-    """Return for each pair of kind and value the scene's kind and its free items."""
+    """Return for each pair of item type and value the item type and its free items."""
     free = np.flatnonzero(scene.free)
     members: dict[tuple[int, float], list[int]] = {}
     for item in free.tolist():
@@ -102,11 +101,14 @@ def _groups(scene: Scene, values: Floats) -> tuple[list[int], list[Int64s]]:
 
 
 def _unit(sizes: Floats, lo: Floats, hi: Floats, longest: float) -> int:
-    """Return the unit in grains: the greatest common divisor of all lengths, or more when that is too fine."""
+    """Return the unit in multiples of `RESOLUTION`: the greatest common divisor of all lengths.
+
+    The unit is greater than that if the container would be longer than `MAX_UNITS`.
+    """
     lengths = np.concatenate((sizes.ravel(), lo.ravel(), hi.ravel()))
-    grains = np.rint(np.abs(lengths) / GRAIN).astype(np.int64)
-    divisor = int(np.gcd.reduce(grains)) if len(grains) else 1
-    return max(divisor, int(np.ceil(longest / GRAIN / MOST_UNITS)), 1)
+    multiples = np.rint(np.abs(lengths) / RESOLUTION).astype(np.int64)
+    divisor = int(np.gcd.reduce(multiples)) if len(multiples) else 1
+    return max(divisor, int(np.ceil(longest / RESOLUTION / MAX_UNITS)), 1)
 
 
 def _up(lengths: Floats, unit: int) -> Int64s:
@@ -114,5 +116,5 @@ def _up(lengths: Floats, unit: int) -> Int64s:
 
 
 def _down(lengths: Floats, unit: int) -> Int64s:
-    """Return lengths in units, rounded down but for what is surely an error of rounding."""
-    return np.asarray(np.floor(lengths / GRAIN + 1e-3).astype(np.int64) // unit)
+    """Return lengths in units, rounded down; a difference of 0.001 `RESOLUTION` counts as rounding error."""
+    return np.asarray(np.floor(lengths / RESOLUTION + 1e-3).astype(np.int64) // unit)
