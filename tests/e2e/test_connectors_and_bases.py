@@ -1,4 +1,4 @@
-"""Jobs whose supports end in teeth or points, on flanges or rafts, from the command line."""
+"""Jobs with teeth or points on flanges or rafts, from the command line."""
 
 import pytest
 
@@ -7,7 +7,7 @@ import pytest
     "options",
     [
         ("--connector", "teeth", "--base", "raft", "--set", "cells.neck_mm=0.3"),
-        ("--connector", "point", "--base", "flange", "--set", "cells.window_mm=0.5"),
+        ("--connector", "point", "--base", "flange", "--set", "cells.perforation_mm=0.5"),
     ],
 )
 def test_a_job_with_teeth_or_points_on_a_base_verifies(amprep, fixtures, tmp_path, options):

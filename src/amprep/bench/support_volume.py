@@ -27,7 +27,7 @@ from amprep.model import (
     Voxel,
     silent,
 )
-from amprep.model.contacts import Connector
+from amprep.model.contacts import ConnectorRules
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.stl import write_stl
 from amprep.supports.grid.red_squares import RedSquares
@@ -193,7 +193,7 @@ def _volume(
         (part,),
         lambda request: host.call(emitter, request, params=params, stop=stop, progress=silent),
         overlap=0.1,
-        connector=Connector(),
+        connector=ConnectorRules(),
         allow_surface=False,
         stop=stop,
         progress=silent,

@@ -25,7 +25,7 @@ from amprep.model import (
     SupportProblem,
     silent,
 )
-from amprep.model.contacts import Connector
+from amprep.model.contacts import ConnectorRules
 from amprep.model.control import Progress
 from amprep.supports.plan import SupportLayout, Wishes, plan_supports
 from amprep.supports.solids.build import build_supports
@@ -40,9 +40,9 @@ def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
     emit = _emitter(host, listed)
     for name, part in (("a table top", _slab(10.0, 12.0)), ("two storeys", _two_slabs())):
         layout = _layout(host, part)
-        for connector in (Connector("full"), Connector("extend")):
+        for connector in (ConnectorRules("full"), ConnectorRules("extend")):
             run, judge = _building(layout, part, emit, connector)
-            yield Case(f"{name}, connectors {connector.kind}", run, judge, timed=False)
+            yield Case(f"{name}, connectors {connector.connector}", run, judge, timed=False)
 
 
 def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
@@ -51,7 +51,10 @@ def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, 
 
 
 def _building(
-    layout: SupportLayout, part: PlacedPart, emit: Callable[[CellRequest, Stop], Cells], connector: Connector
+    layout: SupportLayout,
+    part: PlacedPart,
+    emit: Callable[[CellRequest, Stop], Cells],
+    connector: ConnectorRules,
 ) -> tuple[Callable[[Stop], Any], Callable[[Any], Sequence[Violation]]]:
     """Return how to build the supports of `part`, and how to judge what was emitted and what was built."""
 

@@ -114,7 +114,7 @@ def test_every_section_is_read(job_file):
         ("[supports]\nvertical_cost = 0", "vertical_cost is between 1 and 10000, got 0"),
         ("[supports]\ngap_mm = -1", "gap_mm is at least 0"),
         ('[supports]\noverhang_angle_deg = "x"', "overhang_angle_deg: expected a number, got the text 'x'"),
-        ("[cells]\noverlap_mm = -0.1", "overlap_mm is at least 0, got -0.1"),
+        ("[cells]\noverlap_mm = -0.1", "overlap_mm must be at least 0, got -0.1"),
         ('[cells]\nstrategy = "cell.stl"', r"\[cells\]: strategy: no file at .*cell\.stl"),
         ("[reading]\nreaders = {stl = 'mesh'}", "readers must map suffixes such as"),
         ("[reading]\nparams = {mesh = 1}", "params must hold one table per reader"),

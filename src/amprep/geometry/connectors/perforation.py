@@ -1,4 +1,4 @@
-"""Windows through connectors: rows of diamonds along both axes, through which powder leaves."""
+"""Cut rows of diamond-shaped openings through connectors along both axes, so that powder can leave."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -14,44 +14,48 @@ if TYPE_CHECKING:
 
 
 ROOF = float(np.tan(np.radians(55.0)))
-"""Steepness of the sides of the diamonds."""
+"""Slope of the upper sides of the diamonds: steep enough to print without support."""
 
 WIDEST = 0.6
-"""Share of the square's side that a window may take, so that posts are left in the corners."""
+"""Largest width of an opening as a fraction of the side of the square; posts remain in the corners."""
 
 SILL, LINTEL = 0.2, 0.3
-"""mm of material below each row of windows, and above the uppermost at least."""
+"""Height (mm) of the material below each row of openings, and least height above the uppermost row."""
 
 _PAST = 0.01
-"""mm that windows go on beyond the last square of a row."""
+"""Length (mm) by which openings extend beyond the first and last square of a row."""
 
 
-def windows(columns: ConnectorColumns, room: Floats, width: float) -> "Iterator[Manifold]":
-    """Yield solids to be cut out of connectors: windows along x, and windows along y.
+def perforations(columns: ConnectorColumns, height: Floats, width: float) -> "Iterator[Manifold]":
+    """Yield the solids to subtract from connectors: openings along x, then openings along y.
 
-    They lie at the same heights above all squares of a plane, so that they line up from square to square.
+    Above all squares of one plane the rows have the same heights, so openings of neighbouring squares form one
+    straight channel.
 
     Parameters
     ----------
-    room
-        ``(m,)`` mm above the red square of each column that are solid all over the square; 0 for none.
+    columns
+        Columns above the red squares.
+    height
+        ``(m,)`` height (mm) above each red square up to which the connector fills the whole square; 0 where it does
+        not fill it.
     width
-        mm; at most `WIDEST` of the square's side.
+        Width (mm) of an opening; it is limited to `WIDEST` times the side of the square.
     """
     side = float(columns.grid[2])
     width = min(width, WIDEST * side)
-    every = width * ROOF + SILL
-    count = np.maximum(np.floor((room - LINTEL) / every), 0).astype(np.int64)
-    column = np.repeat(np.arange(len(room)), count)
+    spacing = width * ROOF + SILL
+    count = np.maximum(np.floor((height - LINTEL) / spacing), 0).astype(np.int64)
+    column = np.repeat(np.arange(len(height)), count)
     row = np.arange(len(column)) - np.repeat(np.cumsum(count) - count, count)
-    middle = columns.lo[column, 2] + SILL + width * ROOF / 2.0 + row * every
+    middle = columns.lo[column, 2] + SILL + width * ROOF / 2.0 + row * spacing
     for axis in (0, 1) if len(column) else ():
         runs = _runs(columns.square[column, 1 - axis], columns.square[column, axis], middle)
         yield as_manifold(*_diamonds(*runs, columns.grid, width, axis))
 
 
 def _runs(along: Int64s, across: Int64s, middle: Floats) -> tuple[Int64s, Int64s, Int64s, Floats]:
-    """Join windows that line up: first and last square along, square across, height of the middle."""
+    """Join openings of consecutive squares: first and last square along, square across, height of the centre."""
     level = np.round(middle * 1e6).astype(np.int64)
     order = np.lexsort((along, across, level))
     along, across, level, middle = along[order], across[order], level[order], middle[order]
@@ -65,7 +69,7 @@ def _runs(along: Int64s, across: Int64s, middle: Floats) -> tuple[Int64s, Int64s
 def _diamonds(
     first: Int64s, last: Int64s, across: Int64s, middle: Floats, grid: Floats, width: float, axis: int
 ) -> tuple[Floats, Int64s]:
-    """Return closed prisms of diamond section along an axis."""
+    """Return closed prisms with a diamond section along an axis."""
     side, half = grid[2], np.array([width, width * ROOF]) / 2.0
     begin = grid[axis] + first * side - _PAST
     end = grid[axis] + (last + 1) * side + _PAST

@@ -1,4 +1,4 @@
-"""Where the teeth and points of connectors go: one to each cell of a grid with contact in it."""
+"""Choose the places of teeth and points: one in each cell of a fine grid that touches the part."""
 
 from typing import NamedTuple
 
@@ -8,12 +8,13 @@ from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import ConnectorColumns, Patches, clip_to_columns
 
 _LEAST = 1e-3
-"""Share of a cell: less contact than that gets no site, unless its column has no more elsewhere."""
+"""Least fraction of a cell that contact must cover; smaller contact counts only if its column has none larger."""
 
 _SLOPING = 0.02
-"""mm; contact that reaches so much below its mean has a lowest spot."""
+"""Height (mm) by which the lowest point of contact must be below the mean to be treated as a lowest point."""
 
 _ON_SIDE = 1e-6
+"""Distance (mm) at which a point counts as on the side of a cell."""
 
 
 class Sites(NamedTuple):
@@ -22,17 +23,18 @@ class Sites(NamedTuple):
     Attributes
     ----------
     column
-        ``(s,)`` the column each belongs to.
+        ``(s,)`` column of each site.
     square
-        ``(s, 2)`` its cell in the finer grid: y, x.
+        ``(s, 2)`` cell of the fine grid: y, x.
     lo, hi
         ``(s, 2)`` mm, corners of the cell in plan.
     spot
-        ``(s, 2)`` mm, a place in the contact: of its middle, or of the lowest spot if that is within the cell.
+        ``(s, 2)`` mm, a point of the contact in plan: near its lowest point if that is inside the cell, otherwise near
+        its centre.
     lowest, highest
-        ``(s,)`` mm, of the contact in the cell.
-    share
-        ``(s,)`` of the cell that the contact covers in plan.
+        ``(s,)`` mm, least and greatest height of the contact in the cell.
+    fraction
+        ``(s,)`` fraction of the cell that the contact covers in plan.
     """
 
     column: Int64s
@@ -42,23 +44,27 @@ class Sites(NamedTuple):
     spot: Floats
     lowest: Floats
     highest: Floats
-    share: Floats
+    fraction: Floats
 
 
 def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: float) -> Sites:
-    """Choose the sites of `columns`, each of whose squares is cut into `count` x `count` cells.
+    """Choose sites in columns whose squares are divided into `count` x `count` cells.
 
     Parameters
     ----------
     contact
-        ``(t, 3, 3)`` mm, triangles of what the connectors touch; those that look down count.
+        ``(t, 3, 3)`` mm, triangles of the part inside the connectors; only faces that point down are used.
+    columns
+        Columns of the connectors.
+    count
+        Number of cells along each side of a square.
     width
-        mm, of what is to be put there: it keeps so much away from a lowest spot that it lies on the contact.
+        Width (mm) of a tip. A tip at a lowest point is moved inwards by half of it, so that it is on the contact.
 
     Returns
     -------
     sites
-        `lowest` is that of the contact within `width` around the spot.
+        Their field `lowest` is that of the contact within `width` around the spot.
     """
     fine, owner, square = _subdivided(columns, count)
     patches = clip_to_columns(fine, contact, np.arange(len(contact)), np.ones(len(owner), np.bool_))
@@ -74,10 +80,10 @@ def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: fl
 
 
 def _subdivided(columns: ConnectorColumns, count: int) -> tuple[ConnectorColumns, Int64s, Int64s]:
-    """Return the cells of all columns, the column of each, and its place in the finer grid."""
+    """Return the cells of all columns, the column of each, and its indices in the fine grid."""
     owner = np.repeat(np.arange(len(columns.lo)), count * count)
-    within = np.tile(np.argwhere(np.ones((count, count))), (len(columns.lo), 1))
-    square = columns.square[owner] * count + within
+    inner = np.tile(np.argwhere(np.ones((count, count))), (len(columns.lo), 1))
+    square = columns.square[owner] * count + inner
     side = columns.grid[2] / count
     grid = np.array([columns.grid[0], columns.grid[1], side])
     lo, hi = columns.lo[owner].copy(), columns.hi[owner].copy()
@@ -86,8 +92,8 @@ def _subdivided(columns: ConnectorColumns, count: int) -> tuple[ConnectorColumns
     return ConnectorColumns(lo, hi, square, grid, (ny * count, nx * count)), owner, square
 
 
-class _Cells(NamedTuple):
-    """Of each cell: area of the contact in plan, its centroid, mean and least and greatest height."""
+class _CellContacts(NamedTuple):
+    """Contact in each cell: area in plan, centroid in plan, and mean, least and greatest height."""
 
     area: Floats
     centroid: Floats
@@ -96,7 +102,7 @@ class _Cells(NamedTuple):
     highest: Floats
 
 
-def _measured(patches: Patches, fine: ConnectorColumns) -> _Cells:
+def _measured(patches: Patches, fine: ConnectorColumns) -> _CellContacts:
     count = len(fine.lo)
     area, middle = _plan(patches)
     cell = patches.owner[:, 0]
@@ -107,11 +113,11 @@ def _measured(patches: Patches, fine: ConnectorColumns) -> _Cells:
     corner = np.repeat(cell, np.diff(patches.start))
     np.minimum.at(lowest, corner, patches.points[:, 2])
     np.maximum.at(highest, corner, patches.points[:, 2])
-    return _Cells(total, np.column_stack(moments[:2]), moments[2], lowest, highest)
+    return _CellContacts(total, np.column_stack(moments[:2]), moments[2], lowest, highest)
 
 
 def _plan(patches: Patches) -> tuple[Floats, Floats]:
-    """Return the area of each patch in plan, and the centroid ``(n, 3)`` of that."""
+    """Return the area in plan of each patch, ``(n,)``, and its centroid, ``(n, 3)``."""
     patch, inner, following = _fans(patches)
     first = patches.points[patches.start[patch]]
     b, c = patches.points[inner], patches.points[following]
@@ -124,23 +130,23 @@ def _plan(patches: Patches) -> tuple[Floats, Floats]:
 
 
 def _turn(one: Floats, other: Floats) -> Floats:
-    """Return the cross product of vectors in plan."""
+    """Return the z component of the cross products of vectors in plan."""
     return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
 
 
 def _fans(patches: Patches) -> tuple[Int64s, Int64s, Int64s]:
-    """Return patch, second and third corner of the triangles that fan out from each patch's first corner."""
+    """Divide patches into triangles from their first corner; return the patch, second and third corner of each."""
     patch = np.repeat(np.arange(len(patches.owner)), np.diff(patches.start))
     here = np.arange(len(patches.points))
     inner = (here > patches.start[:-1][patch]) & (here + 1 < patches.start[1:][patch])
     return patch[inner], here[inner], here[inner] + 1
 
 
-def _spots(patches: Patches, fine: ConnectorColumns, cells: _Cells, width: float) -> Floats:
-    """Return a place in the contact of every cell.
+def _spots(patches: Patches, fine: ConnectorColumns, cells: _CellContacts, width: float) -> Floats:
+    """Return a point in plan of the contact in every cell.
 
-    The middle of the cell if contact is there, else the centroid of the contact, else that of the nearest of its
-    pieces. Where the contact has a lowest spot inside the cell, beside it.
+    It is the centre of the cell if contact is there, otherwise the centroid of the contact, otherwise the centroid of
+    the patch nearest to that. If the contact has a lowest point inside the cell, it is next to that point instead.
     """
     area, middle = _plan(patches)
     owner = patches.owner[:, 0]
@@ -164,7 +170,7 @@ def _spots(patches: Patches, fine: ConnectorColumns, cells: _Cells, width: float
 
 
 def _contains(patches: Patches, spot: Floats) -> Bools:
-    """Tell which cells have a patch over their spot ``(c, 2)``."""
+    """Tell which cells have a patch above their point `spot` ``(c, 2)``."""
     found = np.zeros(len(spot), np.bool_)
     if not len(patches.owner):
         return found
@@ -179,8 +185,8 @@ def _contains(patches: Patches, spot: Floats) -> Bools:
     return found
 
 
-def _lowest_inside(patches: Patches, fine: ConnectorColumns, cells: _Cells) -> tuple[Int64s, Floats]:
-    """Return cells whose contact slopes down to a spot inside them, and that spot ``(n, 2)``."""
+def _lowest_inside(patches: Patches, fine: ConnectorColumns, cells: _CellContacts) -> tuple[Int64s, Floats]:
+    """Return the cells whose contact has its lowest point inside them, and these points in plan ``(n, 2)``."""
     cell = np.repeat(patches.owner[:, 0], np.diff(patches.start))
     plan, height = patches.points[:, :2], patches.points[:, 2]
     on_side = ((plan <= fine.lo[cell, :2] + _ON_SIDE) | (plan >= fine.hi[cell, :2] - _ON_SIDE)).any(axis=1)
@@ -195,9 +201,9 @@ def _lowest_inside(patches: Patches, fine: ConnectorColumns, cells: _Cells) -> t
 def _lowest_around(
     spot: Floats, width: float, contact: Floats, fine: ConnectorColumns, chosen: Int64s, otherwise: Floats
 ) -> Floats:
-    """Return the least height of the contact within `width` around spots, in their cells."""
+    """Return the least height of the contact within `width` around each spot, inside its cell."""
     low, high = fine.lo[chosen].copy(), fine.hi[chosen].copy()
-    low[:, :2], high[:, :2] = within(spot, width, low[:, :2], high[:, :2])
+    low[:, :2], high[:, :2] = squares_in_cells(spot, width, low[:, :2], high[:, :2])
     around = ConnectorColumns(low, high, fine.square[chosen], fine.grid, fine.shape)
     patches = clip_to_columns(around, contact, np.arange(len(contact)), np.ones(len(chosen), np.bool_))
     lowest = np.full(len(chosen), np.inf)
@@ -205,7 +211,7 @@ def _lowest_around(
     return np.where(np.isfinite(lowest), lowest, otherwise)
 
 
-def within(spot: Floats, width: float, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:
-    """Return squares of `width` around spots, pushed into the cells from `lo` to `hi`."""
+def squares_in_cells(spot: Floats, width: float, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:
+    """Return squares of side `width` around points, moved into the cells from `lo` to `hi`; lower and upper corners."""
     corner = np.clip(spot - width / 2.0, lo, np.maximum(hi - width, lo))
     return corner, np.minimum(corner + width, hi)

@@ -1,11 +1,11 @@
-"""The shape of teeth and points: shoulders that carry them, tapered bodies, necks."""
+"""Shape teeth and points: the shoulders below them, their tapered bodies and break-away necks."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.connectors.sites import Sites, within
+from amprep.geometry.connectors.sites import Sites, squares_in_cells
 from amprep.geometry.merging.union import union
 from amprep.geometry.meshes.manifold import as_manifold
 
@@ -14,32 +14,33 @@ if TYPE_CHECKING:
 
 
 ROUND_SIDES = 12
-"""Of the polygon that stands for a circle."""
+"""Number of sides of the polygon that approximates a circle."""
 
 _APART = 2e-4
-"""mm; tips of neighbouring cells keep twice that from each other."""
+"""Distance (mm) between a tip and the side of its cell; tips of neighbouring cells are twice as far apart."""
 
 _OVER = 5e-4
-"""mm; how far prisms reach over their cells."""
+"""Length (mm) by which prisms extend beyond the sides of their cells."""
 
 _ROOT = 0.05
-"""Share of a cell that stays free on each side of a tip's root."""
+"""Margin on each side of the root of a tip, as a fraction of the cell."""
 
 _DIP = 0.05
-"""mm; how far shapes reach below the connectors' base and above their top, where those cut them off."""
+"""Length (mm) by which shapes extend below the base and above the top of the connectors, which then clip them."""
 
 
 class TipProfile(NamedTuple):
-    """Section of a tip from below: as wide as its cell, tapering to `width` over `height`, straight on up.
+    """Section of a tip: from the width of its cell it tapers to `width` over `height`, and then continues upwards.
 
     Attributes
     ----------
     width, height
-        mm.
+        Width at the part and length of the taper, mm.
     neck, neck_height
-        mm; a neck of 0 is none. It lies `neck_height` below the lowest spot of the contact, in short tips half way.
+        Width of the break-away neck (0 for none) and its distance below the lowest point of the contact, mm. In a tip
+        shorter than twice that distance the neck is halfway up.
     round
-        Whether sections are circles, else squares; at the side of a cell they are squares.
+        True for circular sections, False for squares. A circle that would leave its cell becomes a square.
     """
 
     width: float
@@ -49,17 +50,21 @@ class TipProfile(NamedTuple):
     round: bool
 
 
-def tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> "Manifold":
-    """Return a solid that leaves of connectors only teeth or points, on the shoulders that carry them.
+def make_tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> "Manifold":
+    """Return the solid whose intersection with plain connectors is teeth or points on their shoulders.
 
-    Each cell is filled up to its level; from there on the tip stands.
+    The shoulder of a site is its whole cell from the base up to the level; the tip begins at the level.
 
     Parameters
     ----------
+    sites
+        Places of the tips.
+    profile
+        Section that all tips share.
     level, base
-        ``(s,)`` mm, where the tip of each site begins, and its connector.
+        ``(s,)`` heights (mm) at which the tip and the connector of each site begin.
     overlap
-        mm that connectors reach into the part.
+        Depth (mm) to which connectors enter the part.
     """
     from manifold3d import Manifold
 
@@ -68,21 +73,23 @@ def tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap
     rings = _rings(sites, profile, level, base, overlap)
     tall = level > base
     cells = sites.square[tall], sites.lo[tall], sites.hi[tall]
-    return union([prisms(*cells, base[tall] - _DIP, level[tall]), as_manifold(*_lofted(rings))])
+    return union([grid_prisms(*cells, base[tall] - _DIP, level[tall]), as_manifold(*_lofted(rings))])
 
 
-def prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
-    """Return the union of upright prisms over cells of a grid, which may be of several heights.
+def grid_prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
+    """Return the union of upright prisms of various heights over squares of a grid.
 
-    They reach a hair over their cells, because manifold3d joins and cuts solids whose walls lie in each other
-    less well; for the same reason every second cell of every second row goes into a mesh of its own.
+    manifold3d unites solids with coincident walls less reliably than solids that overlap. Therefore prisms extend
+    slightly beyond their squares, and four meshes are united, each of which holds no two neighbouring squares.
 
     Parameters
     ----------
     square
-        ``(n, 2)`` the cells' places in the grid.
+        ``(n, 2)`` indices y, x of the squares in the grid.
     lo, hi
-        ``(n, 2)`` mm, their corners in plan.
+        ``(n, 2)`` mm, corners of the squares in plan.
+    bottom, top
+        ``(n,)`` mm, heights at which the prisms begin and end.
     """
     colour = square[:, 0] % 2 * 2 + square[:, 1] % 2
     solids = []
@@ -96,17 +103,17 @@ def prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) 
 
 
 def _rings(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> Floats:
-    """Return the corners of each tip's sections from below, ``(s, r, n, 3)`` mm."""
+    """Return the sections of each tip as rings of corners from the root upwards, ``(s, r, n, 3)`` mm."""
     lo, hi = sites.lo + _APART, sites.hi - _APART
-    top = within(sites.spot, profile.width, lo, hi)
+    top = squares_in_cells(sites.spot, profile.width, lo, hi)
     rim = _ROOT * (hi - lo)
     root = np.minimum(lo + rim, top[0]), np.maximum(hi - rim, top[1])
-    # a circle that was pushed into its cell may miss the spot: a square does not
+    # a circle that was moved into its cell may miss the contact point; a square does not
     pushed = np.linalg.norm((top[0] + top[1]) / 2.0 - sites.spot, axis=1) > 0.4 * profile.width
     circle = ~pushed & profile.round
     levels = [(level - _DIP, root, np.zeros_like(circle))]
     if profile.neck:
-        neck = within(sites.spot, profile.neck, *top)
+        neck = squares_in_cells(sites.spot, profile.neck, *top)
         height = np.maximum(sites.lowest - profile.neck_height, (sites.lowest + level) / 2.0)
         levels.append((height, neck, circle))
     levels += [(sites.lowest, top, circle), (sites.highest + overlap + _DIP, top, circle)]
@@ -115,7 +122,7 @@ def _rings(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overl
 
 
 def _shortened(rings: Floats, floor: Floats) -> Floats:
-    """Let tips begin at the floor that is cut away anyway: there may be other connectors further below."""
+    """Move the root of each tip up to the floor, because other connectors may be further below."""
     low, high = rings[:, 0, 0, 2], rings[:, 1, 0, 2]
     deep = np.flatnonzero((low < floor) & (floor < high))
     share = ((floor - low)[deep] / (high - low)[deep])[:, None, None]
@@ -124,17 +131,17 @@ def _shortened(rings: Floats, floor: Floats) -> Floats:
 
 
 def _ring(z: Floats, box: tuple[Floats, Floats], circle: Bools, *, sides: int) -> Floats:
-    """Return points ``(s, sides, 3)`` on the sides of boxes, or on the circles in them, counter-clockwise."""
+    """Return the corners of squares or inscribed circles at height `z`, ``(s, sides, 3)``, counter-clockwise."""
     angle = np.pi / 4 + 2 * np.pi * np.arange(sides) / sides
-    way = np.column_stack([np.cos(angle), np.sin(angle)])
-    square = way / np.abs(way).max(axis=1)[:, None]
+    ray = np.column_stack([np.cos(angle), np.sin(angle)])
+    square = ray / np.abs(ray).max(axis=1)[:, None]
     middle, half = (box[0] + box[1]) / 2.0, (box[1] - box[0]) / 2.0
-    plan = middle[:, None] + half[:, None] * np.where(circle[:, None, None], way, square)
+    plan = middle[:, None] + half[:, None] * np.where(circle[:, None, None], ray, square)
     return np.concatenate([plan, np.broadcast_to(z[:, None, None], (len(z), sides, 1))], axis=2)
 
 
 def _lofted(rings: Floats) -> tuple[Floats, Int64s]:
-    """Return closed meshes through rings ``(s, r, n, 3)``, each one's from below upwards."""
+    """Return closed meshes that join consecutive rings ``(s, r, n, 3)``, ordered from below."""
     count, levels, sides, _ = rings.shape
     here = np.arange(sides)
     after = (here + 1) % sides

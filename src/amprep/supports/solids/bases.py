@@ -1,4 +1,4 @@
-"""What supports stand on at the plate: flanges or pads, kept away from parts, zones and one another."""
+"""Make flanges and rafts below supports, clear of parts, forbidden zones and other supports."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -7,75 +7,87 @@ import numpy as np
 
 from amprep.geometry.merging.union import finish
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.supports import footprints as bases
+from amprep.geometry.supports import footprints
 from amprep.model import CONTACT_TOLERANCE, BuildVolume, Mesh, PlacedPart
-from amprep.model.contacts import Base
+from amprep.model.contacts import BaseRules
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
 LEAST_GAP = 0.3
-"""mm that bases keep from parts and from other supports at least."""
+"""Least distance (mm) of bases from parts and from other supports."""
 
 
 def make_bases(
     solids: Sequence[Mesh | None],
     parts: Sequence[PlacedPart],
-    base: Base,
+    rules: BaseRules,
     space: BuildVolume | None,
     gap: float,
 ) -> list["Manifold | None"]:
     """Return the base of each support, None where it has none.
 
-    A base lies on the plate, inside the build volume and out of its forbidden zones. It keeps `gap` mm, at least
-    `LEAST_GAP`, from whatever part, its own included, and from the supports and bases made before it, sideways and
-    upwards; what that cuts off from all feet is left out.
+    A base is inside the build volume and outside its forbidden zones. It keeps a distance of `gap`, at least
+    `LEAST_GAP`, horizontally and vertically, from all parts, from other supports, and from the bases made before it.
+    Pieces of a base below which no foot stands are dropped.
 
     Parameters
     ----------
     solids
-        One per support group; None where it is no solid.
+        Solid of each support group, None for a group without.
+    parts
+        Placed parts of the build.
+    rules
+        Shape of the bases.
+    space
+        Build volume, if it limits the bases.
+    gap
+        XY distance (mm) between supports and parts.
     """
-    if base.kind == "direct":
+    if rules.base == "direct":
         return [None] * len(solids)
     gap = max(gap, LEAST_GAP)
-    height = base.height + gap
-    stands = [None if mesh is None or not len(mesh.triangles) else _manifold(mesh) for mesh in solids]
-    taken = [bases.shadow(_manifold(each.mesh), height) for each in parts if _is_low(each, height)]
-    supports = [None if each is None else bases.shadow(each, height) for each in stands]
-    zones = _zones(space, base.height)
+    height = rules.base_height_mm + gap
+    supports = [None if mesh is None or not len(mesh.triangles) else _manifold(mesh) for mesh in solids]
+    taken = [footprints.shadow(_manifold(each.mesh), height) for each in parts if _is_low(each, height)]
+    shadows = [None if each is None else footprints.shadow(each, height) for each in supports]
+    zones = _zones(space, rules.base_height_mm)
     found: list[Manifold | None] = []
-    for group, support in enumerate(stands):
+    for group, support in enumerate(supports):
         if support is None:
             found.append(None)
             continue
-        others = [each for number, each in enumerate(supports) if number != group and each is not None]
-        closed = bases.sum_of([bases.grown(bases.sum_of(taken + others), gap), *zones])
-        plan = _plan(bases.feet_of(support), closed, base, space)
+        others = [each for number, each in enumerate(shadows) if number != group and each is not None]
+        obstacles = footprints.grown(footprints.union_of(taken + others), gap)
+        closed = footprints.union_of([obstacles, *zones])
+        plan = _plan(footprints.feet_of(support), closed, rules, space)
         taken.append(plan)
-        found.append(None if plan.is_empty() else plan.extrude(base.height))
+        found.append(None if plan.is_empty() else plan.extrude(rules.base_height_mm))
     return found
 
 
 def _plan(
-    feet: "CrossSection", closed: "CrossSection", base: Base, space: BuildVolume | None
+    feet: "CrossSection", closed: "CrossSection", rules: BaseRules, space: BuildVolume | None
 ) -> "CrossSection":
-    """Return the shape of one support's base in plan."""
-    pad = bases.raft(feet, base.margin) if base.kind == "raft" else bases.grown(feet, base.margin)
+    """Return the shape of one base in plan."""
+    make = footprints.raft if rules.base == "raft" else footprints.grown
+    plan = make(feet, rules.base_margin_mm)
     if space is not None:
-        pad ^= bases.plate(space.size, disc=space.shape == "cylinder")
-    pad = bases.standing(pad - closed, feet)
-    return bases.perforated(pad, feet, base.hole) if base.kind == "raft" and base.hole else pad
+        plan ^= footprints.plate(space.size, disc=space.shape == "cylinder")
+    plan = footprints.below_feet(plan - closed, feet)
+    has_holes = rules.base == "raft" and rules.raft_hole_mm
+    return footprints.perforated(plan, feet, rules.raft_hole_mm) if has_holes else plan
 
 
 def _zones(space: BuildVolume | None, height: float) -> list["CrossSection"]:
-    """Return the forbidden zones that reach below a height."""
+    """Return the forbidden zones that begin below a height."""
     if space is None:
         return []
     low = space.zone_lo[:, 2] < height
-    more = np.full(3, CONTACT_TOLERANCE)
+    margin = np.full(3, CONTACT_TOLERANCE)
     return [
-        bases.box(lo - more, hi + more) for lo, hi in zip(space.zone_lo[low], space.zone_hi[low], strict=True)
+        footprints.box(lo - margin, hi + margin)
+        for lo, hi in zip(space.zone_lo[low], space.zone_hi[low], strict=True)
     ]
 
 
@@ -88,7 +100,7 @@ def _manifold(mesh: Mesh) -> "Manifold":
 
 
 def with_base(mesh: Mesh | None, base: "Manifold | None") -> Mesh | None:
-    """Return a support united with its base."""
+    """Return the union of a support and its base."""
     if base is None:
         return mesh
     solids = [base] if mesh is None or not len(mesh.triangles) else [_manifold(mesh), base]

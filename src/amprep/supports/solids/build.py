@@ -9,7 +9,7 @@ from amprep.cells.instances import CellInstances, classify
 from amprep.errors import JobError
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop, SupportBody
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
-from amprep.model.contacts import Base, Connector
+from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.bases import make_bases, with_base
 from amprep.supports.solids.beams import clip_beams, lattice_of, of_group, prisms
@@ -22,7 +22,7 @@ from amprep.supports.solids.unite_group import sheet_of, solid_of
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-DIRECT = Base()
+DIRECT = BaseRules()
 """Supports stand on the plate as they are."""
 
 
@@ -32,8 +32,8 @@ def build_supports(
     emit: Emit,
     *,
     overlap: float,
-    connector: Connector,
-    base: Base = DIRECT,
+    connector: ConnectorRules,
+    base: BaseRules = DIRECT,
     allow_surface: bool,
     stop: Stop,
     progress: Progress,
@@ -85,7 +85,7 @@ def build_supports(
         )
         return classify(request, checked(request, emit(request)))
 
-    instances, bare = _ask(ask, extend=connector.kind == "extend", beams=beams)
+    instances, bare = _ask(ask, extend=connector.connector == "extend", beams=beams)
     if instances.sheet.any():
         _require_no_feet(layout, base)
     clearance = WallClearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
@@ -137,15 +137,15 @@ def _ask(
     return instances, bare
 
 
-def _require_no_feet(layout: SupportLayout, base: Base) -> None:
+def _require_no_feet(layout: SupportLayout, base: BaseRules) -> None:
     """Refuse what walls without thickness cannot have."""
     if len(layout.feet):
         raise JobError(
             "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
         )
-    if base.kind != "direct":
+    if base.base != "direct":
         raise JobError(
-            f"cells.base = {base.kind!r} needs a cell with thickness: walls without any have no feet to widen"
+            f"cells.base = {base.base!r} needs a cell with thickness: walls without any have no feet to widen"
         )
 
 
@@ -157,7 +157,7 @@ class _SupportBuilder(NamedTuple):
     surfaces: ColumnSurfaces
     obstacles: PartObstacles
     overlap: float
-    connector: Connector
+    connector: ConnectorRules
     gap: float
 
     def solid(self, group: int, instances: CellInstances, *, on_beams: bool = False) -> Mesh | None:

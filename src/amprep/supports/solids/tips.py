@@ -1,4 +1,4 @@
-"""Turns connectors that fill their whole columns into teeth or points, with necks and windows."""
+"""Shape plain connectors into teeth or points, with break-away necks and perforation."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -7,65 +7,75 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Ints
 from amprep.errors import JobError
 from amprep.geometry.connectors.columns import ConnectorColumns
-from amprep.geometry.connectors.perforation import windows
+from amprep.geometry.connectors.perforation import perforations
 from amprep.geometry.connectors.sites import find_sites
-from amprep.geometry.connectors.tips import TipProfile, prisms, tips
+from amprep.geometry.connectors.tips import TipProfile, grid_prisms, make_tips
 from amprep.geometry.merging.union import union
-from amprep.model.contacts import Connector
+from amprep.model.contacts import ConnectorRules
 from amprep.supports.layout import SupportLayout
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 WIDEST = 0.9
-"""Share of their distance that teeth and points take at most where they meet the part."""
+"""Largest width of teeth and points at the part, as a fraction of their pitch."""
 
 TOOTH_PITCH = 1.0
-"""mm, about, between teeth where nothing else is said."""
+"""Default distance (mm) between teeth; it is rounded so that a whole number fits the square."""
 
 PAD = 0.2
-"""mm; thickness of what carries tips where they begin below their red square (at most half of that depth)."""
+"""Thickness (mm) of the plate below tips that begin below their red square (at most half of that depth)."""
 
 SINK_UPRIGHT, SINK_SIDEWAYS = 0.75, 0.25
-"""Share of a step that connectors may begin below their red square at most."""
+"""Largest depth at which connectors may begin below their red square, as a fraction of a step."""
 
 _PAST = 0.01
-"""mm that notches reach above the red square."""
+"""Height (mm) by which notches extend above the red square."""
 
 NUDGE = (1.3e-4, 2.1e-4, 0.9e-4)
-"""mm; tips are moved by that, so that none of their faces lies in one of the connectors they are cut out of:
-manifold3d leaves folds there, and loses volume when it reads them again."""
+"""Shift (mm) of all tips, so that none of their faces is coplanar with a face of the connectors.
+
+On coplanar faces manifold3d leaves folds, and loses volume when it reads such a mesh again."""
 
 _WHOLE = 1.0 - 1e-6
 
 
 class ShapedConnectors(NamedTuple):
-    """Connectors of another kind, and what has to go from the cells below so that tips have room."""
+    """Shaped connectors, and the notch to subtract from the cells below so that tips have their full height."""
 
     connectors: "Manifold"
     notch: "Manifold"
 
 
-def sink_depths(layout: SupportLayout, wish: Connector, *, most: float) -> Floats:
-    """Return how far connectors may reach below each red square, ``(m,)`` mm, so that tips have their height.
+def sink_depths(layout: SupportLayout, rules: ConnectorRules, *, most: float) -> Floats:
+    """Return how far below each red square its connector may begin, ``(m,)`` mm, to give tips their full height.
 
-    At most `most` mm, and as far as they ask for where all cells below are upright; a quarter of a step where one
-    leads sideways, which they still meet then. Nothing on the plate, nor where the whole square runs up.
+    The depth is 0 on the plate and for connectors without tips. Where an oblique edge meets the red square it is at
+    most a quarter of a step, so that connector and cell still overlap.
+
+    Parameters
+    ----------
+    layout
+        Red squares and edges.
+    rules
+        Shape of the connectors.
+    most
+        Upper bound on the depth, mm.
     """
-    frame = layout.frame
-    _, profile = _profile(wish, frame.pitch)
+    grid = layout.frame
+    _, profile = _profile(rules, grid.pitch)
     if profile is None:
         return np.zeros(len(layout.red))
-    leaning = layout.edges.direction != 0
-    _, ny, nx = frame.shape
+    oblique = layout.edges.direction != 0
+    _, ny, nx = grid.shape
 
-    def place(plane: Ints, y: Ints, x: Ints) -> Ints:
+    def index(plane: Ints, y: Ints, x: Ints) -> Ints:
         return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 
-    sideways = place(*layout.edges.upper[leaning].T)
-    share = np.where(np.isin(place(*layout.red.T), sideways), SINK_SIDEWAYS, SINK_UPRIGHT)
+    meets_oblique = np.isin(index(*layout.red.T), index(*layout.edges.upper[oblique].T))
+    fraction = np.where(meets_oblique, SINK_SIDEWAYS, SINK_UPRIGHT)
     return np.where(
-        layout.red[:, 0] > 0, np.minimum(share * frame.step, min(profile.height + PAD, most)), 0.0
+        layout.red[:, 0] > 0, np.minimum(fraction * grid.step, min(profile.height + PAD, most)), 0.0
     )
 
 
@@ -75,28 +85,34 @@ def shape_connectors(
     columns: ConnectorColumns,
     base: Floats,
     sink: Floats,
-    wish: Connector,
+    rules: ConnectorRules,
     overlap: float,
 ) -> ShapedConnectors:
-    """Return what is left of connectors that are to be of another kind; they still end in the true surface.
+    """Intersect plain connectors with tips and perforate them; they still end in the true surface of the part.
 
     Parameters
     ----------
     connectors
-        They begin at `sink` below their squares, where that is lower than `base`.
+        Plain connectors; they begin `sink` below their squares where that is lower than `base`.
     contact
-        ``(t, 3, 3)`` mm, the parts' surface in the connectors.
-    columns, base, sink
-        The red squares' columns; where connectors begin that need no more room, and how far below the square
-        others may, ``(m,)`` mm.
+        ``(t, 3, 3)`` mm, surface of the parts inside the connectors.
+    columns
+        Columns above the red squares.
+    base, sink
+        ``(m,)`` mm, height at which connectors begin that need no greater depth, and the depth below the square at
+        which the others may begin.
+    rules
+        Shape of the connectors.
+    overlap
+        Depth (mm) to which connectors enter the part.
 
     Raises
     ------
     JobError
-        When the neck is no narrower than what it is to carry.
+        When the neck is not narrower than the tip above it.
     """
-    count, profile = _profile(wish, float(columns.grid[2]))
-    depth, notch = 0.0, union([])
+    count, profile = _profile(rules, float(columns.grid[2]))
+    tip_height, notch = 0.0, union([])
     if profile is not None:
         sites = find_sites(contact, columns, count, profile.width)
         own, square = sites.column, columns.lo[:, 2]
@@ -106,45 +122,52 @@ def shape_connectors(
         lowest = np.full(len(square), np.inf)
         np.minimum.at(lowest, own, level)
         base = np.where(sink > 0.0, np.minimum(base, lowest - pad), base)
-        connectors ^= tips(sites, profile, level, base[own], overlap).translate(NUDGE)
+        connectors ^= make_tips(sites, profile, level, base[own], overlap).translate(NUDGE)
         low = (lowest < square) & (sink > 0.0)
         plan = columns.square[low], columns.lo[low, :2], columns.hi[low, :2]
-        notch = prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
-        depth = profile.height
-    if wish.window:
-        for each in windows(columns, _room(contact, columns, depth), wish.window):
-            connectors -= each
+        notch = grid_prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
+        tip_height = profile.height
+    if rules.perforation_mm:
+        solid = _solid_heights(contact, columns, tip_height)
+        for opening in perforations(columns, solid, rules.perforation_mm):
+            connectors -= opening
     return ShapedConnectors(connectors, notch)
 
 
-def _profile(wish: Connector, side: float) -> tuple[int, TipProfile | None]:
-    """Return how many tips a square has each way, and their shape; None where the whole square runs up."""
-    if wish.kind == "full" and wish.neck:
-        # walls of 45 degrees above the neck, so that they can be printed
-        width = min(WIDEST * side, wish.neck + 2.0 * wish.neck_height)
-        return 1, _necked(TipProfile(width, 2.0 * wish.neck_height, wish.neck, wish.neck_height, False))
-    if wish.kind not in ("teeth", "point"):
+def _profile(rules: ConnectorRules, side: float) -> tuple[int, TipProfile | None]:
+    """Return the number of tips along the side of a square and their profile; None for plain connectors."""
+    neck, neck_height = rules.neck_mm, rules.neck_height_mm
+    if rules.connector == "full" and neck:
+        # the flanks above the neck have 45 degrees, so that they can be printed
+        width = min(WIDEST * side, neck + 2.0 * neck_height)
+        return 1, _require_neck(TipProfile(width, 2.0 * neck_height, neck, neck_height, False))
+    if not rules.has_tips:
         return 1, None
-    apart = wish.pitch or (TOOTH_PITCH if wish.kind == "teeth" else side)
-    count = max(1, round(side / apart))
-    width = min(wish.width, WIDEST * side / count)
-    return count, _necked(TipProfile(width, wish.height, wish.neck, wish.neck_height, wish.kind == "point"))
+    is_round = rules.connector == "point"
+    pitch = rules.tip_pitch_mm or (side if is_round else TOOTH_PITCH)
+    count = max(1, round(side / pitch))
+    width = min(rules.tip_width_mm, WIDEST * side / count)
+    return count, _require_neck(TipProfile(width, rules.tip_height_mm, neck, neck_height, is_round))
 
 
-def _necked(profile: TipProfile) -> TipProfile:
+def _require_neck(profile: TipProfile) -> TipProfile:
     if profile.neck >= profile.width:
         raise JobError(
-            f"cells.neck_mm = {profile.neck:g} has to be below the width at the part, which is {profile.width:.3g} mm "
-            "in this grid; set a smaller neck or a larger supports.pitch_mm"
+            f"cells.neck_mm must be below the width at the part, {profile.width:.3g} mm in this grid, got "
+            f"{profile.neck:g}; set a smaller neck or a larger supports.pitch_mm"
         )
     return profile
 
 
-def _room(contact: Floats, columns: ConnectorColumns, depth: float) -> Floats:
-    """Return the least height of the contact over each red square, less `depth`; 0 where it covers not all of it."""
+def _solid_heights(contact: Floats, columns: ConnectorColumns, tip_height: float) -> Floats:
+    """Return the height above each red square up to which its connector fills the whole square, ``(m,)`` mm.
+
+    That is the least height of the contact, less the height of the tips; 0 where contact covers only a part of the
+    square.
+    """
     sites = find_sites(contact, columns, 1, 0.0)
-    room = np.zeros(len(columns.lo))
-    whole: Bools = sites.share >= _WHOLE
+    height = np.zeros(len(columns.lo))
+    whole: Bools = sites.fraction >= _WHOLE
     own = sites.column[whole]
-    room[own] = sites.lowest[whole] - columns.lo[own, 2] - depth
-    return np.maximum(room, 0.0)
+    height[own] = sites.lowest[whole] - columns.lo[own, 2] - tip_height
+    return np.maximum(height, 0.0)

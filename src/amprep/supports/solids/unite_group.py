@@ -12,7 +12,7 @@ from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_
 from amprep.geometry.merging.union import FILE_STEP, finish, union
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
-from amprep.model.contacts import Connector
+from amprep.model.contacts import ConnectorRules
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
 from amprep.supports.solids.extended_cells import extended_cells, on_red, squares
@@ -34,14 +34,14 @@ def solid_of(
     obstacles: PartObstacles,
     *,
     overlap: float,
-    connector: Connector,
+    connector: ConnectorRules,
     on_beams: bool = False,
 ) -> Mesh | None:
     """Return the closed solid of a support group: cells, seats and connectors; None when it has none.
 
     With `on_beams` what hangs in the air stays: beams may carry it.
     """
-    mine, extend = instances.of(group) & ~instances.sheet, connector.kind == "extend"
+    mine, extend = instances.of(group) & ~instances.sheet, connector.connector == "extend"
     if instances.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(instances, group)
         return Mesh(*finish(solids)) if solids else None
@@ -103,7 +103,7 @@ def _shaped(
     below: Floats,
     sink: Floats,
     surfaces: ColumnSurfaces,
-    connector: Connector,
+    connector: ConnectorRules,
     overlap: float,
 ) -> ShapedConnectors:
     """Return connectors of the kind asked for, where that is another than whole squares."""

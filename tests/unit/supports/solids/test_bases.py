@@ -9,17 +9,20 @@ from manifold3d import CrossSection, Manifold
 from amprep.checks.supports.bodies import check_bodies
 from amprep.errors import JobError
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.supports import footprints as bases
+from amprep.geometry.supports import footprints
 from amprep.host import Host
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
-from amprep.model.contacts import Base, Connector
+from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.plan import Wishes, plan_supports
 from amprep.supports.solids.bases import LEAST_GAP, make_bases
 from amprep.supports.solids.build import build_supports
 
 SIZE = np.array([60.0, 60.0, 40.0])
 PLAIN = BuildVolume(SIZE)
-FLANGE, RAFT = Base("flange", 1.5, 0.8), Base("raft", 2.0, 0.5)
+FLANGE, RAFT = (
+    BaseRules("flange", flange_mm=1.5, flange_height_mm=0.8),
+    BaseRules("raft", raft_margin_mm=2.0, raft_height_mm=0.5),
+)
 
 
 def box(lo, hi):
@@ -70,7 +73,7 @@ def supports(parts, layout, base, cell="prism", space=PLAIN, surface=False, para
             emitter, request, params=host().params(emitter, params or {}), stop=Stop(), progress=silent
         ),
         overlap=0.1,
-        connector=Connector(),
+        connector=ConnectorRules(),
         base=base,
         allow_surface=surface,
         space=space,
@@ -92,7 +95,12 @@ def crowd():
 
 
 @pytest.mark.parametrize(
-    ("base", "cell"), [(FLANGE, "prism"), (RAFT, "prism"), (Base("raft", 2.0, 0.5, 0.8), "strut")]
+    ("base", "cell"),
+    [
+        (FLANGE, "prism"),
+        (RAFT, "prism"),
+        (BaseRules("raft", raft_margin_mm=2.0, raft_height_mm=0.5, raft_hole_mm=0.8), "strut"),
+    ],
 )
 def test_bases_keep_every_promise_and_their_distance(base, cell):
     parts, layout = crowd()
@@ -100,28 +108,32 @@ def test_bases_keep_every_promise_and_their_distance(base, cell):
     settings = BuildSettings("b", PLAIN, overlap=0.1)
     assert check_bodies(Build(settings, parts, bodies), Stop()) == []
     solids = [solid_of(body.mesh) for body in bodies]
-    bare = [solid_of(body.mesh) for body in supports(parts, layout, Base(), cell)]
+    bare = [solid_of(body.mesh) for body in supports(parts, layout, BaseRules(), cell)]
     least = min(LEAST_GAP, bare[0].min_gap(bare[1], 5.0)) - 0.01
     assert solids[0].min_gap(solids[1], 5.0) >= least
-    assert all(low(solid, base.height).min_gap(solid_of(parts[2].mesh), 5.0) >= 0.29 for solid in solids)
+    assert all(
+        low(solid, base.base_height_mm).min_gap(solid_of(parts[2].mesh), 5.0) >= 0.29 for solid in solids
+    )
     for solid, before in zip(solids, bare, strict=True):
-        assert solid.slice(base.height / 2).area() > 1.2 * before.slice(base.height / 2).area()
-        assert solid.slice(base.height + 0.01).area() == pytest.approx(
-            before.slice(base.height + 0.01).area(), rel=1e-3
+        assert (
+            solid.slice(base.base_height_mm / 2).area() > 1.2 * before.slice(base.base_height_mm / 2).area()
+        )
+        assert solid.slice(base.base_height_mm + 0.01).area() == pytest.approx(
+            before.slice(base.base_height_mm + 0.01).area(), rel=1e-3
         )
 
 
 def alone(base, cell="prism", space=PLAIN, at=20.0):
     parts = (placed("slab", box((at, at, 10), (at + 8, at + 8, 12))),)
     layout = layout_of(parts, space)
-    return [solid_of(supports(parts, layout, each, cell, space)[0].mesh) for each in (Base(), base)]
+    return [solid_of(supports(parts, layout, each, cell, space)[0].mesh) for each in (BaseRules(), base)]
 
 
 def test_a_flange_widens_every_foot_by_the_width_asked_up_to_the_height_asked():
     bare, wide = alone(FLANGE)
     feet, sole = bare.slice(0.4), wide.slice(0.4)
-    assert (bases.grown(feet, 1.49) - sole).area() < 1e-3
-    assert (sole - bases.grown(feet, 1.51)).area() < 1e-3
+    assert (footprints.grown(feet, 1.49) - sole).area() < 1e-3
+    assert (sole - footprints.grown(feet, 1.51)).area() < 1e-3
     assert wide.slice(0.81).area() == pytest.approx(bare.slice(0.81).area(), rel=1e-4)
 
 
@@ -130,15 +142,15 @@ def test_a_raft_is_one_pad_that_reaches_the_margin_beyond_all_feet():
     feet, pad = bare.slice(0.02), wide.slice(0.25)
     assert feet.num_contour() > 1
     assert len(pad.decompose()) == 1
-    assert (bases.grown(feet, 1.98) - pad).area() < 1e-2
+    assert (footprints.grown(feet, 1.98) - pad).area() < 1e-2
     reach = np.array(pad.bounds()) - np.array(feet.bounds())
     assert reach == pytest.approx([-2.0, -2.0, 2.0, 2.0], abs=0.02)
 
 
 def test_holes_perforate_a_raft_beside_the_feet():
     _, plain = alone(RAFT)
-    bare, pierced = alone(Base("raft", 4.0, 0.5, 0.8))
-    _, whole = alone(Base("raft", 4.0, 0.5))
+    bare, pierced = alone(BaseRules("raft", raft_margin_mm=4.0, raft_height_mm=0.5, raft_hole_mm=0.8))
+    _, whole = alone(BaseRules("raft", raft_margin_mm=4.0, raft_height_mm=0.5))
     holes = (whole - pierced).decompose()
     assert len(holes) > 10
     for hole in holes:
@@ -154,7 +166,7 @@ def test_bases_end_at_the_build_volume_and_at_forbidden_zones(shape):
     space = BuildVolume(SIZE, shape, *zone)
     parts = (placed("slab", box((at, at, 10), (at + 8, at + 8, 12))),)
     layout = layout_of(parts, space)
-    bodies = supports(parts, layout, Base("raft", 6.0, 0.5), space=space)
+    bodies = supports(parts, layout, BaseRules("raft", raft_margin_mm=6.0, raft_height_mm=0.5), space=space)
     assert check_bodies(Build(BuildSettings("b", space, overlap=0.1), parts, bodies), Stop()) == []
     assert low(solid_of(bodies[0].mesh), 0.5).bounding_box()[3] <= at + 9.0
 
@@ -163,18 +175,24 @@ def test_what_parts_cut_off_from_all_feet_is_left_out():
     """A wall on the plate runs through the pad; beyond it nothing is left."""
     parts = (placed("slab", box((20, 20, 10), (28, 28, 12))), placed("wall", box((29, 0, 0), (29.5, 60, 5))))
     layout = layout_of(parts)
-    (body,) = supports(parts, layout, Base("raft", 5.0, 0.5))
+    (body,) = supports(parts, layout, BaseRules("raft", raft_margin_mm=5.0, raft_height_mm=0.5))
     assert low(solid_of(body.mesh), 0.5).bounding_box()[3] == pytest.approx(29.0 - LEAST_GAP, abs=0.01)
 
 
 def test_a_pad_stays_below_no_part_that_hangs_lower_than_it_is_high():
     part = placed("part", box((20, 20, 0.7), (28, 28, 3)))
     feet = mesh_of(box((21, 21, 0), (22, 22, 0.7)))
-    (pad,) = make_bases([feet], (part,), Base("raft", 3.0, 0.5), PLAIN, 0.0)
+    (pad,) = make_bases(
+        [feet], (part,), BaseRules("raft", raft_margin_mm=3.0, raft_height_mm=0.5), PLAIN, 0.0
+    )
     assert pad is None
     high = placed("part", box((20, 20, 0.9), (28, 28, 3)))
-    (pad,) = make_bases([feet], (high,), Base("raft", 3.0, 0.5), PLAIN, 0.0)
-    assert pad.volume() == pytest.approx(0.5 * bases.raft(CrossSection.square((1, 1)), 3.0).area(), rel=1e-6)
+    (pad,) = make_bases(
+        [feet], (high,), BaseRules("raft", raft_margin_mm=3.0, raft_height_mm=0.5), PLAIN, 0.0
+    )
+    assert pad.volume() == pytest.approx(
+        0.5 * footprints.raft(CrossSection.square((1, 1)), 3.0).area(), rel=1e-6
+    )
 
 
 def test_beams_stand_on_a_raft():

@@ -15,21 +15,21 @@ from amprep.geometry.supports.contact_area import contact_corners, measure_conta
 from amprep.host import Host
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
-from amprep.model.contacts import Connector
+from amprep.model.contacts import ConnectorRules
 from amprep.supports.plan import Wishes, plan_supports
 from amprep.supports.solids.build import build_supports
 
 SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
 PITCH, OVERLAP = 2.0, 0.1
 KINDS = {
-    "full": Connector(),
-    "teeth": Connector("teeth"),
-    "point": Connector("point", None, 0.5, 1.0),
-    "points": Connector("point", 1.0, 0.4, 0.8, neck=0.25),
-    "neck": Connector("full", neck=0.5),
-    "necked teeth": Connector("teeth", neck=0.3),
-    "windows": Connector("full", window=0.5),
-    "extend": Connector("extend"),
+    "full": ConnectorRules(),
+    "teeth": ConnectorRules("teeth"),
+    "point": ConnectorRules("point", point_mm=0.5, point_height_mm=1.0),
+    "points": ConnectorRules("point", point_pitch_mm=1.0, point_mm=0.4, point_height_mm=0.8, neck_mm=0.25),
+    "neck": ConnectorRules("full", neck_mm=0.5),
+    "necked teeth": ConnectorRules("teeth", neck_mm=0.3),
+    "perforated": ConnectorRules("full", perforation_mm=0.5),
+    "extend": ConnectorRules("extend"),
 }
 
 
@@ -134,7 +134,7 @@ def test_connectors_of_every_kind_keep_every_promise(shape, kind):
 
 
 def test_the_judge_finds_a_red_square_without_contact():
-    bodies = supports("slab", Connector())
+    bodies = supports("slab", ConnectorRules())
     cut = solid_of(bodies[0].mesh) - Manifold.cube((2.0, 2.0, 3.0)).translate((18.0, 18.0, 7.0))
     (support,) = (placed(cut),)
     found = judged("slab", (bodies[0].__class__("cut", support.part.mesh, (0,)),))
@@ -187,7 +187,7 @@ def flat(connector):
 
 
 def test_teeth_have_the_pitch_and_width_asked_and_stand_on_shoulders():
-    teeth = flat(Connector("teeth", 1.0, 0.4, 0.7))
+    teeth = flat(ConnectorRules("teeth", 1.0, 0.4, 0.7))
     bounds, areas = sections(teeth, 9.9)
     assert len(areas) == 64
     assert areas == pytest.approx(np.full(64, 0.16), rel=1e-3)
@@ -203,31 +203,33 @@ def test_teeth_have_the_pitch_and_width_asked_and_stand_on_shoulders():
 @pytest.mark.parametrize(
     ("connector", "count"),
     [
-        (Connector("teeth", 1.0, 0.5, 0.8, neck=0.25, neck_height=0.2), 64),
-        (Connector("full", neck=0.6, neck_height=0.4), 16),
-        (Connector("point", None, 0.6, 1.0, neck=0.3, neck_height=0.3), 16),
+        (ConnectorRules("teeth", 1.0, 0.5, 0.8, neck_mm=0.25, neck_height_mm=0.2), 64),
+        (ConnectorRules("full", neck_mm=0.6, neck_height_mm=0.4), 16),
+        (ConnectorRules("point", point_mm=0.6, point_height_mm=1.0, neck_mm=0.3, neck_height_mm=0.3), 16),
     ],
 )
 def test_necks_have_the_diameter_asked_at_the_height_asked(connector, count):
     solid = flat(connector)
-    bounds, areas = sections(solid, 9.9 - connector.neck_height)
+    bounds, areas = sections(solid, 9.9 - connector.neck_height_mm)
     assert len(areas) == count
     wide = bounds[:, 2:] - bounds[:, :2]
-    assert wide == pytest.approx(np.full((count, 2), connector.neck), rel=0.04)  # a circle has 12 sides
+    assert wide == pytest.approx(np.full((count, 2), connector.neck_mm), rel=0.04)  # a circle has 12 sides
     for other in (0.1, -0.1):
-        _, around = sections(solid, 9.9 - connector.neck_height + other)
+        _, around = sections(solid, 9.9 - connector.neck_height_mm + other)
         assert around.min() > 1.1 * areas.max()
 
 
 def test_points_are_round_and_as_many_as_asked():
     for pitch, count in ((None, 16), (1.0, 64)):
-        _, areas = sections(flat(Connector("point", pitch, 0.5, 0.8)), 9.9)
+        _, areas = sections(
+            flat(ConnectorRules("point", point_pitch_mm=pitch, point_mm=0.5, point_height_mm=0.8)), 9.9
+        )
         assert areas == pytest.approx(np.full(count, 3.0 * 0.25**2), rel=1e-3)  # of twelve sides
 
 
 def test_windows_go_straight_through_and_leave_posts():
     """Two rows of diamonds fit below the slab; lines through their middles meet nothing."""
-    whole, pierced = flat(Connector()), flat(Connector(window=0.6))
+    whole, pierced = flat(ConnectorRules()), flat(ConnectorRules(perforation_mm=0.6))
     tall = 0.6 * np.tan(np.radians(55.0))
     crossing = 0.6 * tall / 2.0
     assert pierced.volume() < whole.volume() - 7.0 * crossing
@@ -258,24 +260,27 @@ def test_struts_as_beams_carry_teeth():
 
 def test_a_neck_as_wide_as_its_tooth_is_refused():
     with pytest.raises(JobError, match="neck_mm"):
-        supports("slab", Connector("full", neck=1.9))
+        supports("slab", ConnectorRules("full", neck_mm=1.9))
 
 
 @pytest.mark.parametrize(
     ("table", "words"),
     [
         ({"connector": "teath"}, "'teeth'"),
-        ({"tooth_width_mm": 0.0}, "tooth_width_mm is at least 0.05"),
-        ({"tooth_pitch_mm": 0.4}, "tooth_pitch_mm is above the width, 0.5"),
-        ({"connector": "teeth", "neck_mm": 0.5}, "neck_mm is below the width of 0.5"),
-        ({"connector": "point", "neck_mm": 0.3, "neck_height_mm": 1.0}, "neck_height_mm is below the height"),
-        ({"connector": "extend", "neck_mm": 0.3}, "neck_mm and window_mm are for connectors"),
-        ({"window_mm": 0.01}, "window_mm is 0 or at least 0.05"),
+        ({"tooth_width_mm": 0.0}, "tooth_width_mm must be at least 0.05"),
+        ({"tooth_pitch_mm": 0.4}, "tooth_pitch_mm must be above the width of 0.5 mm"),
+        ({"connector": "teeth", "neck_mm": 0.5}, "neck_mm must be below the tip width of 0.5 mm"),
+        (
+            {"connector": "point", "neck_mm": 0.3, "neck_height_mm": 1.0},
+            "neck_height_mm must be below the tip height",
+        ),
+        ({"connector": "extend", "neck_mm": 0.3}, "neck_mm and perforation_mm need connector"),
+        ({"perforation_mm": 0.01}, "perforation_mm must be 0 or at least 0.05"),
         ({"base": "pad"}, "'raft'"),
-        ({"raft_height_mm": 0.0}, "raft_height_mm is 0.05 to 50"),
+        ({"raft_height_mm": 0.0}, "raft_height_mm must be between 0.05 and 50"),
     ],
 )
-def test_wrong_endings_are_refused_in_one_line(table, words):
+def test_wrong_connector_and_base_settings_are_refused_in_one_line(table, words):
     with pytest.raises(JobError) as error:
         make_job({"inputs": ["a.stl"], "cells": table}, name="a", folder=None, source="job")
     assert words in str(error.value)
