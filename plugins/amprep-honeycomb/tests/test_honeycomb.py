@@ -9,7 +9,7 @@ import pytest
 from amprep.cells import read_cell
 from amprep.cells.emission import emit_declared
 from amprep.host import Host
-from amprep.model import CellRequest, Grid
+from amprep.model import CellRequest, Grid, SupportEdges
 from amprep.pipeline.check_cell import check_cell
 from amprep.pipeline.choose_cell import cell_named
 from amprep.testing.conformance import try_offer
@@ -68,8 +68,10 @@ def mesh_of(path):
 def test_pins_grow_with_the_load():
     cell = read_cell(FOLDER / "honeycomb-frame.toml", mesh_of).cell
     frame = Grid(np.zeros(3), 2.0, 2.0, (4, 9, 9))
-    zero = np.zeros(3, np.int32)
-    request = CellRequest(frame, zero + 1, zero + 1, [1, 3, 5], zero, zero, [1, 6, 40], zero)
+    zero, load = np.zeros(3, np.int32), [1, 6, 40]
+    request = CellRequest(
+        frame, SupportEdges(zero + 1, zero + 1, [1, 3, 5], zero, load, load, group=zero), zero
+    )
     cells = emit_declared(cell, request)
     by_edge = dict(zip(cells.edge.tolist(), cells.template.tolist(), strict=True))
     volumes = [cells.templates[by_edge[edge]].mesh.signed_volume for edge in range(3)]

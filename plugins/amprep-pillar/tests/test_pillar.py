@@ -5,7 +5,7 @@ import pytest
 
 from amprep.errors import JobError
 from amprep.host import Host
-from amprep.model import CellRequest, Grid, Stop, silent
+from amprep.model import CellRequest, Grid, Stop, SupportEdges, silent
 from amprep.testing.conformance import try_plugin
 
 FRAME = Grid(np.array([10.0, 20, 0]), pitch=2.0, step=3.0, shape=(4, 4, 4))
@@ -18,8 +18,9 @@ def host():
 
 def emitted(host, table, direction=(0, 1)):
     count = len(direction)
-    columns = {name: np.ones(count) for name in ("plane", "y", "x", "load")}
-    request = CellRequest(FRAME, **columns, direction=direction, role=np.zeros(count), group=np.zeros(count))
+    one = np.ones(count)
+    edges = SupportEdges(one, one, one, direction, flow=one, capacity=one, group=0 * one)
+    request = CellRequest(FRAME, edges, role=0 * one)
     listed = host.choose("cell", "pillar")
     return host.call(listed, request, params=host.params(listed, table), stop=Stop(), progress=silent)
 

@@ -24,9 +24,11 @@ def checked(request: CellRequest, cells: object) -> Cells:
     if not len(cells.edge) == len(cells.matrix) == count:
         raise PluginError("the lattice cell returned arrays template, edge and matrix of different lengths")
     _require_range("template", cells.template, len(cells.templates))
-    _require_range("edge", cells.edge, len(request.plane))
+    _require_range("edge", cells.edge, len(request.edges))
     _require_range(
-        "group", np.array([extra.group for extra in cells.extra]), int(request.group.max(initial=-1)) + 1
+        "group",
+        np.array([extra.group for extra in cells.extra]),
+        int(request.edges.group.max(initial=-1)) + 1,
     )
     meshes = [template.mesh for template in cells.templates] + [extra.mesh for extra in cells.extra]
     finite = np.isfinite(cells.matrix).all() and all(np.isfinite(mesh.vertices).all() for mesh in meshes)
@@ -48,7 +50,7 @@ def _require_beams(request: CellRequest, beams: Beams) -> None:
     ):
         raise PluginError("the lattice cell returned beams whose struts, radii and groups do not match")
     _require_range("strut", np.asarray(beams.struts), len(beams.nodes))
-    _require_range("group", np.asarray(beams.group), int(request.group.max(initial=-1)) + 1)
+    _require_range("group", np.asarray(beams.group), int(request.edges.group.max(initial=-1)) + 1)
     if not np.isfinite(beams.nodes).all() or not (np.isfinite(beams.radii) & (beams.radii > 0)).all():
         raise PluginError(
             "the lattice cell returned beams with nodes that are not finite or radii not above 0"

@@ -76,13 +76,14 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
 
 def fit(cell: DeclaredCell, request: CellRequest) -> Iterator[Fitted]:
     """Yield sets of edges that get the same template, each edge at most once."""
-    left = np.ones(len(request.plane), np.bool_)
+    left = np.ones(len(request.edges), np.bool_)
     for number, variant in enumerate(cell.variants):
         mine = left & edges_for(variant.when, request)
         left &= ~mine
-        factors = _factors(variant.shape, request.load)
+        factors = _factors(variant.shape, request.edges.flow)
         # only what is measured in mm depends on the map
-        directions = request.direction if isinstance(variant.shape, GraphCell) else 0 * request.direction
+        direction = request.edges.direction
+        directions = direction if isinstance(variant.shape, GraphCell) else 0 * direction
         keys = np.column_stack([directions, factors])[mine]
         for direction, factor in np.unique(keys, axis=0).tolist():
             same = mine & (directions == direction) & (factors == factor)
@@ -91,10 +92,11 @@ def fit(cell: DeclaredCell, request: CellRequest) -> Iterator[Fitted]:
 
 def edges_for(when: When, request: CellRequest) -> Bools:
     """Tell which edges of the request meet every condition."""
-    fits = (request.load >= when.least_load) & (request.load <= when.most_load)
-    fits &= (request.plane - 1) % when.every == when.layer
+    edges = request.edges
+    fits = (edges.flow >= when.least_load) & (edges.flow <= when.most_load)
+    fits &= (edges.plane - 1) % when.every == when.layer
     if when.edges != "any":
-        fits &= (request.direction == 0) == (when.edges == "straight")
+        fits &= (edges.direction == 0) == (when.edges == "straight")
     if when.roles:
         words = {"trunk": Role.TRUNK, "foot": Role.FOOT, "connector": Role.CONNECTOR}
         own = np.isin(request.role, [words[word] for word in when.roles if word in words])
@@ -106,9 +108,10 @@ def edges_for(when: When, request: CellRequest) -> Bools:
 
 def sides_taken(request: CellRequest) -> Bools:
     """Tell which of its four sides (-x, +x, -y, +y) each edge shares with an edge of its direction, ``(n, 4)``."""
-    ny, nx = int(request.y.max(initial=0)) + 3, int(request.x.max(initial=0)) + 3
-    place = (request.plane.astype(np.int64) * 5 + request.direction) * ny * nx
-    place += (request.y + 1) * nx + request.x + 1
+    edges = request.edges
+    ny, nx = int(edges.y.max(initial=0)) + 3, int(edges.x.max(initial=0)) + 3
+    place = (edges.plane.astype(np.int64) * 5 + edges.direction) * ny * nx
+    place += (edges.y + 1) * nx + edges.x + 1
     return np.column_stack([np.isin(place + step, place) for step in (-1, 1, -nx, nx)])
 
 
@@ -138,7 +141,7 @@ def beams_of(shape: GraphCell, request: CellRequest, fitted: Fitted) -> Beams:
     first = np.arange(len(matrix)) * len(shape.points)
     struts = (shape.struts[None] + first[:, None, None]).reshape(-1, 2)
     radii = np.tile(fitted.factor * shape.radii, (len(matrix), 1))
-    group = np.repeat(request.group[fitted.edges], len(shape.struts))
+    group = np.repeat(request.edges.group[fitted.edges], len(shape.struts))
     return Beams(places.reshape(-1, 3), struts.astype(np.int32), radii, group)
 
 

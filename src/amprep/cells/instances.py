@@ -43,7 +43,7 @@ class CellInstances(NamedTuple):
 
     def of(self, group: int) -> Bools:
         """Tell which instances belong to a support group."""
-        return np.asarray(self.request.group[self.cells.edge] == group)
+        return np.asarray(self.request.edges.group[self.cells.edge] == group)
 
 
 def classify(request: CellRequest, cells: Cells) -> CellInstances:
@@ -53,7 +53,7 @@ def classify(request: CellRequest, cells: Cells) -> CellInstances:
     valid = np.array([_is_tile(template) for template in cells.templates], np.bool_)
     own_map = np.abs(cells.matrix - request.matrices[cells.edge]).max(axis=(1, 2), initial=0.0) < 1e-6
     sheet = surface[cells.template]
-    alone = np.bincount(cells.edge[~sheet], minlength=len(request.plane))[cells.edge] == 1
+    alone = np.bincount(cells.edge[~sheet], minlength=len(request.edges))[cells.edge] == 1
     connector = request.role[cells.edge] == Role.CONNECTOR
     tiles = valid[cells.template] & own_map & alone
     whole = np.array([template.mesh.signed_volume > 1.0 - 1e-9 for template in cells.templates], np.bool_)
@@ -84,8 +84,8 @@ def expand_cells(
     cells, request = instances.cells, instances.request
     frame, index = request.frame, np.flatnonzero(chosen & instances.tiles)
     edge, template = cells.edge[index], cells.template[index].astype(np.int64)
-    square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 1]).astype(np.int64)
-    shift = np.array(DIRECTIONS, np.int64)[request.direction[edge]][:, ::-1]
+    square = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 1)
+    shift = np.array(DIRECTIONS, np.int64)[request.edges.direction[edge]][:, ::-1]
     if len(edge) and instances.whole[template].all():
         yield unite_prisms(square, shift, frame.origin, _voxel_size(frame))
         template, square, shift = template[:0], square[:0], shift[:0]

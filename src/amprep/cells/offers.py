@@ -82,7 +82,7 @@ def estimate(cell: DeclaredCell, pitch: float, step: float) -> tuple[float, floa
         request = single_column(pitch, step, direction)
         cells = emit_declared(cell, request)
         each = np.array([0.0 if each.surface else each.mesh.signed_volume for each in cells.templates])
-        volumes.append(float(each[cells.template].sum()) / len(request.plane) * pitch * pitch * step)
+        volumes.append(float(each[cells.template].sum()) / len(request.edges) * pitch * pitch * step)
     return volumes[0], volumes[1]
 
 

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from amprep.model import DIRECTIONS, CellRequest, Grid, Role
+from amprep.model import DIRECTIONS, CellRequest, Grid, Role, SupportEdges
 
 LAYERS = 6
 """Layers of a column, and of a block: every second or third layer differs in it at least twice."""
@@ -34,7 +34,6 @@ def block(
 def _request(
     frame: Grid, plane: np.ndarray, y: np.ndarray, x: np.ndarray, direction: int, role: np.ndarray | int
 ) -> CellRequest:
-    zero = np.zeros(len(plane), np.int32)
-    flags = np.zeros(len(plane), np.uint8)
-    directions, roles = flags + np.uint8(direction), flags + np.asarray(role, np.uint8)
-    return CellRequest(frame, plane, y, x, directions, roles, zero + 1, zero)
+    one = np.ones_like(plane)
+    edges = SupportEdges(plane, y, x, one * direction, flow=one, capacity=one, group=0 * one)
+    return CellRequest(frame, edges, one * role)

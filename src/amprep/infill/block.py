@@ -8,7 +8,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.errors import JobError
 from amprep.geometry.voxels.grid import Grid
 from amprep.geometry.voxels.voxelise import met_voxels
-from amprep.model import CellRequest, Mesh, Role
+from amprep.model import CellRequest, Mesh, Role, SupportEdges
 
 MOST_CELLS = 500_000
 MOST_CUBES = 50_000_000
@@ -60,16 +60,20 @@ def block_over(region: Mesh, *, size: float, height: float, overlap: float, part
         int(each.max(initial=0) - low + 1) for each, low in zip((layer, y, x), first[::-1], strict=True)
     )
     frame = Grid(origin + first * cell, size, height, (shape[0], shape[1], shape[2]))
-    zero, flags = np.zeros(len(x), np.int32), np.zeros(len(x), np.uint8)
-    return CellRequest(
-        frame,
+    one = np.ones_like(x)
+    edges = SupportEdges(
         layer - first[2] + 1,
         y - first[1],
         x - first[0],
-        flags,
-        flags + np.uint8(Role.TRUNK),
-        zero + 1,
-        zero,
+        direction=np.zeros(len(x), np.uint8),
+        flow=one,
+        capacity=one,
+        group=0 * one,
+    )
+    return CellRequest(
+        frame,
+        edges,
+        np.full(len(x), Role.TRUNK, np.uint8),
         (part,),
         overlap=overlap,
         allow_surface=False,

@@ -103,7 +103,7 @@ def fill_region(
         raise JobError("the region lies outside the part: nothing of it can be filled with cells")
     region = Mesh(*arrays_of(filled))
     request = block_over(region, size=size, height=height or size, overlap=overlap, part=part)
-    progress(0.1, f"emitting {len(request.plane)} cells")
+    progress(0.1, f"emitting {len(request.edges)} cells")
     bare = None if beams is False else beams_of(replace(request, beams=beams), emit)
     cells, count = _welded(request, emit)
     progress(0.4, "trimming the cells")

@@ -1,4 +1,4 @@
-"""What a cell emitter is asked and what it answers."""
+"""Request to a cell emitter, and its answer."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -9,52 +9,52 @@ import numpy as np
 from amprep.arrays import Bytes, Floats, Ints, frozen
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
-from amprep.model.support_edges import DIRECTIONS
+from amprep.model.support_edges import DIRECTIONS, SupportEdges
 
 
 class Role(IntEnum):
-    """Where an edge stands in its support."""
+    """Role of an edge in its support."""
 
     TRUNK = 0
     FOOT = 1
-    """Its lower square lies on the plate."""
+    """The lower square of the edge is on the plate."""
     CONNECTOR = 2
-    """Stands on a red square and runs straight up into the part; the host trims it to the faces it holds."""
+    """The edge runs from a red square straight up into the part; the host trims it to the faces it supports."""
 
 
 @dataclass(frozen=True, eq=False)
 class CellRequest:
-    """Edges to be replaced by geometry (thesis 3.5).
-
-    A trunk or foot edge leads from square (plane, y, x) to (plane - 1, y + dy, x + dx). A connector edge
-    has direction 0 and leads from (plane, y, x) down to (plane - 1, y, x), where (plane - 1, y, x) is its red square.
+    """Edges that geometry is to replace (thesis 3.5).
 
     Attributes
     ----------
-    plane, y, x, load, group
-        ``(n,)`` int32; load is the number of paths, group the support group (index).
-    direction, role
-        ``(n,)`` uint8; indices into `DIRECTIONS`, values of `Role`.
+    frame
+        Grid of the supports.
+    edges
+        ``n`` edges with their flow (number of paths) and their support group. A connector edge is vertical, and its
+        lower square is its red square.
+    role
+        ``(n,)`` uint8, values of `Role`.
     parts
         Placed part meshes in build coordinates.
     gap
-        Least distance between supports and parts sideways, mm.
+        Smallest horizontal distance between supports and parts, mm.
     overlap
-        How far connectors run into the part, mm.
+        Depth to which connectors enter the part, mm.
     allow_surface
         Whether the target can read walls without thickness.
     beams
-        True: struts as beams where the cell can; False: no beams; None: as the cell's parameters say.
+        True: struts become beams if the cell supports them; False: no beams; None: the parameters of the cell decide.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many roles as edges.
     """
 
     frame: Grid
-    plane: Ints
-    y: Ints
-    x: Ints
-    direction: Bytes
+    edges: SupportEdges
     role: Bytes
-    load: Ints
-    group: Ints
     parts: tuple[Mesh, ...] = ()
     gap: float = 0.0
     overlap: float = 0.1
@@ -62,31 +62,32 @@ class CellRequest:
     beams: bool | None = None
 
     def __post_init__(self) -> None:
-        for name in ("plane", "y", "x", "load", "group"):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
-        for name in ("direction", "role"):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.uint8))
+        object.__setattr__(self, "role", frozen(self.role, np.uint8))
+        if len(self.role) != len(self.edges):
+            raise ValueError(
+                f"a request has one role for each of its {len(self.edges)} edges, got {len(self.role)}"
+            )
 
     @cached_property
     def matrices(self) -> Floats:
-        """``(n, 3, 4)`` unit cube to build coordinates: the upright or sheared prism of each edge (thesis 3.5)."""
-        frame = self.frame
-        dy, dx = np.array(DIRECTIONS, np.float64)[self.direction].T
-        matrices = np.zeros((len(self.plane), 3, 4))
+        """``(n, 3, 4)``, unit cube to the upright or sheared prism of each edge in build coordinates (thesis 3.5)."""
+        frame, edges = self.frame, self.edges
+        dy, dx = np.array(DIRECTIONS, np.float64)[edges.direction].T
+        matrices = np.zeros((len(edges), 3, 4))
         matrices[:, 0, 0] = matrices[:, 1, 1] = frame.pitch
         matrices[:, 2, 2] = frame.step
         matrices[:, 0, 2], matrices[:, 1, 2] = -dx * frame.pitch, -dy * frame.pitch
-        lower = np.column_stack([self.x + dx, self.y + dy, self.plane - 1.0])
+        lower = np.column_stack([edges.x + dx, edges.y + dy, edges.plane - 1.0])
         matrices[:, :, 3] = frame.origin + lower * (frame.pitch, frame.pitch, frame.step)
         return frozen(matrices, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
 class Template:
-    """A shape in the unit cube; z = 0 is the lower square, z = 1 the upper one.
+    """A shape in the unit cube, whose bottom is the lower square of an edge and whose top is the upper one.
 
-    A closed solid, or with `surface` an open sheet that a machine must not fill. Shapes that stand on one
-    another, or side by side under the same shear, conform: where their faces meet, they share the same triangles.
+    It is a closed solid or, with `surface`, an open sheet that a machine must not fill. Shapes that meet, one on
+    another or side by side under the same shear, should conform: their common faces have the same triangles.
     """
 
     name: str
@@ -96,7 +97,19 @@ class Template:
 
 @dataclass(frozen=True, eq=False)
 class Beams:
-    """Round beams: nodes ``(n, 3)`` mm, struts ``(m, 2)`` int32, radii ``(m, 2)`` mm at both ends, group ``(m,)``."""
+    """Round beams between nodes.
+
+    Attributes
+    ----------
+    nodes
+        ``(n, 3)`` mm, build coordinates.
+    struts
+        ``(m, 2)`` int32, indices into `nodes`.
+    radii
+        ``(m, 2)`` mm, at both ends of each beam.
+    group
+        ``(m,)`` support group of each beam.
+    """
 
     nodes: Floats
     struts: Ints
@@ -115,17 +128,21 @@ class ExtraMesh:
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Templates and where they go; the host expands, trims, welds and merges.
+    """Templates and their instances; the host expands, trims and unites them.
 
     Attributes
     ----------
     template, edge
-        ``(n,)`` int32: which template; which edge of the request it replaces (gives group, role and load).
+        ``(n,)`` int32: template of each instance, and the edge of the request that it replaces. The edge gives the
+        instance its group and role.
     matrix
-        ``(n, 3, 4)`` float64: unit cube to build coordinates.
+        ``(n, 3, 4)`` float64, unit cube to build coordinates.
+    extra
+        Finished meshes beside the instances.
+    beams
+        Beams instead of templates, if the request allows them.
     hole
-        mm; a ball that wide has to get out from between the cells: the host cuts a way where it does not. 0
-        for none.
+        Diameter (mm) of a ball that must be able to escape; where it cannot, the host cuts a drain hole. 0 for none.
     """
 
     templates: tuple[Template, ...]

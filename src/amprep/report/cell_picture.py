@@ -1,5 +1,6 @@
 """Draw a lattice cell: a block of upright edges, and beside it a column of oblique edges."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,9 +51,8 @@ def draw_cell(emit: Emit, path: Path, *, pitch: float, strut_angle_deg: float) -
 
 def _lowest(request: CellRequest) -> CellRequest:
     """Return the request for the lowest layers alone."""
-    chosen = request.plane < request.plane.min() + _LAYERS
-    columns = ("plane", "y", "x", "direction", "role", "load", "group")
-    return CellRequest(request.frame, *(getattr(request, name)[chosen] for name in columns))
+    chosen = request.edges.plane < request.edges.plane.min() + _LAYERS
+    return replace(request, edges=request.edges[chosen], role=request.role[chosen])
 
 
 def _expanded(cells: Cells) -> Mesh:

@@ -22,6 +22,7 @@ from amprep.model import (
     MeshCell,
     Role,
     Stop,
+    SupportEdges,
     Variant,
     When,
     silent,
@@ -35,10 +36,9 @@ FRAME = Grid(np.zeros(3), 2.0, 2.0, (9, 9, 9))
 
 def request(plane, direction=0, role=Role.TRUNK, load=1):
     count = len(plane)
-    rows = [
-        np.broadcast_to(each, count) for each in (plane, 1, 2 * np.arange(count), direction, role, load, 0)
-    ]
-    return CellRequest(FRAME, *rows)
+    columns = (plane, 1, 2 * np.arange(count), direction, load, load, 0, 0)
+    edges = SupportEdges(*(np.broadcast_to(each, count) for each in columns))
+    return CellRequest(FRAME, edges, np.broadcast_to(role, count))
 
 
 def emitted(offer, asked, **table):
@@ -93,7 +93,7 @@ def test_struts_become_beams_that_join_in_common_points():
     cells = emit_declared(DeclaredCell.of(PIN), column, solid=False)
     assert len(cells.template) == 0
     beams = cells.beams
-    assert (len(beams.struts), len(beams.nodes)) == (len(column.plane), len(column.plane) + 1)
+    assert (len(beams.struts), len(beams.nodes)) == (len(column.edges), len(column.edges) + 1)
     assert set(beams.radii.ravel().tolist()) == {0.4}
     lengths = np.linalg.norm(np.diff(beams.nodes[beams.struts], axis=1)[:, 0], axis=1)
     assert lengths == pytest.approx(2 * np.sqrt(2))
@@ -105,7 +105,7 @@ def test_the_request_may_ask_for_beams_or_for_none():
     assert emitted(offer, replace(plain, beams=True)).beams is not None
     without = emitted(offer, replace(plain, beams=False), solid=False)
     assert without.beams is None
-    assert len(without.template) == len(plain.plane)
+    assert len(without.template) == len(plain.edges)
 
 
 def test_beams_are_refused_where_none_are_wanted():

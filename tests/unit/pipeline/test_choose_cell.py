@@ -9,13 +9,15 @@ from amprep.checks.cells.templates import check_cells, check_template
 from amprep.errors import JobError, MeshError
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
-from amprep.model import CellRequest, Cells, Grid, Mesh, Template
+from amprep.model import CellRequest, Cells, Grid, Mesh, SupportEdges, Template
 from amprep.pipeline.choose_cell import cell_named, choose_cell
 from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))
 FRAME = Grid(np.zeros(3), pitch=2.0, step=4.0, shape=(3, 3, 3))
-REQUEST = CellRequest(FRAME, [1, 2], [1, 1], [1, 1], [0, 1], [1, 0], [1, 1], [0, 0])
+REQUEST = CellRequest(
+    FRAME, SupportEdges([1, 2], [1, 1], [1, 1], [0, 1], [1, 1], [1, 1], group=[0, 0]), [1, 0]
+)
 
 
 @pytest.fixture(scope="module")

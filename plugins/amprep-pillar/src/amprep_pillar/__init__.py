@@ -42,7 +42,7 @@ def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, prog
     Pillars that stand on one another share their octagon, also where the way bends: the maps shear the unit
     cube sideways and leave its horizontal faces as they are.
     """
-    pitch, count = request.frame.pitch, len(request.plane)
+    pitch, count = request.frame.pitch, len(request.edges)
     if params.diameter_mm > pitch:
         raise JobError(
             f"pillar: diameter_mm = {params.diameter_mm:g} is wider than the pitch, {pitch:.4g} mm"

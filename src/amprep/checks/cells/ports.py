@@ -8,7 +8,6 @@ from amprep.arrays import Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.cells.ports import PLANE_AXES, SNAP, flush_sides, snapped
 from amprep.model.cells import CellRequest, Cells, Template
-from amprep.model.support_edges import DIRECTIONS
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -46,25 +45,20 @@ def port_areas(template: Template) -> Floats:
 
 def _neighbours(request: CellRequest, cells: Cells) -> set[tuple[int, int, int, bool]]:
     """List pairs of templates that meet: axis, the one at its low end, the one at its high end, whether alike."""
-    shift = np.array(DIRECTIONS)[request.direction][cells.edge]
-    plane, y, x, direction = (
-        getattr(request, name)[cells.edge].astype(np.int64) for name in ("plane", "y", "x", "direction")
-    )
+    edges = request.edges[cells.edge]
+    upper, lower, direction = edges.upper.tolist(), edges.lower.tolist(), edges.direction.tolist()
     at: dict[tuple[int, ...], list[int]] = {}
-    for index, key in enumerate(zip(plane.tolist(), y.tolist(), x.tolist(), strict=True)):
-        at.setdefault(key, []).append(index)
+    for index, square in enumerate(upper):
+        at.setdefault(tuple(square), []).append(index)
     found = set()
     kind = cells.template.tolist()
-    for index in range(len(kind)):
-        beside = {0: (plane[index], y[index], x[index] + 1), 1: (plane[index], y[index] + 1, x[index])}
-        for axis, key in beside.items():
-            for other in at.get(tuple(map(int, key)), ()):
+    for index, (plane, y, x) in enumerate(upper):
+        for axis, beside in enumerate(((plane, y, x + 1), (plane, y + 1, x))):
+            for other in at.get(beside, ()):
                 if direction[other] == direction[index]:
                     found.add((axis, kind[index], kind[other], True))
-        below = (plane[index] - 1, y[index] + shift[index, 0], x[index] + shift[index, 1])
-        for other in at.get(tuple(map(int, below)), ()):
-            alike = kind[index] == kind[other]
-            found.add((2, kind[other], kind[index], alike))
+        for other in at.get(tuple(lower[index]), ()):
+            found.add((2, kind[other], kind[index], kind[index] == kind[other]))
     return found
 
 

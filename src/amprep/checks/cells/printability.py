@@ -102,10 +102,10 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
             for template, solid in zip(cells.templates, solids, strict=True)
         ]
     )
-    density = float(volume[cells.template].sum()) / len(request.plane)
+    density = float(volume[cells.template].sum()) / len(request.edges)
     if not any(solids):
         return CellMeasures(0.0, None, None, 0.0)
-    place = np.column_stack([request.x, request.y, request.plane])[cells.edge]
+    place = request.edges.upper[cells.edge][:, ::-1]
     place = (place - place.min(axis=0)).astype(np.int64)
     meshes = [template.mesh.arrays for template in cells.templates]
     chosen = np.array(solids)[cells.template]

@@ -13,7 +13,7 @@ TOLERANCE = 1e-6
 def check_cells(request: CellRequest, cells: Cells) -> list[Violation]:
     """Judge what an emitter returned: indices, maps, templates in the unit cube, solids closed."""
     found = []
-    numbers = {"edge": (cells.edge, len(request.plane)), "template": (cells.template, len(cells.templates))}
+    numbers = {"edge": (cells.edge, len(request.edges)), "template": (cells.template, len(cells.templates))}
     for name, (values, count) in numbers.items():
         if ((values < 0) | (values >= count)).any():
             found.append(Violation("cell records", name, f"expected numbers from 0 to {count - 1}"))

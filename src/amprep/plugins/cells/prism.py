@@ -21,7 +21,7 @@ def unit_cube() -> Mesh:
 
 def emit_prisms(request: CellRequest, *, params: NoParams, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
     """Put the unit cube under the map of each edge."""
-    count = len(request.plane)
+    count = len(request.edges)
     templates = (Template("prism", unit_cube()),)
     return Cells(templates, np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices)
 

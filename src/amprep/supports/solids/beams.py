@@ -225,7 +225,7 @@ def prisms(request: CellRequest) -> Cells:
     """Return every edge as its whole prism: what stands in for a lattice of very many beams."""
     from manifold3d import Manifold
 
-    count = len(request.plane)
+    count = len(request.edges)
     points, triangles = arrays_of(Manifold.cube([1.0, 1.0, 1.0]))
     voxel = Template("prism", Mesh(points, triangles))
     return Cells((voxel,), np.zeros(count, np.int32), np.arange(count, dtype=np.int32), request.matrices)

@@ -19,7 +19,7 @@ def extended_cells(
     lowest = np.flatnonzero(chosen & on_red(instances, layout, seat > 0.0))
     cells, request = instances.cells, instances.request
     edge = cells.edge[lowest]
-    square = np.column_stack([request.x[edge], request.y[edge], request.plane[edge] - 2]).astype(np.int64)
+    square = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 2)
     square, first = np.unique(square, axis=0, return_index=True)
     template = cells.template[lowest][first].astype(np.int64)
     yield from tile(instances.templates, _upright(template, square, request.frame))
@@ -43,5 +43,5 @@ def squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
 def on_red(instances: CellInstances, layout: SupportLayout, chosen: Bools) -> Bools:
     """Which instances stand on one of the chosen red squares."""
     request, edge = instances.request, instances.cells.edge
-    lower = squares(layout, request.plane - 1, request.y, request.x)[edge]
+    lower = squares(layout, *(request.edges.upper - (1, 0, 0)).T)[edge]
     return np.isin(lower, squares(layout, *layout.red[chosen].T))

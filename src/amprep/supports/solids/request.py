@@ -1,9 +1,8 @@
-"""What the host asks a cell emitter for, and whether the answer fits the question."""
+"""Make the request to the cell emitter from a support layout."""
 
 import numpy as np
 
-from amprep.arrays import Ints
-from amprep.model import CellRequest, Mesh, Role
+from amprep.model import CellRequest, Mesh, Role, SupportEdges
 from amprep.supports.layout import SupportLayout
 
 
@@ -20,23 +19,15 @@ def make_request(
 
     A connector gets one voxel more than its red square's run, for the overlap.
     """
-    own = layout.edges
-    roles = np.where(own.plane == 1, Role.FOOT, Role.TRUNK)
-    edges = np.column_stack([own.plane, own.y, own.x, own.flow, own.group, own.direction, roles]).astype(
-        np.int32
-    )
+    edges, role = layout.edges, np.where(layout.edges.plane == 1, Role.FOOT, Role.TRUNK)
     if extend:
-        edges = np.vstack([edges, _above_red(layout)])
-    plane, y, x, load, group, direction, role = edges.T
+        above = _above_red(layout)
+        edges = SupportEdges.concatenate([edges, above])
+        role = np.concatenate([role, np.full(len(above), Role.CONNECTOR)])
     return CellRequest(
         layout.frame,
-        plane,
-        y,
-        x,
-        direction,
+        edges,
         role,
-        load,
-        group,
         parts,
         overlap=overlap,
         allow_surface=allow_surface,
@@ -44,12 +35,20 @@ def make_request(
     )
 
 
-def _above_red(layout: SupportLayout) -> Ints:
-    """Connector edges: the voxels of each connected red square's run from below, and one above it."""
+def _above_red(layout: SupportLayout) -> SupportEdges:
+    """Return connector edges for the voxels of each connected red square's rise, and for one voxel above it."""
     red = np.flatnonzero(layout.connected)
     voxels = layout.red_rise[red] + 1
     up = np.arange(int(voxels.sum())) - np.repeat(np.cumsum(voxels) - voxels, voxels) + 1
     plane, y, x = np.repeat(layout.red[red], voxels, axis=0).T
-    group = np.repeat(layout.red_group[red], voxels)
-    rest = np.zeros_like(plane)
-    return np.column_stack([plane + up, y, x, rest + 1, group, rest, rest + Role.CONNECTOR]).astype(np.int32)
+    one = np.ones_like(plane)
+    return SupportEdges(
+        plane + up,
+        y,
+        x,
+        direction=0 * one,
+        flow=one,
+        capacity=one,
+        part=np.repeat(layout.red_part[red], voxels),
+        group=np.repeat(layout.red_group[red], voxels),
+    )

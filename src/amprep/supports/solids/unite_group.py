@@ -123,7 +123,7 @@ def _stands_on_full_square(instances: CellInstances, layout: SupportLayout) -> B
     whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in instances.templates], np.bool_)
     edge = instances.cells.edge[instances.tiles & whole[instances.cells.template]]
     request = instances.request
-    full = squares(layout, request.plane[edge], request.y[edge], request.x[edge])
+    full = squares(layout, *request.edges.upper[edge].T)
     return np.isin(squares(layout, *layout.red.T), full)
 
 
@@ -153,7 +153,7 @@ def sheet_of(
     order = np.argsort(square, kind="stable")
     for index in tops:
         edge = cells.edge[index]
-        number = squares(layout, request.plane[edge : edge + 1] - 1, request.y[edge], request.x[edge])
+        number = squares(layout, *request.edges.lower[edge : edge + 1].T)
         plan = plan_segments(*instances.templates[cells.template[index]])
         matrix = cells.matrix[index]
         begin, end = (int(np.searchsorted(square[order], number, side=side)[0]) for side in ("left", "right"))

@@ -16,7 +16,7 @@ from amprep.geometry.merging.voxel_contents import RESOLUTION, ContentsTable
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import degenerate, edges_match
 from amprep.host import Host
-from amprep.model import DIRECTIONS, CellRequest, Grid, Stop, silent
+from amprep.model import DIRECTIONS, CellRequest, Grid, Stop, SupportEdges, silent
 
 ORIGIN, SIZE = np.array([3.0, 5.0, 0.0]), np.array([2.0, 2.0, 1.5])
 
@@ -162,9 +162,9 @@ def emitted(cell, seed, count=30, **params):
     rng = np.random.default_rng(seed)
     rows = np.unique(rng.integers([1, 2, 2, 0], [4, 6, 6, 5], (count, 4)), axis=0)
     plane, y, x, direction = rows.T
-    zero = np.zeros(len(rows), np.int32)
+    one = np.ones(len(rows))
     frame = Grid(np.zeros(3), 2.0, 2.0, (12, 9, 9))
-    request = CellRequest(frame, plane, y, x, direction, zero, zero + 1, zero)
+    request = CellRequest(frame, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
     host = Host.load(plugins_enabled=False)
     listed = host.choose("cell", cell)
     return classify(

@@ -20,6 +20,7 @@ from amprep.model import (
     PlacedPart,
     Stop,
     SupportBody,
+    SupportEdges,
     silent,
 )
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
@@ -29,8 +30,8 @@ def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> Ce
     """Edges (plane, y, x, direction) on a grid of 9 x 9 squares; pitch and step are equal."""
     plane, y, x, direction = np.array(edges).T
     frame = Grid(np.zeros(3), pitch, pitch, (12, 9, 9))
-    zero = np.zeros(len(edges), np.int32)
-    return CellRequest(frame, plane, y, x, direction, zero, zero + 1, zero)
+    one = np.ones(len(edges))
+    return CellRequest(frame, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
 
 
 def solid_of(cell: str, request: CellRequest, **params):

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from amprep.arrays import Bools, Ints
+from amprep.arrays import Bools
 from amprep.errors import JobError
-from amprep.model import DIRECTIONS, CellRequest, Cells, Progress, Role, Stop
+from amprep.model import CellRequest, Cells, Progress, Role, Stop
+from amprep.model.support_edges import square_keys
 from amprep.plugins.cells.hatch.shapes import Walls, hatch_template
 
 HAIR = 1e-3
@@ -68,15 +69,18 @@ def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, progres
     Ends of supports have teeth; connector edges are teeth all the way up, so that the part is met by teeth alone.
     """
     pitch, step = request.frame.pitch, request.frame.step
-    straight = request.direction == 0
+    straight = request.edges.direction == 0
     starts = straight & (request.role != Role.CONNECTOR)
     every = params.fragment_every or 1
-    cut = [starts & (place % every == 0) & bool(params.fragment_every) for place in (request.x, request.y)]
+    cut = [
+        starts & (place % every == 0) & bool(params.fragment_every)
+        for place in (request.edges.x, request.edges.y)
+    ]
     end = np.where(request.role == Role.CONNECTOR, 2, _is_end(request)) * (params.tooth_pitch_mm != 0.0)
-    rows = np.column_stack([request.direction, end, *cut]).astype(np.int64)
+    rows = np.column_stack([request.edges.direction, end, *cut]).astype(np.int64)
     kinds, template = np.unique(rows, axis=0, return_inverse=True)
     templates = tuple(hatch_template(_walls(pitch, step, params, *kind)) for kind in kinds.tolist())
-    return Cells(templates, template.ravel(), np.arange(len(request.plane)), request.matrices)
+    return Cells(templates, template.ravel(), np.arange(len(request.edges)), request.matrices)
 
 
 def hatch_material(pitch: float, step: float, params: HatchParams) -> tuple[float, float]:
@@ -133,10 +137,5 @@ def _window(pitch: float, step: float, params: HatchParams, span: float) -> tupl
 def _is_end(request: CellRequest) -> Bools:
     """Tell at which edges supports end: no other edge of theirs leads down to the upper square."""
     trunk = request.role != Role.CONNECTOR
-    shift = np.array(DIRECTIONS)[request.direction]
-    lower = _squares(request.plane - 1, request.y + shift[:, 0], request.x + shift[:, 1])
-    return np.asarray(trunk & ~np.isin(_squares(request.plane, request.y, request.x), lower[trunk]))
-
-
-def _squares(plane: Ints, y: Ints, x: Ints) -> Ints:
-    return np.asarray((plane.astype(np.int64) * 2**20 + y) * 2**20 + x)
+    upper, lower = square_keys(request.edges.upper), square_keys(request.edges.lower)
+    return np.asarray(trunk & ~np.isin(upper, lower[trunk]))

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.errors import JobError
-from amprep.model import DIRECTIONS, CellRequest, Cells, Progress, Role, Stop, Template
+from amprep.model import CellRequest, Cells, Progress, Role, Stop, Template
+from amprep.model.support_edges import square_keys
 from amprep.plugins.cells.x_wall.shapes import Window, solid_x, surface_x
 
 HAIR = 1e-3
@@ -79,28 +80,23 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, progr
         raise JobError(
             "x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm"
         )
-    rows = _insets(request.plane, params.join_every, shares.inset)
+    rows = _insets(request.edges.plane, params.join_every, shares.inset)
     rows[request.role == Role.CONNECTOR] = 0.0
-    hair = np.where(params.wall_mm == 0.0, 0.0, HAIR * request.direction)
+    hair = np.where(params.wall_mm == 0.0, 0.0, HAIR * request.edges.direction)
     rows = np.column_stack([rows, hair, _beside_oblique(request)])
     kinds, template = np.unique(rows, axis=0, return_inverse=True)
     templates = tuple(_template(shares, kind[:3], kind[3], bool(kind[4])) for kind in kinds.tolist())
-    edge = np.arange(len(request.plane))
+    edge = np.arange(len(request.edges))
     hole = _HOLE if params.join_every > 1 and params.wall_mm != 0.0 else 0.0
     return Cells(templates, template.ravel(), edge, request.matrices, hole=hole)
 
 
 def _beside_oblique(request: CellRequest) -> NDArray[np.bool_]:
     """Tell which edges are oblique or have a square in common with one that is: their walls cross."""
-    aside = request.direction > 0
-    way = np.array(DIRECTIONS)[request.direction]
-    found = aside.copy()
-    for square in (
-        np.column_stack([request.plane, request.y, request.x]),
-        np.column_stack([request.plane - 1, request.y + way[:, 0], request.x + way[:, 1]]),
-    ):
-        number = np.unique(square, axis=0, return_inverse=True)[1].ravel()
-        found |= np.isin(number, number[aside])
+    edges, oblique = request.edges, request.edges.direction > 0
+    found = oblique.copy()
+    for square in (square_keys(edges.upper), square_keys(edges.lower)):
+        found |= np.isin(square, square[oblique])
     return np.asarray(found & (request.role != Role.CONNECTOR))
 
 
