@@ -8,13 +8,11 @@ import time
 import numpy as np
 import trimesh
 
+from amprep import api
 from amprep.geometry.voxels.grid import Grid
 from amprep.geometry.voxels.voxelise import met_voxels
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
-from amprep.model import Stop
-from amprep.pipeline.run import RunOptions, run
-from amprep.pipeline.stages import Unwatched
 
 
 def test_45_meshes_of_5120_triangles_on_a_1_mm_grid_within_4_seconds():
@@ -38,7 +36,7 @@ def test_a_ball_of_56_mm_from_mesh_to_written_file_within_a_second(tmp_path):
     sets = ["supports.pitch_mm=1", "cells.strategy=prism", "packing.lift_mm=5"]
     job, host = apply_sets(job_from_inputs([tmp_path / "ball.stl"]), sets), Host.load(plugins_enabled=False)
     for turn in range(3):
-        record = run(job, host, RunOptions(tmp_path / str(turn)), watcher=Unwatched(), stop=Stop())
+        record = api.run(job, output=tmp_path / str(turn), plugins=host)
     seconds = {stage.name: stage.seconds for stage in record.stages}
     assert (tmp_path / "2" / "ball.build-1.3mf").exists()
     assert sum(seconds[name] for name in ("read", "bound", "pack", "route", "cells", "judge", "write")) < 1.0

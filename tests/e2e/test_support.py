@@ -88,7 +88,7 @@ def test_a_mesh_lies_where_its_own_coordinates_say_or_in_the_middle(amprep, fixt
 def test_parts_outside_the_build_volume_are_refused_by_name(amprep, tmp_path, position):
     outcome = amprep("support", plate_3mf(tmp_path / "plate.3mf", position), "--dry-run")
     assert outcome.code == 2
-    assert "plate lies from" in outcome.err
+    assert "plate reaches from" in outcome.err
 
 
 def test_a_part_outside_a_round_build_volume_is_refused_though_it_is_in_the_box_around_it(amprep, tmp_path):
@@ -97,7 +97,7 @@ def test_a_part_outside_a_round_build_volume_is_refused_though_it_is_in_the_box_
     file = plate_3mf(tmp_path / "plate.3mf", (1, 1, 0))
     outcome = amprep("support", file, "--printer", profile, "-o", tmp_path / "out")
     assert outcome.code == 2
-    assert "lies from (1, 1, 0)" in outcome.err
+    assert "reaches from (1, 1, 0)" in outcome.err
     assert "outside the build volume" in outcome.err
 
 
@@ -107,7 +107,7 @@ def test_a_quantity_is_left_out_with_a_note(amprep, tmp_path):
     assert outcome.code == 0
     assert len(outcome.json["builds"][0]["parts"]) == 1
     assert outcome.json["notes"] == [
-        "plate: supported 1 times, as often as it lies on the plate; its quantity of 3 is for packing"
+        "plate: supported 1 times, once per build item; quantity = 3 only applies to packing"
     ]
 
 
@@ -250,7 +250,8 @@ def test_supports_are_planned_whatever_the_job_says_and_a_limit_of_time_is_liste
     assert outcome.code == 0
     assert outcome.json["builds"][0]["supports"]["red"] > 0
     assert any(
-        words.startswith("supports.enabled = false holds for 'amprep run'") for words in outcome.json["notes"]
+        words.startswith("'amprep support' ignores supports.enabled = false")
+        for words in outcome.json["notes"]
     )
     late = amprep(*command, "--time-limit", "0.000001")
     assert late.code == 1

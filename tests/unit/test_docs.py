@@ -99,7 +99,7 @@ def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
 def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell
-    from amprep.pipeline.choose_cell import cell_named
+    from amprep.pipeline.resolve import cell_named
 
     text = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
     (source,) = [
@@ -115,7 +115,7 @@ def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):
 def test_the_cell_in_the_page_about_cells_passes_its_check(tmp_path):
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell
-    from amprep.pipeline.choose_cell import cell_named
+    from amprep.pipeline.resolve import cell_named
 
     text = (ROOT / "docs" / "cells.md").read_text(encoding="utf-8")
     (source,) = [

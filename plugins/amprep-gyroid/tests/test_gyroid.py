@@ -9,7 +9,7 @@ from amprep.checks.cells.ports import port_areas
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.pipeline.check_cell import check_cell
-from amprep.pipeline.choose_cell import cell_named
+from amprep.pipeline.resolve import cell_named
 from amprep.testing.conformance import try_plugin
 
 

@@ -11,7 +11,7 @@ from amprep.cells.emission import emit_declared
 from amprep.host import Host
 from amprep.model import CellRequest, Grid, SupportEdges
 from amprep.pipeline.check_cell import check_cell
-from amprep.pipeline.choose_cell import cell_named
+from amprep.pipeline.resolve import cell_named
 from amprep.testing.conformance import try_offer
 
 FOLDER = Path(amprep_honeycomb.__file__).parent

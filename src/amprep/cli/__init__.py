@@ -1,4 +1,4 @@
-"""The command line: parse, print, exit codes; nothing is computed here."""
+"""Command line: parse arguments, print results and set the exit code; nothing is computed here."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ from typing import NoReturn
 from amprep.errors import AmprepError, Interrupted
 
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
-"""Exit codes: done; done with something unplaced, unsupported or failing; wrong input or usage; interrupted."""
+"""Exit codes: done; done, but something is unplaced, unsupported or broken; wrong input or usage; interrupted."""
 
 
 def _say(line: str) -> None:
@@ -16,9 +16,9 @@ def _say(line: str) -> None:
 
 
 def main() -> NoReturn:
-    """Run the command line; a mistake of the user's becomes one line and exit code 2, never a traceback."""
+    """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
     debug = "--debug" in sys.argv
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends a run as cleanly as Ctrl-C does
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends a run in the same way as Ctrl-C
     try:
         from amprep.cli.app import app
 
@@ -28,7 +28,7 @@ def main() -> NoReturn:
         _say("interrupted; nothing was written")
         sys.stdout.flush()
         sys.stderr.flush()
-        os._exit(INTERRUPTED)  # compiled libraries cut off in mid-work may crash while Python tears them down
+        os._exit(INTERRUPTED)  # Python may crash when it unloads compiled libraries that were interrupted
     except AmprepError as error:
         if debug:
             raise
@@ -37,7 +37,7 @@ def main() -> NoReturn:
     except MemoryError:
         if debug:
             raise
-        _say("out of memory; use a coarser pitch (--set supports.pitch_mm=2) or fewer parts a run")
+        _say("out of memory; use a coarser pitch (--set supports.pitch_mm=2) or fewer parts per run")
         sys.exit(WRONG)
     except Exception as error:
         if debug:

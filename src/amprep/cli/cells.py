@@ -11,7 +11,7 @@ from amprep import cli
 
 if TYPE_CHECKING:
     from amprep.pipeline.check_cell import CellReport
-    from amprep.pipeline.choose_cell import ChosenCell
+    from amprep.pipeline.resolve import ChosenCell
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Modules = Annotated[
@@ -26,7 +26,7 @@ app = typer.Typer(no_args_is_help=True, help="List the available lattice cells, 
 def list_all(as_json: AsJson = False, modules: Modules = None) -> None:
     """List every lattice cell with its kind, its parameters and the plugin that provides it."""
     from amprep.host import Host
-    from amprep.pipeline.choose_cell import cell_named
+    from amprep.pipeline.resolve import cell_named
 
     host = Host.load(modules=modules or [])
     rows = [_row(cell_named(host, name)) for name in host.offers("cell")]
@@ -72,7 +72,7 @@ def check(
     """
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell
-    from amprep.pipeline.choose_cell import cell_named
+    from amprep.pipeline.resolve import cell_named
 
     chosen = cell_named(Host.load(modules=modules or []), cell, sets or [])
     report = check_cell(

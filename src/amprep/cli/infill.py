@@ -1,28 +1,46 @@
 """``amprep lattice``: fill marked regions of parts with lattice cells."""
 
-import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from amprep import cli
-from amprep.cli import options as running
+from amprep.cli.job import folder_of, make_job, show, watched
+from amprep.cli.options import JobOptions, with_options
 
 if TYPE_CHECKING:
+    from amprep.host import Host
+    from amprep.pipeline.stages import Watcher
     from amprep.report.infill import LatticeRecord
 
 
+@dataclass(frozen=True, kw_only=True)
+class FillOptions(JobOptions):
+    """The shared options; the output may also be a file."""
+
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Output folder or file (.3mf); default: the folder of the first input.",
+            rich_help_panel="Output",
+        ),
+    ] = None
+
+
+@with_options(FillOptions)
 def lattice(
     inputs: Annotated[
         list[str],
         typer.Argument(
             metavar="FILE...",
-            help="3MF files whose parts carry modifiers, mesh files with --region or --shell, a job file (.toml).",
+            help="3MF files whose parts have modifiers, mesh files with --region or --shell, or a job file (.toml).",
             show_default=False,
         ),
     ],
-    cell: running.Cell = None,
     region: Annotated[
         list[Path] | None,
         typer.Option(
@@ -37,7 +55,7 @@ def lattice(
     ] = None,
     shell: Annotated[
         float | None,
-        typer.Option("--shell", metavar="MM", help="Fill all that lies deeper than this below the surface."),
+        typer.Option("--shell", metavar="MM", help="Fill everything deeper than this below the surface."),
     ] = None,
     size: Annotated[
         float | None,
@@ -46,67 +64,48 @@ def lattice(
     height: Annotated[
         float | None, typer.Option("--height", metavar="MM", help="Height of a cell; default: its size.")
     ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            help="Output folder, or the file to write (.3mf); default: beside the first input.",
-        ),
-    ] = None,
-    target: running.Target = None,
-    form: running.Lattice = None,
-    sets: running.Sets = None,
-    stl: running.Stl = False,
-    dry_run: running.DryRun = False,
-    as_json: running.AsJson = False,
-    quiet: running.Quiet = False,
-    modules: running.Modules = None,
-    no_plugins: running.NoPlugins = False,
-    debug: running.Debug = False,  # noqa: ARG001 - `main` reads it
+    *,
+    options: FillOptions,
 ) -> None:
-    """Fill marked regions of parts with lattice cells, one with the solid around them.
+    """Fill marked regions of parts with lattice cells and unite each with the solid around it.
 
-    A region is a modifier of the part in a 3MF (PrusaSlicer, OrcaSlicer, Bambu Studio, Cura), a mesh given by
+    A region is a modifier of the part in a 3MF file (PrusaSlicer, OrcaSlicer, Bambu Studio, Cura), a mesh given by
     --region, or with --shell everything but a wall of that thickness. Writes NAME.lattice.3mf, which 'amprep run'
     and slicers read, NAME.lattice.report.json and a picture of the parts cut open. Exit code 0: done; 1: done, but a
     promise is broken; 2: wrong input or usage, nothing written; 130: interrupted, nothing written.
     """
     from rich.console import Console
 
-    from amprep.cli.progress import Bars
-    from amprep.host import Host
-    from amprep.job import apply_sets, override
+    job = make_job(inputs, options, {})
 
-    job = apply_sets(override(running.job_of(inputs), cell=cell, target=target, lattice=form), sets or [])
-    with Bars(Console(stderr=True, quiet=quiet)) as bars:
-        with bars.stage("start"):
-            from amprep.model import Stop
-            from amprep.pipeline.fill_parts import LatticeOptions, fill_lattice
+    def work(host: "Host", watcher: "Watcher") -> "LatticeRecord":
+        from amprep.model import Stop
+        from amprep.pipeline.fill_parts import LatticeOptions, fill_lattice
 
-            host = Host.load(modules=modules or [], plugins_enabled=not no_plugins)
-        folder, stem = _place(output, inputs[0], job.name)
-        options = LatticeOptions(
-            folder, stem, tuple(region or ()), tuple(region_name or ()), shell, size, height, stl, dry_run
+        folder, stem = _folder_and_stem(inputs, options, job.name)
+        asked = LatticeOptions(
+            folder,
+            stem,
+            tuple(region or ()),
+            tuple(region_name or ()),
+            shell,
+            size,
+            height,
+            options.stl,
+            options.dry_run,
         )
-        record = fill_lattice(job, host, options, watcher=bars, stop=Stop())
-    _show(record, as_json=as_json, quiet=quiet)
-    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
+        return fill_lattice(job, host, asked, watcher=watcher, stop=Stop())
 
-
-def _place(output: Path | None, first: str, name: str) -> tuple[Path, str]:
-    """Return the output folder and the stem of the files' names."""
-    if output is not None and output.suffix.lower() == ".3mf":
-        return output.resolve().parent, output.stem
-    return output or running.beside(first), f"{name}.lattice"
-
-
-def _show(record: "LatticeRecord", *, as_json: bool, quiet: bool) -> None:
-    from rich.console import Console
+    record = watched(work, Console(stderr=True, quiet=options.quiet), options)
 
     from amprep.report.infill import summary, to_json
 
-    if as_json:
-        typer.echo(json.dumps(to_json(record), indent=2))
-    elif not quiet:
-        Console().print(summary(record))
+    show(lambda: to_json(record), lambda: summary(record), options)
+    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
+
+
+def _folder_and_stem(inputs: list[str], options: FillOptions, name: str) -> tuple[Path, str]:
+    """Return the output folder and the stem of the file names."""
+    if options.output is not None and options.output.suffix.lower() == ".3mf":
+        return options.output.resolve().parent, options.output.stem
+    return folder_of(inputs, options), f"{name}.lattice"

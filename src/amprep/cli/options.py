@@ -1,175 +1,184 @@
-"""What ``amprep run`` and ``amprep support`` share: options, and the course from inputs to exit code."""
+"""Options that several commands share, each declared once, and a decorator that adds them to a command."""
 
+import inspect
 from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from amprep import cli
-from amprep.errors import JobError
+_JOB, _OUTPUT, _PLUGINS = "Settings of the job", "Output", "Plugins"
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from amprep.host import Host
-    from amprep.job import Job
-    from amprep.pipeline.stages import Watcher
-    from amprep.report.record import RunRecord
-
-    Work = Callable[[Job, Path, Host, Watcher], RunRecord]
-
-Output = Annotated[
-    Path | None, typer.Option("-o", "--output", help="Output folder; default: beside the first input.")
-]
-PrinterName = Annotated[
-    str | None, typer.Option("--printer", help="Printer profile by name or file; see 'amprep printers list'.")
-]
-Router = Annotated[str | None, typer.Option("--router", help="Support router by name.")]
-Cell = Annotated[str | None, typer.Option("--cell", help="Lattice cell by name.")]
-Target = Annotated[
-    str | None,
-    typer.Option("--for", metavar="TARGET", help="Who opens the build jobs: generic, prusaslicer or cura."),
-]
-SupportsAs = Annotated[
-    str | None,
-    typer.Option(
-        "--supports-as",
-        metavar="TYPE",
-        help="What a generic file says supports are: support (default) or model.",
-    ),
-]
-Lattice = Annotated[
-    str | None,
-    typer.Option(
-        "--lattice",
-        metavar="FORM",
-        help="Struts of cells as beams (generic files only) or mesh; default: as the cell's parameters say.",
-    ),
-]
-Connector = Annotated[
-    str | None,
-    typer.Option(
-        "--connector", metavar="KIND", help="How supports end at the part: full, teeth, point or extend."
-    ),
-]
-Base = Annotated[
-    str | None,
-    typer.Option(
-        "--base", metavar="KIND", help="What supports stand on at the plate: direct, flange or raft."
-    ),
-]
-Sets = Annotated[
+Plugins = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),
-]
-Seed = Annotated[int | None, typer.Option("--seed", help="Seed of everything random; default 0.")]
-TimeLimit = Annotated[
-    float | None,
     typer.Option(
-        "--time-limit",
-        min=0.0,
-        metavar="SECONDS",
-        help="Packing and routing end by then with their best so far.",
+        "-p",
+        "--plugin",
+        metavar="MODULE",
+        help="Load a plugin module too; no:NAME blocks a plugin.",
+        rich_help_panel=_PLUGINS,
     ),
 ]
-Stl = Annotated[bool, typer.Option("--stl", help="Write parts and supports as STL too.")]
-AllowSurface = Annotated[
-    bool, typer.Option("--allow-surface", help="Pack and support meshes that are no solids as they are.")
+NoPlugins = Annotated[
+    bool, typer.Option("--no-plugins", help="Use the built-in plugins only.", rich_help_panel=_PLUGINS)
 ]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Plan and judge everything, write nothing.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print the report as JSON on standard output.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table; errors only.")]
-Modules = Annotated[
-    list[str] | None,
-    typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
-]
-NoPlugins = Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")]
-Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 
 
-def job_of(inputs: list[str]) -> "Job":
-    """Return the job that the inputs name; a job file stands alone: what it prints and how is written in it."""
-    from amprep.job import job_from_inputs, load_job
-
-    job_files = [name for name in inputs if name.lower().endswith(".toml")]
-    if not job_files:
-        return job_from_inputs(inputs)
-    if len(inputs) > 1:
-        raise JobError(
-            f"a job file comes alone, got {len(inputs)} inputs; list them as inputs = [...] in {job_files[0]}"
-        )
-    return load_job(Path(job_files[0]))
+def _job_option(*names: str, help: str, **more: Any) -> Any:  # noqa: A002 - as typer calls it
+    return typer.Option(*names, help=help, rich_help_panel=_JOB, **more)
 
 
-def carry_out(
-    work: "Work",
-    inputs: list[str],
-    *,
-    output: Path | None,
-    sets: list[str],
-    as_json: bool,
-    quiet: bool,
-    modules: list[str],
-    no_plugins: bool,
-    **overrides: Any,
-) -> NoReturn:
-    """Settle the job, do the work on it with progress bars, print what came out and exit.
+def _output_option(*names: str, help: str, **more: Any) -> Any:  # noqa: A002 - as typer calls it
+    return typer.Option(*names, help=help, rich_help_panel=_OUTPUT, **more)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JobOptions:
+    """Options of every command that takes a job: `run`, `support` and `lattice`."""
+
+    cell: Annotated[
+        str | None, _job_option("--cell", help="Lattice cell by name, or a file that declares one.")
+    ] = None
+    lattice: Annotated[
+        str | None,
+        _job_option(
+            "--lattice",
+            metavar="FORM",
+            help="Write struts of cells as beams (generic files only) or mesh; default: as the cell says.",
+        ),
+    ] = None
+    target: Annotated[
+        str | None,
+        _job_option(
+            "--for",
+            metavar="TARGET",
+            help="Program that will open the build jobs: generic, prusaslicer or cura.",
+        ),
+    ] = None
+    sets: Annotated[
+        list[str] | None,
+        _job_option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),
+    ] = None
+    output: Annotated[
+        Path | None,
+        _output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
+    ] = None
+    stl: Annotated[bool, _output_option("--stl", help="Write parts and supports as STL files as well.")] = (
+        False
+    )
+    dry_run: Annotated[
+        bool, _output_option("--dry-run", help="Plan and verify everything, but write nothing.")
+    ] = False
+    as_json: Annotated[
+        bool, _output_option("--json", help="Print the report as JSON on standard output.")
+    ] = False
+    quiet: Annotated[
+        bool, _output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
+    ] = False
+    plugins: Plugins = None
+    no_plugins: NoPlugins = False
+    debug: Annotated[bool, _output_option("--debug", help="Show the traceback of an error.")] = False
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The settings of the job that options change, by dotted keys; None where an option is not given."""
+        return {"cells.strategy": self.cell, "cells.lattice": self.lattice, "target": self.target}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BuildOptions(JobOptions):
+    """Options of the commands that make build jobs: `run` and `support`."""
+
+    printer: Annotated[
+        str | None,
+        _job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
+    ] = None
+    router: Annotated[str | None, _job_option("--router", help="Support router by name.")] = None
+    connector: Annotated[
+        str | None,
+        _job_option(
+            "--connector", metavar="KIND", help="End of supports at the part: full, teeth, point or extend."
+        ),
+    ] = None
+    base: Annotated[
+        str | None,
+        _job_option("--base", metavar="KIND", help="Base of supports on the plate: direct, flange or raft."),
+    ] = None
+    supports_as: Annotated[
+        str | None,
+        _job_option(
+            "--supports-as",
+            metavar="TYPE",
+            help="Type of supports in a generic file: support (default) or model.",
+        ),
+    ] = None
+    seed: Annotated[int | None, _job_option("--seed", help="Seed of the random numbers; default 0.")] = None
+    time_limit: Annotated[
+        float | None,
+        _job_option(
+            "--time-limit",
+            min=0.0,
+            metavar="SECONDS",
+            help="Stop packing and routing after this time and use the best result found.",
+        ),
+    ] = None
+    allow_surface: Annotated[
+        bool, _job_option("--allow-surface", help="Accept meshes that are not solids as surfaces.")
+    ] = False
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The settings of the job that options change, by dotted keys; None where an option is not given."""
+        return {
+            "printer": self.printer,
+            "supports.strategy": self.router,
+            **super().changes,
+            "seed": self.seed,
+            "supports.write_as": self.supports_as,
+            "cells.connector": self.connector,
+            "cells.base": self.base,
+        }
+
+
+def with_options(options: type[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return a decorator that adds the fields of a dataclass to a command as options.
+
+    The command has a keyword-only parameter ``options`` and gets an instance of the dataclass. typer reads the
+    signature of a command, therefore the decorator replaces it by the parameters of the command followed by one
+    parameter for each field.
 
     Parameters
     ----------
-    work
-        Takes the job, the output folder, the host and the watcher.
-    overrides
-        As `amprep.job.override` takes them; None leaves what the job says.
+    options
+        Dataclass whose fields all have defaults and annotations as typer takes them.
     """
-    from rich.console import Console
+    hints = get_type_hints(options, include_extras=True)
+    shared = [
+        inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=field.default,
+            annotation=hints[field.name],
+        )
+        for field in fields(options)
+    ]
 
-    from amprep.job import apply_sets, override
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        own = inspect.signature(command, eval_str=True).parameters.values()
+        parameters = [each for each in own if each.name != "options"] + shared
 
-    job = apply_sets(override(job_of(inputs), **overrides), sets)
-    console, folder = Console(stderr=True, quiet=quiet), output or beside(inputs[0])
-    record = _watched(work, job, folder, console, modules=modules, no_plugins=no_plugins)
-    print_record(record, as_json=as_json, quiet=quiet)
-    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
+        @wraps(command)
+        def wrapper(**given: Any) -> None:
+            chosen = options(**{field.name: given.pop(field.name) for field in fields(options)})
+            command(options=chosen, **given)
 
+        by_name = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in parameters]
+        wrapper.__signature__ = inspect.Signature(by_name)  # type: ignore[attr-defined]
+        wrapper.__annotations__ = {each.name: each.annotation for each in parameters}
+        return wrapper
 
-def _watched(
-    work: "Work", job: "Job", folder: Path, console: "Console", *, modules: list[str], no_plugins: bool
-) -> "RunRecord":
-    """Do the work with progress bars; nothing heavy is imported before they show."""
-    from amprep.cli.progress import Bars
-    from amprep.host import Host
-
-    if job.printer_is_default:
-        console.print(f"[dim]no printer given, using {job.printer.name}; see 'amprep printers list'")
-    with Bars(console) as bars:
-        with bars.stage("start"):
-            import amprep.pipeline.run  # noqa: F401 - loading it is part of the start
-
-            host = Host.load(modules=modules, plugins_enabled=not no_plugins)
-        for warning in host.warnings:
-            console.print(f"warning: {warning}", markup=False)
-        return work(job, folder, host, bars)
-
-
-def beside(first: str) -> Path:
-    """Folder of the first input; a folder's own outputs lie beside it, so that a second run does not read them."""
-    from amprep.job.loading import parse_input
-
-    return parse_input(first, "inputs").path.resolve().parent
-
-
-def print_record(record: "RunRecord", *, as_json: bool, quiet: bool) -> None:
-    """Print the report as JSON, or the closing table unless `quiet`."""
-    import json
-
-    from rich.console import Console
-
-    from amprep.report.json_report import to_json
-    from amprep.report.terminal import summary
-
-    if as_json:
-        typer.echo(json.dumps(to_json(record), indent=2))
-    elif not quiet:
-        Console().print(summary(record))
+    return decorate

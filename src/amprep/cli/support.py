@@ -1,11 +1,12 @@
-"""``amprep support``: supports for a plate as it lies."""
+"""``amprep support``: plan supports for parts at the positions in their files."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep.cli import options as running
+from amprep.cli.job import build_and_report
+from amprep.cli.options import BuildOptions, with_options
 
 if TYPE_CHECKING:
     from amprep.host import Host
@@ -14,77 +15,50 @@ if TYPE_CHECKING:
     from amprep.report.record import RunRecord
 
 
+@with_options(BuildOptions)
 def support(
     inputs: Annotated[
         list[str],
         typer.Argument(
             metavar="FILE...",
-            help="A 3MF plate, a job file (.toml), mesh files in their own coordinates.",
+            help="A job file (.toml), or 3MF files and mesh files.",
             show_default=False,
         ),
     ],
-    output: running.Output = None,
-    printer: running.PrinterName = None,
     center: Annotated[
-        bool, typer.Option("--center", help="First move everything to the middle of the plate, onto it.")
+        bool, typer.Option("--center", help="First move all parts together to the middle of the plate.")
     ] = False,
     grounding: Annotated[
         str | None,
         typer.Option(
             metavar="WHERE",
-            help="plate, or anywhere: supports without a way to the plate may stand on parts.",
+            help="Where supports may stand: plate, or anywhere (on parts, if the plate cannot be reached).",
+            rich_help_panel="Settings of the job",
         ),
     ] = None,
-    router: running.Router = None,
-    cell: running.Cell = None,
-    target: running.Target = None,
-    supports_as: running.SupportsAs = None,
-    lattice: running.Lattice = None,
-    connector: running.Connector = None,
-    base: running.Base = None,
-    sets: running.Sets = None,
-    seed: running.Seed = None,
-    time_limit: running.TimeLimit = None,
-    stl: running.Stl = False,
-    allow_surface: running.AllowSurface = False,
-    dry_run: running.DryRun = False,
-    as_json: running.AsJson = False,
-    quiet: running.Quiet = False,
-    modules: running.Modules = None,
-    no_plugins: running.NoPlugins = False,
-    debug: running.Debug = False,  # noqa: ARG001 - `main` reads it
+    *,
+    options: BuildOptions,
 ) -> None:
-    """Plan supports for a plate as it lies; nothing is packed.
+    """Plan supports for parts at the positions in their files; nothing is packed.
 
-    Parts stay where the build items of a 3MF put them, meshes of other formats where their own coordinates do; each
-    must lie in the build volume, plate at z = 0. Writes NAME.supported.3mf, NAME.supported.report.html and .json, and
-    a picture. Exit codes as of 'amprep run'.
+    Parts of a 3MF file stay at the positions of its build items, other meshes at their own coordinates. Every part
+    must be in the build volume; the plate is at z = 0. Writes NAME.supported.3mf, NAME.supported.report.html and
+    .json, and a picture. The exit codes are those of 'amprep run'.
     """
 
     def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":
-        from amprep.model import Stop
-        from amprep.pipeline.run import RunOptions
-        from amprep.pipeline.support_plate import support as support_job
+        from amprep import api
 
-        options = RunOptions(folder, dry_run, stl, allow_surface, time_limit)
-        return support_job(job, host, options, center=center, watcher=watcher, stop=Stop())
+        return api.support(
+            job,
+            center=center,
+            output=folder,
+            dry_run=options.dry_run,
+            stl=options.stl,
+            allow_surface=options.allow_surface,
+            time_limit_s=options.time_limit,
+            plugins=host,
+            watcher=watcher,
+        )
 
-    running.carry_out(
-        work,
-        inputs,
-        output=output,
-        sets=[*(sets or []), *([f"supports.grounding={grounding}"] if grounding else [])],
-        as_json=as_json,
-        quiet=quiet,
-        modules=modules or [],
-        no_plugins=no_plugins,
-        printer=printer,
-        router=router,
-        cell=cell,
-        target=target,
-        seed=seed,
-        supports_as=supports_as,
-        lattice=lattice,
-        connector=connector,
-        base=base,
-    )
+    build_and_report(work, inputs, options, {"supports.grounding": grounding})

@@ -1,7 +1,8 @@
-"""The plugin host: loads plugins, lists their offers, chooses by name, guards every call."""
+"""Load plugins, list their offers, choose an offer by name, and guard every call."""
 
+from amprep.host.chosen import Chosen, choose
 from amprep.host.manager import Host
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
 
-__all__ = ["KINDS", "Host", "Kind", "Listed", "fits"]
+__all__ = ["KINDS", "Chosen", "Host", "Kind", "Listed", "choose", "fits"]

@@ -239,6 +239,30 @@ class Host:
             f"{path}: no reader for {suffix or 'files without a suffix'!r}; known suffixes: {known}"
         )
 
+    def read(
+        self, path: Path, readers: Mapping[str, str], params: Mapping[str, Mapping[str, Any]]
+    ) -> list[Part]:
+        """Read one file with the reader of its suffix.
+
+        Parameters
+        ----------
+        path
+            File to read.
+        readers
+            Suffix to name of the reader; other suffixes have their default reader.
+        params
+            Name of a reader to its parameters.
+
+        Raises
+        ------
+        InputError
+            When no reader knows the suffix, or the file cannot be read.
+        PluginError, JobError
+            When the reader does not exist or fails, or its parameters are wrong.
+        """
+        reader = self.reader_for(path, readers)
+        return self.call(reader, path, params=self.params(reader, params.get(reader.offer.name, {})))
+
     @property
     def suffixes(self) -> tuple[str, ...]:
         """The suffixes that some reader knows, sorted."""

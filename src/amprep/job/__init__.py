@@ -1,6 +1,6 @@
-"""The job: what to print, where, and by which rules; typed and checked once."""
+"""The job: parts to print, printer and rules, typed and checked once."""
 
-from amprep.job.loading import job_from_inputs, load_job, make_job
+from amprep.job.loading import job_from_inputs, job_of, load_job, make_job
 from amprep.job.overrides import apply_sets, override
 from amprep.job.parts import apply_part_settings, names_part
 from amprep.job.settings.cells import CellSettings
@@ -23,6 +23,7 @@ __all__ = [
     "apply_sets",
     "find_printer",
     "job_from_inputs",
+    "job_of",
     "list_printers",
     "load_job",
     "make_job",

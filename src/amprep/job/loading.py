@@ -1,4 +1,4 @@
-"""Makes a job from a job file, or from inputs alone; every key is known, typed and within its bounds."""
+"""Make a job from a job file or from inputs alone, and check that every key is known, typed and within its bounds."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
@@ -20,19 +20,40 @@ T = TypeVar("T")
 KEYS = ("printer", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
 
 
-def load_job(path: Path) -> Job:
-    """Return the job of a job file; its relative paths start at the file's folder.
+def job_of(inputs: Sequence[str | Path]) -> Job:
+    """Return the job of one job file (.toml), or a job of default settings that prints the inputs.
 
     Raises
     ------
     JobError
-        Naming the file and the key: an unknown key, a wrong type, a broken bound, nothing to print.
+        When a job file is not the only input, and as `load_job` and `job_from_inputs` do.
     """
-    return make_job(read_table(path, "job"), name=path.stem, folder=path.resolve().parent, source=str(path))
+    job_files = [str(each) for each in inputs if str(each).lower().endswith(".toml")]
+    if not job_files:
+        return job_from_inputs(inputs)
+    if len(inputs) > 1:
+        raise JobError(
+            f"a job file must be the only input, got {len(inputs)}; list the others under inputs = [...] in "
+            f"{job_files[0]}"
+        )
+    return load_job(Path(job_files[0]))
+
+
+def load_job(path: Path) -> Job:
+    """Return the job of a job file; relative paths start at the folder of the file.
+
+    Raises
+    ------
+    JobError
+        When a key is unknown or a value has a wrong type or is out of bounds (the message names the file and the
+        key), or when there is nothing to print.
+    """
+    table = read_table(path, "job")
+    return _with_inputs(make_job(table, name=path.stem, folder=path.resolve().parent, source=str(path)))
 
 
 def job_from_inputs(inputs: Sequence[str | Path]) -> Job:
-    """Return a job of default settings that prints `inputs`: files and folders, also as ``NAME:quantity``.
+    """Return a job of default settings that prints the inputs: files and folders, also as ``NAME:quantity``.
 
     Raises
     ------
@@ -41,16 +62,29 @@ def job_from_inputs(inputs: Sequence[str | Path]) -> Job:
     """
     table = {"inputs": [str(each) for each in inputs]}
     first = parse_input(str(inputs[0]), "inputs").path if inputs else Path("job")
-    return make_job(table, name=first.resolve().stem or "job", folder=None, source="command line")
+    return _with_inputs(
+        make_job(table, name=first.resolve().stem or "job", folder=None, source="command line")
+    )
 
 
 def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source: str) -> Job:
-    """Return the job that a table of plain values describes; `source` names it in messages.
+    """Return the job that a table of plain values describes.
+
+    Parameters
+    ----------
+    table
+        Keys and values as in a job file.
+    name
+        Name of the job; the output files are named after it.
+    folder
+        Folder where relative paths start; None for the current folder.
+    source
+        Name of the job in messages.
 
     Raises
     ------
     JobError
-        Naming `source` and the key that is wrong.
+        When a key or a value is wrong; the message names `source` and the key.
     """
     for key in table:
         if key not in KEYS:
@@ -78,7 +112,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
 
 
 def parse_input(text: str, where: str) -> InputSpec:
-    """Read ``path`` or ``path:quantity``; a file whose very name ends in ``:number`` stays a file.
+    """Read ``path`` or ``path:quantity``; an existing file whose name ends in ``:number`` is a path.
 
     Raises
     ------
@@ -102,7 +136,7 @@ def _section(cls: type[T], table: Mapping[str, Any], key: str, source: str, **de
 
 
 def _cells(table: Mapping[str, Any], folder: Path | None, source: str) -> CellSettings:
-    """Return the cell settings; the path of a cell's file is made absolute."""
+    """Return the cell settings, with the path of the file that declares the cell made absolute."""
     settings = _section(CellSettings, table, "cells", source)
     if settings.file is None:
         return settings
@@ -118,7 +152,7 @@ def _is_table(value: Any, where: str) -> Mapping[str, Any]:
 
 
 def _support_defaults(table: Mapping[str, Any], printer: Printer) -> dict[str, Any]:
-    """Return the defaults that depend on other keys: the printer's technology, the overhang angle."""
+    """Return the defaults that depend on the technology of the printer and on the overhang angle."""
     section = table.get("supports", {})
     angle = section.get("overhang_angle_deg", 45.0) if isinstance(section, Mapping) else 45.0
     number = float(angle) if isinstance(angle, int | float) else 45.0
@@ -145,7 +179,7 @@ def _seed(table: Mapping[str, Any], source: str) -> int:
 def _inputs(
     table: Mapping[str, Any], parts: Sequence[PartSettings], folder: Path | None, source: str
 ) -> tuple[InputSpec, ...]:
-    """Return the inputs, followed by the files of ``[[part]]`` entries that no input covers."""
+    """Return the inputs, followed by the files of those ``[[part]]`` entries that are in no input."""
     base = folder or Path()
     where = f"{source}: inputs"
     given = [
@@ -156,9 +190,15 @@ def _inputs(
         path = base / part.file if part.file else None
         if path is not None and not any(_covers(entry.path, path) for entry in given):
             given.append(InputSpec(path))
-    if not given:
-        raise JobError(f"{source}: nothing to print; expected inputs = [...] or [[part]] entries with a file")
     return tuple(given)
+
+
+def _with_inputs(job: Job) -> Job:
+    if not job.inputs:
+        raise JobError(
+            f"{job.source}: nothing to print; expected inputs = [...] or [[part]] entries with a file"
+        )
+    return job
 
 
 def _within(base: Path, entry: InputSpec) -> InputSpec:
@@ -171,7 +211,7 @@ def _covers(entry: Path, path: Path) -> bool:
 
 
 def _hint(key: str) -> str:
-    """Return the nearest known key; one of a section is named with its section."""
+    """Suggest the known key with the most similar name; a key of a section is named with its section."""
     sections = {"packing": PackingSettings, "supports": SupportSettings, "cells": CellSettings}
     for section, cls in sections.items():
         if key in {each.name for each in fields(cls)}:

@@ -1,4 +1,4 @@
-"""Changes a job from the command line: `--set key=value`, and the options for strategies and printer."""
+"""Change settings of a job: by dotted keys from Python, or by ``--set KEY=VALUE`` from the command line."""
 
 import re
 import tomllib
@@ -11,18 +11,24 @@ from amprep.job.loading import make_job
 from amprep.job.settings.job import Job
 
 _BARE_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
-_STRATEGIES = {"packer": "packing", "router": "supports", "cell": "cells"}
+_PARAMS_OF = {
+    "packing.strategy": "packing.params",
+    "packing.volumes": "packing.volume_params",
+    "supports.strategy": "supports.params",
+    "cells.strategy": "cells.params",
+}
+_NAME_OR_FILE = ("printer", "cells.strategy")
 
 
 def apply_sets(job: Job, sets: Sequence[str]) -> Job:
-    """Return the job with each ``key=value`` set; keys are dotted, values are written as in TOML.
+    """Return the job with each ``KEY=VALUE`` set; keys are dotted, values are written as in TOML.
 
-    A bare word stands for a text: ``cells.strategy=prism``.
+    A bare word is a text: ``cells.strategy=prism``.
 
     Raises
     ------
     JobError
-        For text without ``=``, a value that is not TOML, and whatever a job file would be refused for.
+        For text without ``=``, a value that is not TOML, and every setting that a job file may not have.
     """
     table: Mapping[str, Any] = job.table
     for text in sets:
@@ -30,61 +36,59 @@ def apply_sets(job: Job, sets: Sequence[str]) -> Job:
     return _remade(job, table, "--set" if sets else "")
 
 
-def override(
-    job: Job,
-    *,
-    printer: str | None = None,
-    packer: str | None = None,
-    router: str | None = None,
-    cell: str | None = None,
-    target: str | None = None,
-    seed: int | None = None,
-    supports_as: str | None = None,
-    lattice: str | None = None,
-    connector: str | None = None,
-    base: str | None = None,
-) -> Job:
-    """Return the job with the options given; None keeps what the job says.
+def override(job: Job, changes: Mapping[str, Any]) -> Job:
+    """Return the job with other settings.
 
-    Another strategy than the job's own drops the job's parameters, which belong to the old one. Paths are
-    relative to the current folder.
+    A new strategy drops the parameters of the old one. Paths are relative to the current folder.
+
+    Parameters
+    ----------
+    job
+        Job to start from; it is not modified.
+    changes
+        Settings by the dotted keys of a job file, for example ``{"supports.pitch_mm": 0.8}``. A value of None
+        leaves the setting as it is.
 
     Raises
     ------
     JobError
-        For an unknown printer or target, or a seed out of bounds.
+        For an unknown key or a value that a job file may not have.
     """
-    changes: dict[str, Any] = {"printer": _absolute(printer), "target": target, "seed": seed}
-    table = {**job.table, **{key: value for key, value in changes.items() if value is not None}}
-    for option, name in (("packer", packer), ("router", router), ("cell", _absolute(cell))):
-        if name is not None:
-            section = _STRATEGIES[option]
-            table[section] = _with_strategy(job, table.get(section, {}), section, name)
-    words = (
-        *(("supports", "write_as", supports_as), ("cells", "lattice", lattice)),
-        *(("cells", "connector", connector), ("cells", "base", base)),
-    )
-    for section, key, word in words:
-        if word is not None:
-            table[section] = {**table.get(section, {}), key: word}
+    given = {key: value for key, value in changes.items() if value is not None}
+    if not given:
+        return job
+    table: Mapping[str, Any] = job.table
+    for key, value in given.items():
+        new = _absolute(value) if key in _NAME_OR_FILE else value
+        if key in _PARAMS_OF and new != _setting(job, key):
+            table = _with(table, _PARAMS_OF[key], {})
+        table = _with(table, key, new)
     return _remade(job, table, "")
 
 
-def _with_strategy(job: Job, section: Mapping[str, Any], key: str, name: str) -> dict[str, Any]:
-    unchanged = getattr(job, key).strategy == name
-    kept = {k: value for k, value in section.items() if unchanged or k != "params"}
-    return {**kept, "strategy": name}
+def _setting(job: Job, key: str) -> Any:
+    section, _, name = key.partition(".")
+    return getattr(getattr(job, section), name)
 
 
-def _absolute(name: str | None) -> str | None:
-    """Return the path of a file absolute: on the command line it starts at the current folder."""
-    return str(Path(name).resolve()) if name is not None and Path(name).is_file() else name
+def _with(table: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """Return the table with the value at a dotted key."""
+    first, dot, rest = key.partition(".")
+    if not dot:
+        return {**table, key: value}
+    inner = table.get(first, {})
+    return {**table, first: _with(inner if isinstance(inner, Mapping) else {}, rest, value)}
+
+
+def _absolute(name: Any) -> Any:
+    """Return the path of a file absolute, because it is relative to the current folder; a name stays a name."""
+    return str(Path(name).resolve()) if isinstance(name, str | Path) and Path(name).is_file() else name
 
 
 def _parsed(text: str) -> dict[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or "\n" in text:
-        raise JobError(f"--set: expected key=value, e.g. supports.pitch_mm=0.8, got {text!r}")
+        raise JobError(f"--set: expected key=value, for example supports.pitch_mm=0.8, got {text!r}")
     for candidate in (value, f'"{value.strip()}"' if _BARE_WORD.fullmatch(value.strip()) else value):
         try:
             return tomllib.loads(f"{key} = {candidate}")

@@ -19,7 +19,7 @@ from amprep.checks.cells.templates import check_cells
 from amprep.checks.violation import Violation
 from amprep.errors import JobError
 from amprep.model import DIRECTIONS, CellRequest, Cells, DeclaredCell, GraphCell
-from amprep.pipeline.choose_cell import ChosenCell
+from amprep.pipeline.resolve import ChosenCell
 
 STEPS = 24
 """Voxels along each side of a cell on which it is measured."""

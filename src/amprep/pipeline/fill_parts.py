@@ -16,9 +16,9 @@ from amprep.infill.regions import KIND, chosen, positions, with_files, without
 from amprep.job import Job
 from amprep.measures.filled_part import mass, pockets_of
 from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Progress, Region, Stop
-from amprep.pipeline.choose_cell import choose_cell
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.pipeline.resolve import choose_cell
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.report.cutaway import draw_cut
 from amprep.report.infill import FilledRecord, LatticeRecord, write_json

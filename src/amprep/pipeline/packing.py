@@ -1,39 +1,131 @@
-"""From parts to builds of placed parts: bounding volumes, the packing problem, labels."""
+"""Pack parts: compute bounding volumes, call the packer, and place the parts in builds."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
 
 from amprep.arrays import Floats
 from amprep.errors import AmprepError
+from amprep.job import PackingSettings
 from amprep.model import (
     BoundingVolume,
     BuildVolume,
     Item,
-    Objective,
     Packing,
     PackingProblem,
     Part,
     PlacedPart,
     Placement,
     Progress,
+    Stop,
 )
+from amprep.pipeline.reading import LoadedParts
+from amprep.pipeline.resolve import ResolvedJob
+from amprep.pipeline.stages import Clock
+
+
+@dataclass(frozen=True, eq=False)
+class PackedBuild:
+    """The parts of one build, each in its place.
+
+    Attributes
+    ----------
+    resolved
+        The job with the offers that it names.
+    number
+        Number of the build, from 1; it also seeds the random numbers of the support router.
+    build_id
+        Name of the build in its file, for example ``bracket.build-1``.
+    """
+
+    resolved: ResolvedJob
+    number: int
+    build_id: str
+    parts: tuple[PlacedPart, ...]
+
+    def __str__(self) -> str:
+        """Summary in one line."""
+        return f"{self.build_id}: {', '.join(placed.label for placed in self.parts)}"
+
+
+@dataclass(frozen=True, eq=False)
+class PackedParts:
+    """Result of packing: the builds, and the parts that are in none of them.
+
+    Attributes
+    ----------
+    problem, packing
+        What the packer was asked, and its answer.
+    builds
+        Builds of placed parts; copies are in the order of the job.
+    """
+
+    problem: PackingProblem
+    packing: Packing
+    builds: tuple[PackedBuild, ...]
+
+    def __str__(self) -> str:
+        """Summary in one line per build, and one for what is unplaced."""
+        lines = [str(build) for build in self.builds]
+        unplaced = len(self.packing.unplaced)
+        return "\n".join([*lines, *([f"unplaced: {unplaced}"] if unplaced else [])])
+
+
+def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
+    """Bound the parts and pack them as the job says.
+
+    Parameters
+    ----------
+    loaded
+        Parts with their job.
+    clock
+        Times and shows the stages ``bound`` and ``pack``.
+    stop
+        Ends both stages early; the packer then returns its best packing so far.
+
+    Raises
+    ------
+    PluginError
+        When a plugin fails, or the packer cannot handle the problem.
+    AmprepError
+        When nothing fits the build volume.
+    """
+    resolved, job, parts = loaded.resolved, loaded.resolved.job, loaded.parts
+    with clock.stage("bound") as progress:
+        volumes = _volumes(loaded, stop, progress)
+    with clock.stage("pack") as progress:
+        problem = packing_problem(parts, volumes, job.printer.space, job.packing)
+        resolved.host.refuse_mismatch(resolved.packer.listed, problem)
+        packing: Packing = resolved.packer.call(
+            problem,
+            rng=np.random.default_rng(job.seed),
+            stop=stop.within(job.packing.time_limit_s),
+            progress=progress,
+        )
+    builds = (
+        PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
+        for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
+    )
+    return PackedParts(problem, packing, tuple(builds))
 
 
 def packing_problem(
-    parts: Sequence[Part],
-    volumes: Sequence[BoundingVolume],
-    space: BuildVolume,
-    *,
-    objective: Objective,
-    clearance: float,
-    lift: float,
-    stacking: bool,
+    parts: Sequence[Part], volumes: Sequence[BoundingVolume], space: BuildVolume, settings: PackingSettings
 ) -> PackingProblem:
-    """Return the problem with one item for every copy of every part, in the job's order.
+    """Return the problem with one item for every copy of every part, in the order of the job.
 
-    What the parts say is fixed stands in the first build where it is.
+    Parameters
+    ----------
+    parts
+        Parts with their quantities; copies with a fixed position stay there, in the first build.
+    volumes
+        Bounding volume of each part, in part coordinates.
+    space
+        Build volume of the printer.
+    settings
+        Packing settings of the job.
     """
     items = tuple(
         Item(index, copy, volume, part.worth, part.orientations)
@@ -41,33 +133,38 @@ def packing_problem(
         for copy in range(part.quantity)
     )
     fixed = tuple(
-        Placement(number, np.eye(3), place - parts[item.part].mesh.vertices.min(axis=0))
+        Placement(number, np.eye(3), position - parts[item.part].mesh.vertices.min(axis=0))
         for number, item in enumerate(items)
-        for place in _places(parts[item.part])[item.copy : item.copy + 1]
+        for position in _fixed_positions(parts[item.part])[item.copy : item.copy + 1]
     )
     return PackingProblem(
-        items, space, objective, fixed=fixed, clearance=clearance, lift=lift, stacking=stacking
+        items,
+        space,
+        settings.objective,
+        fixed=fixed,
+        clearance=settings.clearance_mm,
+        lift=settings.lift_mm,
+        stacking=settings.stacking,
     )
 
 
-def _places(part: Part) -> Floats:
-    """Return where the first copies of a part stand already, ``(k, 3)``."""
-    return np.empty((0, 3)) if part.fixed is None else part.fixed
-
-
-def make_volumes(
-    parts: Sequence[Part], make: Callable[[Part], BoundingVolume], progress: Progress
-) -> list[BoundingVolume]:
-    """Return one bounding volume per part; copies share it."""
-    volumes = []
-    for index, part in enumerate(parts):
-        progress(index / len(parts), part.name)
-        volumes.append(make(part))
+def _volumes(loaded: LoadedParts, stop: Stop, progress: Progress) -> list[BoundingVolume]:
+    """Return one bounding volume per part, which its copies share: its boxes in the job file, or a computed one."""
+    resolved, volumes = loaded.resolved, []
+    for index, part in enumerate(loaded.parts):
+        progress(index / len(loaded.parts), part.name)
+        maker = resolved.volume if part.boxes is None else resolved.given_boxes
+        volumes.append(maker.call(part, rng=np.random.default_rng(resolved.job.seed), stop=stop))
     return volumes
 
 
+def _fixed_positions(part: Part) -> Floats:
+    """Return the least corners of the boxes around the copies with a fixed position, ``(k, 3)`` mm."""
+    return np.empty((0, 3)) if part.fixed is None else part.fixed
+
+
 def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
-    """Return a name for every copy, unique in the job: ``bracket``, ``bracket-2``, ..."""
+    """Return a unique label for every copy ``(part, copy)``: ``bracket``, ``bracket-2``, ..."""
     taken = {part.name for part in parts}
     found: dict[tuple[int, int], str] = {}
     for index, part in enumerate(parts):
@@ -83,7 +180,7 @@ def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
 def placed_builds(
     parts: Sequence[Part], problem: PackingProblem, packing: Packing
 ) -> list[tuple[PlacedPart, ...]]:
-    """Return the placed parts of every build, in the job's order.
+    """Return the placed parts of every build, in the order of the job.
 
     Raises
     ------
@@ -112,5 +209,8 @@ def placed_builds(
 
 
 def snapped(matrix: np.ndarray) -> np.ndarray:
-    """Return the matrix as a 3MF keeps it (float32 of six decimals): what is planned is what is written."""
+    """Round a matrix to the numbers that a 3MF file can store (float32 of six decimals).
+
+    The plan then uses exactly the positions that will be written.
+    """
     return np.round(matrix, 6).astype(np.float32).astype(np.float64)

@@ -1,31 +1,33 @@
-"""From what the user names to parts: folders and counts expanded, meshes repaired, names made unique."""
+"""Read the inputs of a job: expand folders, repair meshes, make names unique and apply the part settings."""
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from amprep.errors import InputError, JobError, MeshError
 from amprep.geometry.meshes.repair import RepairedMesh, find_defect, repair_mesh
-from amprep.job import Job, PartSettings, names_part
+from amprep.job import Job, PartSettings, apply_part_settings, names_part
 from amprep.model.control import Progress, silent
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region, RegionKind
+from amprep.pipeline.resolve import ResolvedJob
+from amprep.pipeline.stages import Clock
 
 
 def expand_inputs(
     inputs: Sequence[tuple[Path, int | None]], suffixes: Collection[str]
 ) -> list[tuple[Path, int | None]]:
-    """Return the files to read with the counts asked for, in order.
+    """Return the files to read with their counts, in order.
 
-    A folder stands for the files in it (not in folders below) whose suffix is known, by name; its count
-    holds for each of them.
+    A folder is replaced by its files with a known suffix, sorted by name; files in its subfolders are not read. The
+    count of a folder applies to each of its files.
 
     Raises
     ------
     InputError
-        If something is not there, or a folder holds nothing to read.
+        When a path does not exist, or a folder has no file to read.
     """
     return [(file, count) for path, count in inputs for file in _expand(path, suffixes)]
 
@@ -37,14 +39,18 @@ def read_all(
     allow_surface: bool = False,
     progress: Progress = silent,
 ) -> list[Part]:
-    """Read and settle the files in order; a count multiplies the quantity of each part of its file.
+    """Read the files in order and repair their meshes; a count multiplies the quantity of each part of its file.
 
     Parameters
     ----------
     files
-        As `expand_inputs` returns them.
+        Paths with their counts, as `expand_inputs` returns them.
     read
-        Turns one file into parts, by the reader chosen for its suffix.
+        Reads one file and returns its parts.
+    allow_surface
+        Whether meshes that are not solids are accepted as surfaces.
+    progress
+        Called before each file.
 
     Raises
     ------
@@ -62,25 +68,25 @@ def read_all(
 
 
 def repair_part(part: Part, *, allow_surface: bool) -> Part:
-    """Return the part as manifold3d accepts it, with its volume and notes on what was mended.
+    """Repair the mesh of a part; return the part with its volume and a note on every repair.
 
     Raises
     ------
     MeshError
-        If it is no solid and surfaces are not allowed, or no mesh at all.
+        When the mesh is unusable, or it is not a solid and surfaces are not allowed.
     """
     defect = find_defect(part.mesh.vertices, part.mesh.triangles)
     if defect:
-        raise MeshError(f"{_where(part)}: {defect}; export it again from the program it was drawn in")
+        raise MeshError(f"{_where(part)}: {defect}; export it again from the program that made it")
     repaired = repair_mesh(part.mesh.vertices, part.mesh.triangles)
     if repaired.problem and (not allow_surface or len(repaired.triangles) == 0):
-        advice = "repair it, or use --allow-surface to take it as it is"
+        advice = "repair it, or use --allow-surface to accept it as a surface"
         raise MeshError(f"{_where(part)} is not a solid: {repaired.problem}; {advice}")
     return _with_mesh(part, repaired)
 
 
 def with_unique_names(parts: Sequence[Part]) -> list[Part]:
-    """Return the parts with names that differ: ``bracket``, ``bracket-2``, ``bracket-3``."""
+    """Return the parts with unique names: ``bracket``, ``bracket-2``, ``bracket-3``."""
     taken = {part.name for part in parts}
     seen: set[str] = set()
     unique = []
@@ -106,9 +112,9 @@ def _expand(path: Path, suffixes: Collection[str]) -> list[Path]:
         if not path.exists():
             raise InputError(f"{path}: no such file or folder")
         if not path.is_file():
-            raise InputError(f"{path}: expected a file or a folder, this is neither")
+            raise InputError(f"{path}: expected a file or a folder, got something else")
     except OSError as error:
-        raise InputError(f"{str(path)[:200]}: cannot look it up: {error.strerror or error}") from error
+        raise InputError(f"{str(path)[:200]}: cannot be accessed: {error.strerror or error}") from error
     return [path]
 
 
@@ -116,7 +122,9 @@ def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
     files = [file for file in sorted(folder.iterdir()) if file.suffix.lower() in suffixes and file.is_file()]
     files = [file for file in files if not file.name.startswith(".")]
     if not files:
-        raise InputError(f"{folder}: no file to read in this folder (known: {', '.join(sorted(suffixes))})")
+        raise InputError(
+            f"{folder}: no file to read in this folder (known suffixes: {', '.join(sorted(suffixes))})"
+        )
     return files
 
 
@@ -125,7 +133,7 @@ def _where(part: Part) -> str:
 
 
 def _with_mesh(part: Part, repaired: RepairedMesh) -> Part:
-    """Return the part with the repaired mesh; what belongs to triangles follows them."""
+    """Return the part with the repaired mesh, and with its regions and colours on the triangles that are left."""
     same = np.array_equal(repaired.vertices, part.mesh.vertices) and np.array_equal(
         repaired.triangles, part.mesh.triangles
     )
@@ -162,15 +170,80 @@ def _recoloured(appearance: Appearance, repaired: RepairedMesh) -> Appearance:
 Read = Callable[[Path], list[Part]]
 
 
-def with_region_files(parts: Sequence[Part], job: Job, read: Read) -> list[Part]:
-    """Return the parts with the blockers and enforcers of every ``[[part]]`` entry that names them.
+@dataclass(frozen=True, eq=False)
+class LoadedParts:
+    """Parts that were read and checked, with the job that they belong to.
 
-    A 3MF's meshes lie where its build items put them; coordinates are the part's.
+    Attributes
+    ----------
+    resolved
+        The job with the offers that it names.
+    parts
+        The parts in the order of the inputs; names are unique.
+    """
+
+    resolved: ResolvedJob
+    parts: tuple[Part, ...]
+
+    def __str__(self) -> str:
+        """Summary in one line."""
+        copies = sum(part.quantity for part in self.parts)
+        return f"{len(self.parts)} parts, {copies} copies: {', '.join(part.name for part in self.parts)}"
+
+
+def read_job(
+    resolved: ResolvedJob,
+    clock: Clock,
+    *,
+    more: Sequence[Part] = (),
+    allow_surface: bool = False,
+) -> LoadedParts:
+    """Read every input of the job and apply the settings of its ``[[part]]`` entries.
+
+    Parameters
+    ----------
+    resolved
+        Job with the offers that it names.
+    clock
+        Times and shows the stage ``read``.
+    more
+        Further parts, which are in no file; they are checked and repaired like the others.
+    allow_surface
+        Whether meshes that are not solids are accepted as surfaces.
+
+    Raises
+    ------
+    InputError, MeshError, JobError
+        For the first file or part that cannot be read, or an entry that names no part.
+    """
+    job = resolved.job
+    with clock.stage("read") as progress:
+        files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], resolved.host.suffixes)
+        parts = read_all(files, resolved.read, allow_surface=allow_surface, progress=progress)
+        parts += [repair_part(part, allow_surface=allow_surface) for part in more]
+        parts = apply_part_settings(with_unique_names(parts), job)
+        return LoadedParts(resolved, tuple(with_region_files(parts, job, resolved.read)))
+
+
+def with_region_files(parts: Sequence[Part], job: Job, read: Read) -> list[Part]:
+    """Return the parts with the blockers and enforcers of their ``[[part]]`` entries.
+
+    The coordinates of a blocker or enforcer are those of the part. Meshes of a 3MF file are at the positions of its
+    build items.
+
+    Parameters
+    ----------
+    parts
+        Parts of the job.
+    job
+        Job with the ``[[part]]`` entries.
+    read
+        Reads one file and returns its parts.
 
     Raises
     ------
     JobError, InputError, MeshError
-        When a file is not there, cannot be read, or holds anything but closed meshes.
+        When a file does not exist, cannot be read, or contains a mesh that is not closed.
     """
     result = list(parts)
     for entry in job.parts:
@@ -198,16 +271,18 @@ def _regions(entry: PartSettings, job: Job, read: Read) -> tuple[Region, ...]:
 def _read(file: str, job: Job, read: Read) -> list[Part]:
     path = (job.folder or Path()) / file
     if not path.is_file():
-        raise JobError(f"{job.source}: [[part]]: blockers and enforcers are mesh files, no file at {path}")
+        raise JobError(
+            f"{job.source}: [[part]]: blockers and enforcers must be mesh files, found no file at {path}"
+        )
     return read(path)
 
 
 def _closed(part: Part, kind: RegionKind, file: str) -> list[Mesh]:
-    """Return the part's solid once for each of its positions."""
+    """Return the solid of the part at each of its positions."""
     repaired = repair_mesh(part.mesh.vertices, part.mesh.triangles)
     if repaired.problem:
         raise MeshError(
-            f"{file}: expected closed meshes for {kind}s, {part.name} is none: {repaired.problem}"
+            f"{file}: expected closed meshes for {kind}s, {part.name} is not closed: {repaired.problem}"
         )
     positions = np.zeros((1, 3)) if part.positions is None else part.positions
     return [Mesh(repaired.vertices + position, repaired.triangles) for position in positions]

@@ -1,4 +1,4 @@
-"""Stages of a run: their names, their seconds, and whoever watches them."""
+"""Time the stages of a run and report their progress."""
 
 import time
 from collections.abc import Iterator
@@ -10,24 +10,33 @@ from amprep.report.record import StageTime
 
 
 class Watcher(Protocol):
-    """Shows a person what is going on; the command line draws bars, tests watch nothing."""
+    """Shows the progress of a run, stage by stage; the command line draws one bar per stage."""
 
     def stage(self, name: str) -> AbstractContextManager[Progress]:
-        """Enter a stage; the yielded function takes the share done and a few words."""
+        """Enter a stage and yield the callback that shows its progress."""
         ...
 
 
-class Unwatched:
-    """A watcher that shows nothing."""
+class ProgressWatcher:
+    """Watcher that passes the progress of every stage on to one callback.
+
+    Parameters
+    ----------
+    progress
+        Called with the fraction of the stage that is done, and a message that begins with the name of the stage.
+    """
+
+    def __init__(self, progress: Progress = silent) -> None:
+        self._progress = progress
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[Progress]:  # noqa: ARG002 - as a `Watcher` is called
-        """Yield a report nobody reads."""
-        yield silent
+    def stage(self, name: str) -> Iterator[Progress]:
+        """Enter a stage and yield the callback that shows its progress."""
+        yield lambda fraction, message: self._progress(fraction, f"{name}: {message}")
 
 
 class Clock:
-    """Times stages; a stage entered again adds to its seconds."""
+    """Measures the seconds that each stage takes; a stage that is entered again adds to its time."""
 
     def __init__(self, watcher: Watcher) -> None:
         self._watcher = watcher
@@ -45,5 +54,5 @@ class Clock:
 
     @property
     def times(self) -> tuple[StageTime, ...]:
-        """Seconds of each stage, in order of first entry."""
+        """Seconds that each stage took, in the order in which the stages were first entered."""
         return tuple(StageTime(name, seconds) for name, seconds in self._seconds.items())

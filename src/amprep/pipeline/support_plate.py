@@ -1,4 +1,4 @@
-"""Supports a plate as it lies: read, plan supports, fill with cells, write, verify, report; nothing is packed."""
+"""Support parts at the positions in their files: read, support, write, verify and report; nothing is packed."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,69 +8,96 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.errors import InputError
-from amprep.host import Host
-from amprep.job import Job
 from amprep.model import BuildVolume, Orientations, Packing, Part, PlacedPart, Stop
 from amprep.pipeline.outputs import OutputFolder
-from amprep.pipeline.packing import labels, snapped
+from amprep.pipeline.packing import PackedBuild, labels, snapped
+from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.record import run_record
-from amprep.pipeline.run import RunOptions, check_choices, published, read_job
+from amprep.pipeline.resolve import ResolvedJob
+from amprep.pipeline.run import RunOptions, published
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.pipeline.supporting import support_build
 from amprep.pipeline.writing import finish_build
 from amprep.report.record import RunRecord
 
-_DESPITE = "supports.enabled = false holds for 'amprep run'; 'amprep support' plans supports all the same"
+_SUPPORTED_ANYWAY = "'amprep support' ignores supports.enabled = false (it applies to 'amprep run' only)"
 
 
-def support(
-    job: Job, host: Host, options: RunOptions, *, center: bool = False, watcher: Watcher, stop: Stop
+def support_plate(
+    resolved: ResolvedJob, options: RunOptions, *, center: bool = False, watcher: Watcher, stop: Stop
 ) -> RunRecord:
-    """Support the parts of `job` where their files put them, as one build, and return what was done.
+    """Support the parts of a job at the positions in their files, as one build, and return the record of the run.
 
-    It plans supports even if the job has none for `amprep.pipeline.run.run`; then a note says so. Clearance and
-    lift are not judged: how the parts lie is the user's choice. An interrupted run leaves no file.
+    An interrupted run leaves no file.
 
     Parameters
     ----------
+    resolved
+        Job with the offers that it names; supports are planned even if the job has them disabled.
+    options
+        Output folder and other options.
     center
-        Whether everything is first moved, together, to the middle of the plate and down onto it.
+        Whether all parts together are first moved to the middle of the plate and onto it.
+    watcher
+        Shows the progress of every stage.
+    stop
+        Ends the run early.
 
     Raises
     ------
     AmprepError
-        For wrong input, an unknown or failing plugin, or parts that reach out of the build volume.
+        For wrong input, a plugin that fails, or a part outside the build volume.
     """
-    notes = () if job.supports.enabled else (_DESPITE,)
+    clock, limit = Clock(watcher), stop.within(options.time_limit)
+    loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
+    placed = place_as_read(loaded, center=center)
+    parts = [_once_each(part) for part in loaded.parts]
+    with OutputFolder(options.folder, placed.build_id, numbered=False) as outputs:
+        supported = support_build(placed, clock, limit)
+        build = finish_build(supported, 1, outputs, options.dry_run, options.stl, clock, stop)
+        not_packed = Packing((), stop_reason="as it lies")
+        record = run_record(placed.resolved.job, resolved.host, parts, [build], outputs, not_packed)
+        if not resolved.job.supports.enabled:
+            record = replace(record, notes=(*record.notes, _SUPPORTED_ANYWAY))
+        return published(record, outputs, options, clock)
+
+
+def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:
+    """Return one build with every part at each position in its file.
+
+    Its job has supports enabled. Clearance and lift are zero, because the user chose the positions.
+
+    Parameters
+    ----------
+    loaded
+        Parts with their job.
+    center
+        Whether all parts together are moved to the middle of the plate and onto it.
+
+    Raises
+    ------
+    InputError
+        When a part is outside the build volume.
+    """
+    job = loaded.resolved.job
     job = replace(
         job,
         packing=replace(job.packing, clearance_mm=0.0, lift_mm=0.0),
         supports=replace(job.supports, enabled=True),
     )
-    clock, limit = Clock(watcher), stop.within(options.time_limit)
-    cell = check_choices(job, host)
-    with clock.stage("read") as progress:
-        parts = [_once_each(part) for part in read_job(job, host, options.allow_surface, progress)]
-    placed = placed_as_they_lie(parts, job.printer.space, center=center)
-    name = f"{job.name}.supported"
-    with OutputFolder(options.folder, name, numbered=False) as outputs:
-        supported = support_build(job, host, cell, placed, 1, clock, limit, build_id=name)
-        build = finish_build(supported, 1, outputs, options.dry_run, options.stl, clock, stop)
-        as_it_lies = Packing((), stop_reason="as it lies")
-        record = run_record(job, host, parts, [build], outputs, as_it_lies)
-        record = replace(record, notes=(*record.notes, *notes))
-        return published(record, outputs, options, clock)
+    parts = placed_as_they_lie(loaded.parts, job.printer.space, center=center)
+    return PackedBuild(replace(loaded.resolved, job=job), 1, f"{job.name}.supported", parts)
 
 
 def placed_as_they_lie(
     parts: Sequence[Part], space: BuildVolume, *, center: bool = False
 ) -> tuple[PlacedPart, ...]:
-    """Return every part at each position its file gives it, turned no further; without any, where its mesh is.
+    """Return every part, unrotated, at each position in its file; a part without positions stays at its origin.
 
     Raises
     ------
     InputError
-        If a part reaches out of the build volume or below the plate.
+        When a part is outside the build volume or below the plate.
     """
     lying = [_once_each(part) for part in parts]
     shift = _to_middle(lying, space) if center else np.zeros(3)
@@ -86,12 +113,12 @@ def placed_as_they_lie(
 
 
 def _once_each(part: Part) -> Part:
-    """Return the part as often as it lies somewhere; a quantity that says otherwise is left out with a note."""
+    """Return the part with one copy per position in its file, and a note if its quantity differs."""
     count = len(_positions(part))
     if part.quantity == count:
         return part
-    words = f"supported {count} times, as often as it lies on the plate; its quantity of {part.quantity} is for packing"
-    return replace(part, quantity=count, notes=(*part.notes, words))
+    note = f"supported {count} times, once per build item; quantity = {part.quantity} only applies to packing"
+    return replace(part, quantity=count, notes=(*part.notes, note))
 
 
 def _positions(part: Part) -> Floats:
@@ -105,7 +132,7 @@ def _moved(position: Floats) -> Floats:
 
 
 def _to_middle(parts: Sequence[Part], space: BuildVolume) -> Floats:
-    """Return the move that brings the box around all parts to the middle of the plate, standing on it."""
+    """Return the translation that moves the bounding box of all parts to the middle of the plate and onto it."""
     corners = [
         bound + position for part in parts for bound in part.mesh.bounds for position in _positions(part)
     ]
@@ -126,6 +153,6 @@ def _require_inside(placed: PlacedPart, space: BuildVolume, centered: bool) -> N
     low, high = (", ".join(f"{value:.6g}" for value in corner) for corner in (lo, hi))
     advice = "choose a larger --printer" if centered else "move it with --center, choose another --printer"
     raise InputError(
-        f"{placed.label} lies from ({low}) to ({high}) mm, outside the build volume of {size} mm; {advice}, or let "
+        f"{placed.label} reaches from ({low}) to ({high}) mm, outside the build volume of {size} mm; {advice}, or let "
         "'amprep run' pack it"
     )

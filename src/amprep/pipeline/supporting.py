@@ -1,24 +1,22 @@
-"""Supports one build: overhangs and grid, routing, cells, and what stays unsupported."""
+"""Support one build: plan the supports, replace their edges by cells, and list what stays unsupported."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from amprep.checks.supports.coverage import find_unsupported
-from amprep.host import Host
 from amprep.job import Job
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
     Build,
     BuildSettings,
-    PlacedPart,
     Progress,
     Stop,
     SupportPlan,
     SupportProblem,
 )
 from amprep.pipeline.advice import advice_for
-from amprep.pipeline.choose_cell import ChosenCell
+from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.stages import Clock
 from amprep.supports.plan import SupportLayout, Wishes, choose_pitch, plan_supports
 from amprep.supports.solids.build import build_supports
@@ -29,40 +27,125 @@ LARGEST_REACH = 5.0
 
 @dataclass(frozen=True, eq=False)
 class SupportedBuild:
-    """A build with its supports, the layout they came from (None when the job wants none), and advice."""
+    """A build with its supports.
+
+    Attributes
+    ----------
+    build
+        Parts, supports, unsupported regions, and the rules they were made under.
+    layout
+        Layout of the supports; None when the job has no supports.
+    advice
+        Settings to try where something stays unsupported, one sentence each.
+    removal
+        Figures on the removal of each support body.
+    """
 
     build: Build
     layout: SupportLayout | None = None
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
 
+    def __str__(self) -> str:
+        """Summary in one line."""
+        build = self.build
+        open_regions = sum(not region.minor for region in build.unsupported)
+        return (
+            f"{build.settings.build_id}: {len(build.parts)} parts, {len(build.supports)} supports, "
+            f"{open_regions} unsupported regions"
+        )
 
-def support_build(
-    job: Job,
-    host: Host,
-    cell: ChosenCell,
-    parts: tuple[PlacedPart, ...],
-    number: int,
-    clock: Clock,
-    stop: Stop,
-    *,
-    build_id: str,
-) -> SupportedBuild:
-    """Return build `number` with supports for everything that needs some, or listed with its reason."""
+
+@dataclass(frozen=True, eq=False)
+class PlannedBuild:
+    """A build with the layout of its supports, before edges are replaced by cells.
+
+    Attributes
+    ----------
+    build
+        The placed parts with their job.
+    pitch_mm
+        Horizontal size of a voxel of the support grid.
+    layout
+        Layout of the supports; None when the job has no supports.
+    """
+
+    build: PackedBuild
+    pitch_mm: float
+    layout: SupportLayout | None
+
+    def __str__(self) -> str:
+        """Summary in one line."""
+        if self.layout is None:
+            return f"{self.build.build_id}: no supports"
+        connected = int(self.layout.connected.sum())
+        return (
+            f"{self.build.build_id}: {connected} of {len(self.layout.red)} red squares connected, "
+            f"pitch {self.pitch_mm:g} mm"
+        )
+
+
+def support_build(build: PackedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
+    """Return a build with supports for all of its overhangs; overhangs without support are listed with a reason."""
+    return emit_supports(plan_build(build, clock, stop), clock, stop)
+
+
+def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
+    """Plan the supports of a build on the support grid.
+
+    Parameters
+    ----------
+    build
+        Placed parts with their job.
+    clock
+        Times and shows the stage ``route``.
+    stop
+        Ends the routing early; the router then returns its best plan so far.
+
+    Raises
+    ------
+    PluginError
+        When the router or the cell fails.
+    JobError
+        When the support grid needs more memory than the job allows.
+    """
+    job = build.resolved.job
     if not job.supports.enabled:
-        return SupportedBuild(Build(build_settings(job, build_id, pitch=1.0), parts))
-    wishes = job.supports
-    pitch = wishes.pitch_mm or choose_pitch(
-        parts, job.printer.space, wishes.strut_angle_deg, wishes.memory_mb
+        return PlannedBuild(build, pitch_mm=1.0, layout=None)
+    pitch = job.supports.pitch_mm or choose_pitch(
+        build.parts, job.printer.space, job.supports.strut_angle_deg, job.supports.memory_mb
     )
-    settings = build_settings(job, build_id, pitch)
     with clock.stage("route") as progress:
-        layout = _plan(job, host, cell, parts, number, pitch, stop, progress)
+        return PlannedBuild(build, pitch, _layout(build, pitch, stop, progress))
+
+
+def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
+    """Replace the edges of planned supports by the cell of the job and list what stays unsupported.
+
+    Parameters
+    ----------
+    planned
+        Layout of the supports, with the placed parts and their job.
+    clock
+        Times and shows the stages ``cells`` and ``judge``.
+    stop
+        Ends the work early.
+
+    Raises
+    ------
+    PluginError
+        When the cell fails.
+    """
+    parts, layout, resolved = planned.build.parts, planned.layout, planned.build.resolved
+    job = resolved.job
+    settings = build_settings(job, planned.build.build_id, planned.pitch_mm)
+    if layout is None:
+        return SupportedBuild(Build(settings, parts))
     with clock.stage("cells") as progress:
         bodies = build_supports(
             layout,
             parts,
-            lambda request: cell.emit(request, stop=stop, progress=progress),
+            lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
             overlap=settings.overlap,
             connector=job.cells,
             base=job.cells,
@@ -75,10 +158,9 @@ def support_build(
         )
     with clock.stage("judge"):
         unsupported = find_unsupported(parts, bodies, settings, layout.reason_at)
-    build = Build(settings, parts, bodies, unsupported)
-    with clock.stage("judge"):
+        build = Build(settings, parts, bodies, unsupported)
         removal = removal_of(job, build)
-    return SupportedBuild(build, layout, tuple(advice_for(job, build, pitch)), removal)
+    return SupportedBuild(build, layout, tuple(advice_for(job, build, planned.pitch_mm)), removal)
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -110,27 +192,22 @@ def _beams(job: Job) -> bool | None:
     return True if job.cells.lattice == "beams" else None
 
 
-def _plan(
-    job: Job,
-    host: Host,
-    cell: ChosenCell,
-    parts: tuple[PlacedPart, ...],
-    number: int,
-    pitch: float,
-    stop: Stop,
-    progress: Progress,
-) -> SupportLayout:
-    wishes, angle = job.supports, job.supports.strut_angle_deg
-    router = host.choose("router", wishes.strategy)
-    params, stop = host.params(router, wishes.params), stop.within(wishes.time_limit_s)
-    rng = np.random.default_rng([job.seed, number])
+def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) -> SupportLayout:
+    job, resolved = build.resolved.job, build.resolved
+    rng = np.random.default_rng([job.seed, build.number])
 
     def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
-        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
+        plan: SupportPlan = resolved.router.call(problem, rng=rng, stop=stop, progress=progress)
+        return plan
 
-    material = cell.material(pitch, pitch * float(np.tan(np.radians(angle))))
+    material = resolved.cell.material(pitch, pitch * float(np.tan(np.radians(job.supports.strut_angle_deg))))
     return plan_supports(
-        parts, job.printer.space, _wishes(job, pitch, material), route=route, stop=stop, progress=progress
+        build.parts,
+        job.printer.space,
+        _wishes(job, pitch, material),
+        route=route,
+        stop=stop.within(job.supports.time_limit_s),
+        progress=progress,
     )
 
 

@@ -21,7 +21,7 @@ from amprep.infill.fill_region import fill_region
 from amprep.measures.filled_part import pockets_of
 from amprep.model import Mesh, MeshCell, Part, Region, Stop, silent
 from amprep.model.rotations import parse_rotations
-from amprep.pipeline.choose_cell import cell_named
+from amprep.pipeline.resolve import cell_named
 from amprep.threemf import read_parts, write_parts
 from amprep.threemf.names import CURA_NAMESPACE
 from amprep.threemf.read.separate_regions import SeparateRegion, assign_regions

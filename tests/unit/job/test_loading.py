@@ -255,8 +255,16 @@ def test_the_options_of_the_command_line_win(job_file):
         job_file("seed = 1\n[packing]\nparams = {effort = 3}\nclearance_mm = 1\n[cells]\nparams = {a = 1}")
     )
     changed = override(
-        job, printer="SLM 280 2.0", packer="rows", router="own", cell="x-wall", target="cura", seed=9
-    )  # fmt: skip
+        job,
+        {
+            "printer": "SLM 280 2.0",
+            "packing.strategy": "rows",
+            "supports.strategy": "own",
+            "cells.strategy": "x-wall",
+            "target": "cura",
+            "seed": 9,
+        },
+    )
     assert (changed.printer.name, changed.target, changed.seed) == ("SLM 280 2.0", "cura", 9)
     assert (changed.packing.strategy, changed.supports.strategy, changed.cells.strategy) == (
         "rows",
@@ -265,11 +273,12 @@ def test_the_options_of_the_command_line_win(job_file):
     )
     assert changed.packing.params == {}, "the job's parameters belong to the job's own packer"
     assert (changed.cells.params, changed.packing.clearance_mm) == ({"a": 1}, 1)
-    assert override(job).packing == job.packing
+    assert override(job, {"packing.strategy": None}) is job
+    assert override(job, {"packing.params": {"b": 2}}).packing.params == {"b": 2}
     with pytest.raises(JobError, match="target: expected one of"):
-        override(job, target="bambu")
+        override(job, {"target": "bambu"})
     with pytest.raises(JobError, match="no printer is called"):
-        override(job, printer="EOS")
+        override(job, {"printer": "EOS"})
 
 
 def test_a_path_on_the_command_line_starts_at_the_current_folder(job_file, tmp_path, monkeypatch):
@@ -278,7 +287,7 @@ def test_a_path_on_the_command_line_starts_at_the_current_folder(job_file, tmp_p
     (here / "mine.toml").write_text("size_mm = [10, 20, 30]")
     (here / "cell.stl").touch()
     monkeypatch.chdir(here)
-    job = override(load_job(job_file("")), printer="mine.toml", cell="cell.stl")
+    job = override(load_job(job_file("")), {"printer": "mine.toml", "cells.strategy": "cell.stl"})
     assert job.printer.space.size.tolist() == [10, 20, 30]
     assert job.cells.file == (here / "cell.stl").resolve()
 

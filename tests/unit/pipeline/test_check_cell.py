@@ -14,7 +14,7 @@ from amprep.geometry.cells.metrology import feature, way_out
 from amprep.host import Host, Listed
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
 from amprep.pipeline.check_cell import check_cell
-from amprep.pipeline.choose_cell import ChosenCell, cell_named
+from amprep.pipeline.resolve import ChosenCell, cell_named
 from amprep.testing.problems import box_mesh
 
 HOST = Host.load(plugins_enabled=False)

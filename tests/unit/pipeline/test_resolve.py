@@ -10,7 +10,7 @@ from amprep.errors import JobError, MeshError
 from amprep.host import Host
 from amprep.job import apply_sets, job_from_inputs
 from amprep.model import CellRequest, Cells, Grid, Mesh, SupportEdges, Template
-from amprep.pipeline.choose_cell import cell_named, choose_cell
+from amprep.pipeline.resolve import cell_named, choose_cell
 from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))

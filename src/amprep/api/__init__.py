@@ -1,0 +1,36 @@
+"""The public Python API: prepare a build step by step, or run a whole job.
+
+The functions are available as ``amprep.load``, ``amprep.pack`` and so on; import them from there. Lengths are in
+millimetres and angles in degrees (names end in ``_mm`` and ``_deg``). Records are not modified: every step returns
+new ones.
+"""
+
+from amprep.api.build_file import Verification, verify, write
+from amprep.api.steps import emit_cells, load, pack, plan_supports
+from amprep.api.whole_job import run, support
+from amprep.checks.violation import Violation
+from amprep.job import Job
+from amprep.pipeline.packing import PackedBuild, PackedParts
+from amprep.pipeline.reading import LoadedParts
+from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
+from amprep.report.record import RunRecord
+
+__all__ = [
+    "Job",
+    "LoadedParts",
+    "PackedBuild",
+    "PackedParts",
+    "PlannedBuild",
+    "RunRecord",
+    "SupportedBuild",
+    "Verification",
+    "Violation",
+    "emit_cells",
+    "load",
+    "pack",
+    "plan_supports",
+    "run",
+    "support",
+    "verify",
+    "write",
+]
