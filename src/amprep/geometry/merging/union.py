@@ -1,4 +1,4 @@
-"""Support solids between arrays and manifold3d: unite, round to what a build file keeps, tidy."""
+"""Unite solids with manifold3d, and convert them to arrays as a build file stores them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 FILE_STEP = 3e-5
-"""mm; what rounding to float32 moves a vertex at most, up to 500 mm from the origin."""
+"""Largest distance (mm) by which rounding to float32 moves a vertex within 500 mm of the origin."""
 
 
 def union(solids: Sequence["Manifold"]) -> "Manifold":
-    """Unite solids two by two, each pair at once.
+    """Unite solids in pairs, and evaluate each union at once.
 
-    Left to itself, manifold3d puts off several unions and then takes those whose boxes do not overlap as
-    one solid, even when they touch: what comes after may lose volume.
+    manifold3d defers unions by default, and then treats solids whose boxes do not overlap as one solid, even if
+    they touch. Later operations on such a solid may lose volume.
     """
     from manifold3d import Manifold
 
@@ -34,19 +34,19 @@ def union(solids: Sequence["Manifold"]) -> "Manifold":
 
 
 def evaluated(solid: "Manifold") -> "Manifold":
-    """Return the solid, its pending operations carried out."""
+    """Carry out pending operations of a solid, and return it."""
     solid.num_tri()
     return solid
 
 
 def arrays_of(solid: "Manifold") -> tuple[Floats, Int64s]:
-    """Return points ``(n, 3)`` and triangles ``(m, 3)`` of a solid."""
+    """Return the points ``(n, 3)`` and triangles ``(m, 3)`` of a solid."""
     mesh = solid.to_mesh64()
     return np.array(mesh.vert_properties[:, :3], np.float64), np.array(mesh.tri_verts, np.int64)
 
 
 def is_solid(points: Floats, triangles: Int64s) -> bool:
-    """Whether manifold3d accepts a mesh as a solid with positive volume."""
+    """Tell whether manifold3d accepts a mesh as a solid with positive volume."""
     from manifold3d import Error
 
     solid = as_manifold(points, triangles)
@@ -54,9 +54,9 @@ def is_solid(points: Floats, triangles: Int64s) -> bool:
 
 
 def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Int64s]:
-    """Unite solids to the arrays that a build file keeps: closed, no triangle without area."""
+    """Unite solids and return arrays as a build file stores them: closed, and without degenerate triangles."""
     whole = union(solids)
     points, triangles = arrays_of(whole)
-    again = as_manifold(round_as_stored(points), triangles).simplify(FILE_STEP)
-    points, triangles = arrays_of(again)
+    rounded = as_manifold(round_as_stored(points), triangles).simplify(FILE_STEP)
+    points, triangles = arrays_of(rounded)
     return round_as_stored(points), triangles

@@ -9,10 +9,9 @@ from tests.shared.examples import examples
 from amprep.bench.merging import barrel, random_layout, run_merging
 from amprep.cells import instances as instances_module
 from amprep.cells.instances import classify, expand_cells
-from amprep.geometry.merging.interfaces import make_interface
 from amprep.geometry.merging.merge_cells import unite_cells
 from amprep.geometry.merging.union import arrays_of, union
-from amprep.geometry.merging.voxel_contents import RESOLUTION, ContentsTable
+from amprep.geometry.merging.voxel_contents import ContentsTable
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import degenerate, edges_match
 from amprep.host import Host
@@ -59,60 +58,6 @@ ROWS = st.lists(
     min_size=2,
     max_size=24,
 )
-
-# ------------------------------------------------------------------------------------------ sides that differ
-
-
-def outline(*corners):
-    points = (np.array(corners) * RESOLUTION).round().astype(np.int64)
-    return np.stack([points, np.roll(points, -1, axis=0)], axis=1)
-
-
-def area(points, triangles):
-    corners = points[triangles] / RESOLUTION
-    sides = corners[:, 1:] - corners[:, :1]
-    return float(np.linalg.det(sides).sum() / 2)
-
-
-def test_equal_regions_leave_nothing_of_one_another():
-    square = outline((0, 0), (1, 0), (1, 1), (0, 1))
-    found = make_interface(square, square)
-    assert found is not None
-    assert len(found.low) == len(found.high) == len(found.splits) == 0
-
-
-def test_a_corner_on_the_other_s_edge_splits_it():
-    found = make_interface(
-        outline((0, 0), (1, 0), (1, 1), (0, 1)), outline((0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1))
-    )
-    assert found is not None
-    assert len(found.low) == len(found.high) == 0
-    assert (found.points[found.splits[:, 2]] == [[RESOLUTION // 2, 0]]).all()
-
-
-RADII = st.lists(st.floats(0.05, 0.45), min_size=3, max_size=9)
-
-
-def star(radii, turn):
-    """A polygon around the middle of the unit square with corners at these distances."""
-    angle = turn + 2 * np.pi * np.arange(len(radii)) / len(radii)
-    return outline(*(0.5 + np.array(radii)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])))
-
-
-@given(RADII, RADII, st.floats(0.0, 1.0))
-@examples(40)
-def test_what_is_left_of_two_regions_has_the_area_that_clipping_gives(ours, theirs, turn):
-    from manifold3d import CrossSection, FillRule
-
-    first, second = star(ours, 0.0), star(theirs, turn)
-    found = make_interface(first, second)
-    assert found is not None
-    a, b = (CrossSection([each[:, 0] / RESOLUTION], FillRule.Positive) for each in (first, second))
-    assert area(found.points, found.low) == pytest.approx((a - b).area(), abs=1e-5)
-    assert area(found.points, found.high) == pytest.approx((b - a).area(), abs=1e-5)
-
-
-# ------------------------------------------------------------------------------------------ cells
 
 
 def test_a_straight_and_an_oblique_cube_with_a_common_square_overlap_by_half():
