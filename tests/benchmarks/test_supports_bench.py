@@ -61,11 +61,11 @@ def test_voxelise_a_bumpy_ball_of_200000_triangles(benchmark):
 
     mesh = manifold3d.Manifold.sphere(40, 640).translate((50, 50, 50)).to_mesh()
     vertices, triangles = np.asarray(mesh.vert_properties[:, :3], float), np.asarray(mesh.tri_verts)
-    window = Grid(np.zeros(3), 1.0, 1.0, (100, 100, 100)).window(vertices.min(axis=0), vertices.max(axis=0))
+    block = Grid(np.zeros(3), 1.0, 1.0, (100, 100, 100)).block(vertices.min(axis=0), vertices.max(axis=0))
 
     def run():
         found = find_overhangs(vertices, triangles, angle_deg=45)
-        return met_voxels(window, vertices, triangles), holding_voxels(window, vertices, triangles, found)
+        return met_voxels(block, vertices, triangles), holding_voxels(block, vertices, triangles, found)
 
     black, _ = benchmark.pedantic(run, rounds=2, warmup_rounds=1)
     assert black.sum() == pytest.approx(4 / 3 * np.pi * 40**3, rel=0.08)

@@ -7,6 +7,7 @@ import trimesh
 from manifold3d import Manifold
 
 from amprep.checks.supports.xy_distance import PROMISE
+from amprep.model.supports.rules import SupportRules
 from amprep.pipeline.verify import verify_build
 from amprep.threemf import read_build
 
@@ -28,7 +29,7 @@ def test_supports_keep_the_gap_from_a_leg_and_hold_the_slab(amprep, mushroom, tm
     assert amprep("verify", tmp_path / "gap" / "mushroom.build-1.3mf").code == 0
     assert amprep("run", mushroom, *sets, "-o", tmp_path / "none").code == 0
     build = read_build(tmp_path / "none" / "mushroom.build-1.3mf")
-    asked = replace(build, settings=replace(build.settings, gap=0.5))
+    asked = replace(build, settings=replace(build.settings, rules=SupportRules(gap_mm=0.5)))
     assert {each.promise for each in verify_build(asked)} == {PROMISE}
 
 

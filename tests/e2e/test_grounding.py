@@ -29,7 +29,7 @@ def test_by_default_everything_stands_on_the_plate_and_the_rest_is_enclosed(ampr
     outcome, supports, build = supported(amprep, tmp_path, CHEST)
     assert outcome.code == 1
     assert {square["reason"] for square in supports["unconnected"]} == {"enclosed"}
-    assert build.settings.grounding == "plate"
+    assert build.settings.rules.grounding == "plate-only"
     assert build.supports == ()
 
 
@@ -38,7 +38,7 @@ def test_columns_stand_on_the_floor_of_a_closed_chest(amprep, tmp_path, cell):
     outcome, supports, build = supported(amprep, tmp_path, CHEST, "--grounding", "anywhere", "--cell", cell)
     assert outcome.code == 0
     assert "stand on parts" in supports["notes"][0]
-    assert build.settings.grounding == "anywhere"
+    assert build.settings.rules.grounding == "anywhere"
     low, high = build.supports[0].mesh.bounds
     assert low[2] == pytest.approx(8.0 - 0.1, abs=1e-3), "as deep in the floor as in the lid"
     assert high[2] == pytest.approx(33.1, abs=1e-3)
@@ -78,7 +78,9 @@ def test_a_file_that_claims_the_plate_is_judged_by_it(amprep, tmp_path):
         zipfile.ZipFile(claimed, "w") as new,
     ):
         for name in old.namelist():
-            new.writestr(name, old.read(name).replace(b'"grounding": "anywhere"', b'"grounding": "plate"'))
+            new.writestr(
+                name, old.read(name).replace(b'"grounding": "anywhere"', b'"grounding": "plate-only"')
+            )
     outcome = amprep("verify", claimed, "--json")
     assert outcome.code == 1
     assert "support stands on the plate" in {each["promise"] for each in outcome.json["violations"]}

@@ -13,6 +13,7 @@ from amprep.job.settings.job import ReadingSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.supports import SupportSettings
+from amprep.model.supports import REASONS
 from amprep.printers.catalogue import Profile
 
 ROOT = Path(__file__).parents[2]
@@ -135,3 +136,11 @@ def test_every_parameter_of_a_built_in_cell_is_on_the_page():
         assert f"| `{name}` |" in text
         for field in fields(listed.offer.params):
             assert f"`{field.name}`" in text, f"{name}: {field.name}"
+
+
+def test_the_page_about_supports_explains_every_reason_in_the_words_of_the_code():
+    page = (ROOT / "docs" / "supports.md").read_text(encoding="utf-8")
+    rows = re.findall(
+        r"^\| `([^`]+)` \| (.+) \|$", page.partition("| reason |")[2].partition("\n\n")[0], re.M
+    )
+    assert dict(rows) == REASONS

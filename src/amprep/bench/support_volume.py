@@ -31,7 +31,7 @@ from amprep.model.contacts import ConnectorRules
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.stl import write_stl
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.plan import Route, Wishes, plan_supports
+from amprep.supports.plan import PlanningRules, Route, plan_supports
 from amprep.supports.solids.build import build_supports
 
 if TYPE_CHECKING:
@@ -182,9 +182,10 @@ def _volume(
     layout = plan_supports(
         (part,),
         SPACE,
-        Wishes(pitch=pitch, material=material),
+        PlanningRules(pitch_mm=pitch),
+        material=material,
         route=route,
-        only=free_below,
+        choose=free_below,
         stop=stop,
         progress=silent,
     )

@@ -32,7 +32,7 @@ def support(
         str | None,
         typer.Option(
             metavar="WHERE",
-            help="Where supports may stand: plate, or anywhere (on parts, if the plate cannot be reached).",
+            help="Where supports may stand: plate-only, or anywhere (on parts, if the plate cannot be reached).",
             rich_help_panel="Settings of the job",
         ),
     ] = None,

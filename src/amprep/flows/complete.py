@@ -8,8 +8,8 @@ from amprep.flows.maximum_flow import push
 from amprep.flows.network import Task, no_flows, plan_of, reasons_of, task_of
 from amprep.kernels.flow.residual import Carried, Room
 from amprep.model.control import Progress, Stop
-from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import SupportPlan, SupportProblem
+from amprep.model.supports.edges import SupportEdges
 
 
 def complete(

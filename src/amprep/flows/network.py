@@ -10,7 +10,6 @@ from amprep.arrays import Bools, Int32s, Int64s
 from amprep.errors import JobError
 from amprep.kernels.flow.residual import UNREACHED, Carried, Flowing, Room, measure
 from amprep.kernels.flow.shortest_paths import FAR, UNBOUNDED, Flows, Limits, Network
-from amprep.model.support_edges import DIRECTIONS, SupportEdges
 from amprep.model.supports import (
     CAPACITY,
     ENCLOSED,
@@ -21,6 +20,7 @@ from amprep.model.supports import (
     Unconnected,
     Voxel,
 )
+from amprep.model.supports.edges import DIRECTIONS, SupportEdges
 
 
 def network_of(problem: SupportProblem) -> tuple[Network, Int64s]:

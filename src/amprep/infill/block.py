@@ -97,8 +97,8 @@ def _near(region: Mesh, grid: Grid, reach: float) -> np.ndarray:
 
     Cubes are at least twice as wide as the reach, so together the eight are the region widened by it.
     """
-    window = grid.window(*region.bounds, margin=reach + grid.pitch)
+    block = grid.block(*region.bounds, margin=reach + grid.pitch)
     met = np.zeros(grid.shape, np.bool_)
     for way in product((-reach, reach), repeat=3):
-        met[window.slices] |= met_voxels(window, region.vertices + np.array(way), region.triangles)
+        met[block.slices] |= met_voxels(block, region.vertices + np.array(way), region.triangles)
     return met

@@ -20,8 +20,8 @@ from amprep.model.control import Progress, Stop, silent
 from amprep.model.mesh import Mesh
 from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
-from amprep.model.support_edges import DIRECTIONS, SupportEdges
 from amprep.model.supports import SupportPlan, SupportProblem, Unconnected, Voxel
+from amprep.model.supports.edges import DIRECTIONS, SupportEdges
 
 __all__ = [
     "CONTACT_TOLERANCE",

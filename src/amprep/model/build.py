@@ -1,4 +1,4 @@
-"""One finished build: what a build file says, and what `amprep verify` reads back."""
+"""One finished build, as a build file records it and `amprep verify` reads it back."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -9,8 +9,8 @@ from amprep.arrays import Floats, Ints, frozen
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
+from amprep.model.supports.rules import SupportRules
 
-Grounding = Literal["plate", "anywhere"]
 Target = Literal["generic", "prusaslicer", "cura"]
 SupportsAs = Literal["support", "model"]
 TARGETS: tuple[Target, ...] = ("generic", "prusaslicer", "cura")
@@ -18,24 +18,30 @@ TARGETS: tuple[Target, ...] = ("generic", "prusaslicer", "cura")
 
 @dataclass(frozen=True, eq=False)
 class BuildSettings:
-    """The rules a build was made under; written into the file so that it can be judged from the file alone.
+    """The rules of a build; its file records them, so that the build can be judged from the file alone.
 
     Attributes
     ----------
     build_id
-        Names the job and the number of the build, e.g. ``bracket.build-1``.
-    clearance, lift, gap, overlap, reach
-        mm; `reach` is how far an overhang may lie from the nearest contact.
-    overhang_angle_deg, strut_angle_deg
-        Job-wide; a part's own override travels with the part.
-    least_area, least_length
-        mm2 and mm; overhangs smaller than that need no support.
+        Name of the job and number of the build, for example ``bracket.build-1``.
+    space
+        The build volume.
+    target
+        Program that will open the build file.
+    printer
+        Name of the printer.
+    clearance, lift
+        Smallest distance between parts, and height of the lowest parts above the plate, mm.
+    overlap
+        Depth to which connectors enter the parts, mm.
+    reach
+        Largest distance of a supported overhang from a contact, mm.
+    rules
+        Rules for the supports; a part's own overhang angle is recorded with the part.
     supported
         False when the job asked for no supports.
-    grounding
-        ``plate``: all supports stand on it; ``anywhere``: some may stand on the parts they hold.
     supports_as
-        What a generic file says that solid supports are; slicers have their own ways.
+        Type that a generic file gives to solid supports.
     """
 
     build_id: str
@@ -44,15 +50,10 @@ class BuildSettings:
     printer: str = ""
     clearance: float = 0.0
     lift: float = 0.0
-    gap: float = 0.0
     overlap: float = 0.1
     reach: float = 1.5
-    overhang_angle_deg: float = 45.0
-    strut_angle_deg: float = 45.0
-    least_area: float = 0.5
-    least_length: float = 0.5
+    rules: SupportRules = field(default_factory=SupportRules)
     supported: bool = True
-    grounding: Grounding = "plate"
     supports_as: SupportsAs = "support"
 
 
@@ -152,7 +153,7 @@ class Unsupported:
     kind
         ``face``, ``edge`` or ``tip``.
     reason
-        One of the four reasons of `amprep.model.supports`.
+        One of `amprep.model.supports.REASONS`.
     measure
         Unsupported area in mm2, length in mm, or 0 for a tip.
     points

@@ -9,7 +9,7 @@ import numpy as np
 from amprep.arrays import Bytes, Floats, Ints, frozen
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
-from amprep.model.support_edges import DIRECTIONS, SupportEdges
+from amprep.model.supports.edges import DIRECTIONS, SupportEdges
 
 
 class Role(IntEnum):

@@ -8,7 +8,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.subdivision import subdivide
-from amprep.geometry.overhangs.find import Marks
+from amprep.geometry.overhangs.find import Modifiers
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
 
@@ -19,14 +19,14 @@ _SAMPLES, _INWARDS = 7, 0.98
 """How many points of a triangle are looked at, and the share of the way from its centre to the outer ones."""
 
 
-class Marked(NamedTuple):
+class ModifiedMesh(NamedTuple):
     """A mesh in build coordinates and what is marked of it; None when nothing is."""
 
     mesh: Mesh
-    marks: Marks | None
+    modifiers: Modifiers | None
 
 
-class _Volume(NamedTuple):
+class _MarkingVolume(NamedTuple):
     """A region with a closed mesh of its own, in build coordinates; it may lie amid triangles over `coarse` mm."""
 
     mesh: Mesh
@@ -36,7 +36,7 @@ class _Volume(NamedTuple):
         return inside(points, self.mesh.vertices, self.mesh.triangles)
 
 
-class _Paint(NamedTuple):
+class _MarkingPaint(NamedTuple):
     """Pieces ``(k, 3, 3)`` painted on triangles ``(k,)`` of the part, in build coordinates; sorted by triangle."""
 
     pieces: Floats
@@ -53,8 +53,8 @@ class _Paint(NamedTuple):
 class _Regions(NamedTuple):
     """Regions of one kind by what marks: volumes, paint, and triangles marked as wholes."""
 
-    volumes: tuple[_Volume, ...]
-    paints: tuple[_Paint, ...]
+    volumes: tuple[_MarkingVolume, ...]
+    paints: tuple[_MarkingPaint, ...]
     wholes: tuple[Ints, ...]
 
     def mark(self, mesh: Mesh, parent: Int64s) -> Bools:
@@ -75,7 +75,7 @@ class _Regions(NamedTuple):
         return found
 
 
-def mark(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> Marked:
+def apply_regions(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> ModifiedMesh:
     """Return `mesh`, the part under `matrix`, split where blockers and enforcers cut triangles, and the marks.
 
     A region marks the triangles it names, the pieces painted on them, or whatever lies in its mesh. Only
@@ -84,7 +84,7 @@ def mark(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> Marked:
     blockers = _sorted(regions, "blocker", matrix)
     enforcers = _sorted(regions, "enforcer", matrix)
     if not any((*blockers, *enforcers)):
-        return Marked(mesh, None)
+        return ModifiedMesh(mesh, None)
 
     def wish(corners: Floats, parent: Int64s) -> Bools:
         size = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
@@ -101,7 +101,7 @@ def mark(mesh: Mesh, regions: Sequence[Region], matrix: Floats) -> Marked:
     blocked = blockers.mark(finer, fine.parent)
     vertices = np.isin(np.arange(len(finer.vertices)), finer.triangles[blocked])
     vertices |= blockers.hold(finer.vertices)
-    return Marked(finer, Marks(enforcers.mark(finer, fine.parent), blocked, vertices))
+    return ModifiedMesh(finer, Modifiers(enforcers.mark(finer, fine.parent), blocked, vertices))
 
 
 def _sorted(regions: Sequence[Region], kind: RegionKind, matrix: Floats) -> _Regions:
@@ -115,17 +115,17 @@ def _sorted(regions: Sequence[Region], kind: RegionKind, matrix: Floats) -> _Reg
     )
 
 
-def _volume(mesh: Mesh) -> _Volume:
+def _volume(mesh: Mesh) -> _MarkingVolume:
     extent = float(np.ptp(mesh.vertices[:, :2], axis=0).min())
-    return _Volume(mesh, min(max(extent / 3, FINEST), COARSEST))
+    return _MarkingVolume(mesh, min(max(extent / 3, FINEST), COARSEST))
 
 
-def _paint(mesh: Mesh, owner: Ints) -> _Paint:
+def _paint(mesh: Mesh, owner: Ints) -> _MarkingPaint:
     order = np.argsort(owner, kind="stable")
-    return _Paint(mesh.vertices[mesh.triangles][order], owner[order].astype(np.int64))
+    return _MarkingPaint(mesh.vertices[mesh.triangles][order], owner[order].astype(np.int64))
 
 
-def _cut_by(volume: _Volume, corners: Floats, size: Floats) -> Bools:
+def _cut_by(volume: _MarkingVolume, corners: Floats, size: Floats) -> Bools:
     """Tell which triangles lie partly in a volume, or are so large that it might lie amid them."""
     lo, hi = volume.mesh.bounds
     wanted = (corners.min(axis=1) <= hi).all(axis=1) & (corners.max(axis=1) >= lo).all(axis=1)
@@ -135,7 +135,7 @@ def _cut_by(volume: _Volume, corners: Floats, size: Floats) -> Bools:
     return np.asarray(wanted)
 
 
-def _painted_in_part(paint: _Paint, corners: Floats, parent: Int64s) -> Bools:
+def _painted_in_part(paint: _MarkingPaint, corners: Floats, parent: Int64s) -> Bools:
     """Tell which triangles are painted here and bare there."""
     wanted = np.zeros(len(corners), np.bool_)
     near = np.flatnonzero(np.isin(parent, paint.owner))

@@ -1,4 +1,4 @@
-"""What of each placed part needs support: overhangs, the part's own settings, blockers and enforcers."""
+"""Find the overhangs of a placed part, with the part's own settings, support blockers and enforcers."""
 
 from typing import NamedTuple
 
@@ -8,47 +8,49 @@ from amprep.geometry.overhangs.find import find_overhangs
 from amprep.geometry.overhangs.regions import Overhangs
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
-from amprep.overhangs.blockers import Marked, mark
+from amprep.model.supports.rules import SupportRules
+from amprep.overhangs.blockers import ModifiedMesh, apply_regions
 
 
-class Needs(NamedTuple):
-    """What needs support, and the mesh in build coordinates that its indices mean.
+class PartOverhangs(NamedTuple):
+    """The overhangs of a placed part, and the mesh that their indices refer to.
 
-    That is the part's own mesh, split finer where the edge of a blocker or enforcer runs through triangles.
+    The mesh is the part's own mesh in build coordinates. Where the border of a blocker or enforcer crosses
+    triangles, these are subdivided.
     """
 
     mesh: Mesh
     overhangs: Overhangs
 
 
-def needs_of(
-    placed: PlacedPart,
-    *,
-    overhang_angle_deg: float,
-    least_area: float,
-    least_length: float,
-    grant_deg: float = 0.0,
-) -> Needs:
-    """Return what needs support of a placed part.
+def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: float = 0.0) -> PartOverhangs:
+    """Return the overhangs of a placed part.
 
-    The part's own overhang angle comes before the job's; a part with supports switched off needs none.
-    Blockers take away what lies in them, enforcers add what looks down in them. Both angles are lowered by
-    `grant_deg`.
+    The part's own overhang angle takes precedence over that of the rules. A part whose supports are switched
+    off has no overhangs. Nothing inside a blocker is an overhang; every downward face inside an enforcer is one.
+
+    Parameters
+    ----------
+    placed
+        The part in the build.
+    rules
+        Overhang angle, smallest area and smallest length.
+    add_angle_deg
+        Added to the overhang angle, the part's own included.
     """
-    own, mesh = placed.part.overrides, placed.mesh
-    angle = overhang_angle_deg if own.overhang_angle_deg is None else own.overhang_angle_deg
-    marked = Marked(mesh, None)
-    if own.supports is False:
-        mesh = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32))
-    else:
-        marked = mark(mesh, placed.part.regions, placed.matrix)
-        mesh = marked.mesh
+    own = placed.part.overrides
+    angle = rules.overhang_angle_deg if own.overhang_angle_deg is None else own.overhang_angle_deg
+    modified = ModifiedMesh(placed.mesh, None)
+    searched = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32))
+    if own.supports is not False:
+        modified = apply_regions(placed.mesh, placed.part.regions, placed.matrix)
+        searched = modified.mesh
     overhangs = find_overhangs(
-        mesh.vertices,
-        mesh.triangles,
-        angle_deg=angle - grant_deg,
-        least_area=least_area,
-        least_length=least_length,
-        marks=marked.marks,
+        searched.vertices,
+        searched.triangles,
+        angle_deg=angle + add_angle_deg,
+        min_area=rules.min_area_mm2,
+        min_length=rules.min_length_mm,
+        modifiers=modified.modifiers,
     )
-    return Needs(marked.mesh, overhangs)
+    return PartOverhangs(modified.mesh, overhangs)

@@ -52,7 +52,9 @@ def _minor(
     bare: Ints, samples: OverhangSamples, region: OverhangRegion, covered: Bools, settings: BuildSettings
 ) -> Bools:
     """Tell which of the bare samples of one region are minor."""
-    least = {"face": settings.least_area, "edge": settings.least_length, "tip": 0.0}[region.kind]
+    least = {"face": settings.rules.min_area_mm2, "edge": settings.rules.min_length_mm, "tip": 0.0}[
+        region.kind
+    ]
     minor = np.zeros(len(bare), np.bool_)
     if least <= 0.0:
         return minor

@@ -24,7 +24,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
             f"{_regions(narrow)} unsupported for want of room below in a grid of {pitch:g} mm; a finer one may reach "
             f"what is not inside the part: {_finer(job, build, pitch)}"
         )
-    if counts[ENCLOSED] and wishes.grounding == "plate":
+    if counts[ENCLOSED] and wishes.grounding == "plate-only":
         yield (
             f"{_regions(counts[ENCLOSED])} without a way to the plate; columns may stand on the part itself below: "
             "--set supports.grounding=anywhere"

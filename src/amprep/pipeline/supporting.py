@@ -1,6 +1,6 @@
 """Support one build: plan the supports, replace their edges by cells, and list what stays unsupported."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from amprep.model import (
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.stages import Clock
-from amprep.supports.plan import SupportLayout, Wishes, choose_pitch, plan_supports
+from amprep.supports.grid.sizing import choose_pitch
+from amprep.supports.plan import SupportLayout, plan_supports
 from amprep.supports.solids.build import build_supports
 
 LARGEST_REACH = 5.0
@@ -112,9 +113,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     job = build.resolved.job
     if not job.supports.enabled:
         return PlannedBuild(build, pitch_mm=1.0, layout=None)
-    pitch = job.supports.pitch_mm or choose_pitch(
-        build.parts, job.printer.space, job.supports.strut_angle_deg, job.supports.memory_mb
-    )
+    pitch = choose_pitch(build.parts, job.printer.space, job.supports)
     with clock.stage("route") as progress:
         return PlannedBuild(build, pitch, _layout(build, pitch, stop, progress))
 
@@ -151,7 +150,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             base=job.cells,
             allow_surface=job.target == "generic",
             beams=_beams(job),
-            gap=settings.gap,
+            gap=job.supports.gap_mm,
             space=job.printer.space,
             stop=stop,
             progress=progress,
@@ -172,15 +171,10 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         printer=job.printer.name,
         clearance=job.packing.clearance_mm,
         lift=job.packing.lift_mm,
-        gap=job.supports.gap_mm,
         overlap=job.cells.overlap_mm,
         reach=job.supports.reach_mm or min(1.5 * pitch, LARGEST_REACH),
-        overhang_angle_deg=job.supports.overhang_angle_deg,
-        strut_angle_deg=job.supports.strut_angle_deg,
-        least_area=job.supports.least_area_mm2,
-        least_length=job.supports.least_length_mm,
+        rules=job.supports,
         supported=job.supports.enabled,
-        grounding=job.supports.grounding,
         supports_as=job.supports.write_as,
     )
 
@@ -194,43 +188,22 @@ def _beams(job: Job) -> bool | None:
 
 def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) -> SupportLayout:
     job, resolved = build.resolved.job, build.resolved
+    rules = replace(job.supports, pitch_mm=pitch)
     rng = np.random.default_rng([job.seed, build.number])
 
     def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
         plan: SupportPlan = resolved.router.call(problem, rng=rng, stop=stop, progress=progress)
         return plan
 
-    material = resolved.cell.material(pitch, pitch * float(np.tan(np.radians(job.supports.strut_angle_deg))))
+    material = resolved.cell.material(pitch, pitch * float(np.tan(np.radians(rules.strut_angle_deg))))
     return plan_supports(
         build.parts,
         job.printer.space,
-        _wishes(job, pitch, material),
-        route=route,
-        stop=stop.within(job.supports.time_limit_s),
-        progress=progress,
-    )
-
-
-def _wishes(job: Job, pitch: float, material: tuple[float, float]) -> Wishes:
-    asked = job.supports
-    return Wishes(
-        overhang_angle_deg=asked.overhang_angle_deg,
-        strut_angle_deg=asked.strut_angle_deg,
-        pitch=pitch,
-        gap=asked.gap_mm,
-        grounding=asked.grounding,
-        memory_mb=asked.memory_mb,
-        edge_capacity=asked.capacity,
-        node_capacity=asked.node_capacity,
-        escalation=asked.escalation,
-        load_area=asked.load_area_mm2,
-        load_height=asked.load_height_mm,
-        costs=(asked.vertical_cost, asked.oblique_cost),
+        rules,
         material=material,
-        least_area=asked.least_area_mm2,
-        least_length=asked.least_length_mm,
-        share_between_parts=asked.share_between_parts,
-        slender=asked.slender if asked.join_columns else None,
+        route=route,
+        stop=stop.within(rules.time_limit_s),
+        progress=progress,
     )
 
 

@@ -27,7 +27,7 @@ class UnconnectedRecord:
     part, region
         For people: the placed part's label, the overhang's.
     reason
-        One of the reasons of `amprep.model.supports`.
+        One of `amprep.model.supports.REASONS`.
     square
         Plane, y, x in the support grid.
     position_mm

@@ -8,8 +8,8 @@ from amprep.arrays import Bools, Bytes, Floats, Int64s, Ints, frozen
 from amprep.geometry.overhangs.regions import Overhangs
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
-from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
+from amprep.model.supports.edges import SupportEdges
 from amprep.supports.grid.red_squares import RedSquares
 
 

@@ -1,68 +1,74 @@
-"""How the supports of a build are to be planned: the job's wishes, in the planner's units."""
+"""The rules that supports are planned by; the job file's section `[supports]` is read into them."""
 
 from dataclasses import dataclass
 from typing import Literal
 
-from amprep.model.build import Grounding
-from amprep.model.supports import Escalation
-from amprep.supports.grid.sizing import MEMORY_MB
-from amprep.supports.routes.network import Rules
+from amprep.geometry.voxels.grid import Grid
+from amprep.model.supports import LARGEST_COST, Escalation
+from amprep.model.supports.rules import SupportRules
+from amprep.validation import LARGEST_COUNT, require_bounds
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """What `amprep.supports.plan.plan_supports` goes by; lengths in mm, areas in mm2.
+class PlanningRules(SupportRules):
+    """Rules for the grid, the routing and the bracing of supports.
 
     Attributes
     ----------
-    pitch
-        None chooses one by `choose_pitch`.
-    gap
-        Least distance between supports and parts sideways; 0 for none.
-    grounding
-        ``plate``, or ``anywhere``: what finds no way to the plate may stand on the part it belongs to.
+    pitch_mm
+        Horizontal voxel size; None lets `amprep.supports.grid.sizing.choose_pitch` choose it.
     memory_mb
-        What the grid may take.
-    edge_capacity, node_capacity, costs, material, escalation
-        As in `amprep.model.supports.SupportProblem`.
-    load_area, load_height
-        Overhang on one edge, and height up to which that holds (`Rules`); 0 for no limit.
-    least_area, least_length
-        What is smaller needs no support, unless the part would start in the air there.
+        Memory that the grid may take.
+    edge_capacity, node_capacity
+        Largest number of paths on one edge and through one square; 0 for no limit.
+    load_area_mm2
+        Overhang area that one edge may carry; 0 for no limit.
+    load_height_mm
+        Height up to which a support carries that area; the area of a taller support is smaller by the square of
+        the height, as for columns that buckle (Euler). 0 for no influence of the height.
+    escalation
+        Capacities that are raised when they leave red squares unconnected (thesis 3.3).
+    vertical_cost, oblique_cost
+        Cost of one path on a vertical and on an oblique edge.
     share_between_parts
-        ``avoid``: part by part, sharing only where a red square would otherwise stay unconnected; ``allow``:
-        one network.
-    slender
-        Columns higher than so many times their width are joined to others; None joins none.
+        ``avoid``: parts share supports only where a red square would otherwise stay unconnected; ``allow``: all
+        parts are routed as one network.
+    cross_bracing
+        Whether slender columns are connected to other columns of the same part by struts.
+    slenderness_ratio
+        Height divided by width above which a column is slender.
     """
 
-    overhang_angle_deg: float = 45.0
-    strut_angle_deg: float = 45.0
-    pitch: float | None = None
-    gap: float = 0.0
-    grounding: Grounding = "plate"
-    memory_mb: int = MEMORY_MB
+    pitch_mm: float | None = None
+    memory_mb: int = 2000
     edge_capacity: int = 0
     node_capacity: int = 0
-    costs: tuple[int, int] = (1, 2)
-    material: tuple[float, float] = (1.0, 1.0)
-    escalation: Escalation = "none"
-    load_area: float = 0.0
-    load_height: float = 0.0
-    least_area: float = 0.5
-    least_length: float = 0.5
+    load_area_mm2: float = 0.0
+    load_height_mm: float = 0.0
+    escalation: Escalation = "cut"
+    vertical_cost: int = 1
+    oblique_cost: int = 2
     share_between_parts: Literal["avoid", "allow"] = "avoid"
-    slender: float | None = None
+    cross_bracing: bool = False
+    slenderness_ratio: float = 8.0
 
-    @property
-    def rules(self) -> Rules:
-        """What holds for every network."""
-        return Rules(
-            self.edge_capacity,
-            self.node_capacity,
-            self.costs,
-            self.material,
-            self.escalation,
-            self.load_area,
-            self.load_height,
-        )
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_bounds(self, "pitch_mm", above=0)
+        require_bounds(self, "memory_mb", at_least=1, at_most=LARGEST_COUNT)
+        require_bounds(self, "edge_capacity", "node_capacity", at_least=0, at_most=LARGEST_COUNT)
+        require_bounds(self, "load_area_mm2", "load_height_mm", at_least=0)
+        require_bounds(self, "vertical_cost", "oblique_cost", at_least=1, at_most=LARGEST_COST)
+        require_bounds(self, "slenderness_ratio", at_least=1)
+
+    def edge_limit(self, grid: Grid, top: int) -> int:
+        """Return the capacity of the edges below red squares up to plane `top`; 0 for no limit.
+
+        One path carries the overhang area of one square. The limit by load is at least one path.
+        """
+        if not self.load_area_mm2:
+            return self.edge_capacity
+        height = top * grid.step
+        weaker = min(1.0, self.load_height_mm / height) ** 2 if self.load_height_mm and height else 1.0
+        paths = int(min(self.load_area_mm2 * weaker / grid.pitch**2 + 1e-9, LARGEST_COUNT))
+        return min(max(1, paths), self.edge_capacity or max(1, paths))

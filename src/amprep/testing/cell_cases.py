@@ -27,7 +27,7 @@ from amprep.model import (
 )
 from amprep.model.contacts import ConnectorRules
 from amprep.model.control import Progress
-from amprep.supports.plan import SupportLayout, Wishes, plan_supports
+from amprep.supports.plan import PlanningRules, SupportLayout, plan_supports
 from amprep.supports.solids.build import build_supports
 from amprep.testing.case import SEED, Case
 from amprep.testing.problems import box_mesh
@@ -101,7 +101,9 @@ def _layout(host: Host, part: PlacedPart) -> SupportLayout:
         rng = np.random.default_rng(SEED)
         return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
 
-    return plan_supports((part,), _SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), progress=silent)
+    return plan_supports(
+        (part,), _SPACE, PlanningRules(pitch_mm=PITCH), route=route, stop=Stop(), progress=silent
+    )
 
 
 def _slab(side: float, height: float) -> PlacedPart:

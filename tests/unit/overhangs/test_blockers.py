@@ -9,8 +9,9 @@ from tests.shared.examples import examples
 
 from amprep.geometry.meshes.subdivision import subdivide
 from amprep.model import Mesh, Part, PlacedPart, Region
-from amprep.overhangs.blockers import FINEST, mark
-from amprep.overhangs.of_part import needs_of
+from amprep.model.supports.rules import SupportRules
+from amprep.overhangs.blockers import FINEST, apply_regions
+from amprep.overhangs.of_part import overhangs_of
 
 SLAB = box_mesh((0, 0, 10), (100, 60, 5))
 """Its underside is two triangles."""
@@ -37,11 +38,11 @@ def edge_uses(mesh):
 
 
 def blocked_area(*regions, mesh=SLAB, matrix=None):
-    marked = mark(mesh, regions, np.eye(4) if matrix is None else matrix)
+    marked = apply_regions(mesh, regions, np.eye(4) if matrix is None else matrix)
     assert (edge_uses(marked.mesh) == 2).all(), "no gaps, no corners on edges"
     assert marked.mesh.signed_volume == pytest.approx(mesh.signed_volume)
     under = underside(marked.mesh)
-    return area(marked.mesh, under[marked.marks.blocked[under]])
+    return area(marked.mesh, under[marked.modifiers.blocked[under]])
 
 
 @given(x=st.floats(5, 60), y=st.floats(5, 30), size=st.floats(3, 25))
@@ -58,22 +59,22 @@ def test_regions_move_with_the_part():
 
 
 def test_without_blockers_and_enforcers_the_mesh_stays_as_it_is():
-    marked = mark(SLAB, (Region("lattice", "l", mesh=box_mesh((0, 0, 0), (5, 5, 5))),), np.eye(4))
+    marked = apply_regions(SLAB, (Region("lattice", "l", mesh=box_mesh((0, 0, 0), (5, 5, 5))),), np.eye(4))
     assert marked.mesh is SLAB
-    assert marked.marks is None
+    assert marked.modifiers is None
 
 
 def test_needs_lose_what_is_blocked_and_gain_what_is_enforced():
     slope = Mesh(SLAB.vertices + (0, 0, 1) * (SLAB.vertices[:, [0]] * 2.0), SLAB.triangles)  # 63 degrees
     enforcer = Region("enforcer", "e", mesh=box_mesh((20, 10, 0), (10, 10, 300)))
-    limits = {"overhang_angle_deg": 45.0, "least_area": 0.5, "least_length": 0.5}
-    bare = needs_of(PlacedPart("s", Part("s", slope, 1.0), np.eye(4)), **limits)
+    rules = SupportRules()
+    bare = overhangs_of(PlacedPart("s", Part("s", slope, 1.0), np.eye(4)), rules)
     assert [region.kind for region in bare.overhangs.regions] == ["edge"], "only its lower edge"
-    forced = needs_of(PlacedPart("s", Part("s", slope, 1.0, regions=(enforcer,)), np.eye(4)), **limits)
+    forced = overhangs_of(PlacedPart("s", Part("s", slope, 1.0, regions=(enforcer,)), np.eye(4)), rules)
     (face,) = (region for region in forced.overhangs.regions if region.kind == "face")
     assert face.measure == pytest.approx(100 * np.sqrt(5), rel=0.15)
     blocker = Region("blocker", "b", mesh=box_mesh((-1, -1, 9), (51, 62, 2)))
-    rest = needs_of(PlacedPart("s", Part("s", SLAB, 1.0, regions=(blocker,)), np.eye(4)), **limits)
+    rest = overhangs_of(PlacedPart("s", Part("s", SLAB, 1.0, regions=(blocker,)), np.eye(4)), rules)
     (face,) = rest.overhangs.regions
     assert face.measure == pytest.approx(3000, abs=120 * FINEST)
     assert face.centre[0] == pytest.approx(75, abs=1)

@@ -28,7 +28,8 @@ from amprep.model.supports import (
 from amprep.plugins.routers.auto import route_auto
 from amprep.plugins.routers.params import ShortestPathsParams
 from amprep.plugins.routers.shortest_paths import route_shortest_paths
-from amprep.supports.plan import Wishes, choose_pitch, plan_supports
+from amprep.supports.grid.sizing import choose_pitch
+from amprep.supports.plan import PlanningRules, plan_supports
 
 Solid = manifold3d.Manifold
 SPACE = BuildVolume([60, 60, 60])
@@ -54,9 +55,9 @@ def route(problem, stop, progress):
 
 
 def layout(parts, space=SPACE, **settings):
-    given = {name: settings.pop(name) for name in ("route", "only", "stop") if name in settings}
-    wishes = Wishes(**{"pitch": 1.0} | settings)
-    return plan_supports(parts, space, wishes, **{"route": route, "stop": Stop(), "progress": silent} | given)
+    given = {name: settings.pop(name) for name in ("route", "choose", "stop") if name in settings}
+    rules = PlanningRules(**{"pitch_mm": 1.0, "escalation": "none"} | settings)
+    return plan_supports(parts, space, rules, **{"route": route, "stop": Stop(), "progress": silent} | given)
 
 
 def columns(plan):
@@ -197,12 +198,12 @@ def shaft(width):
 
 
 def test_supports_are_shared_only_where_there_is_no_other_way():
-    plan = layout(shaft(1), least_area=0.0)
+    plan = layout(shaft(1), min_area_mm2=0.0)
     assert plan.connected.all()
     assert plan.group_parts == ((1, 2),)
     assert plan.shared == ("share supports: p1, p2",)
     assert plan.edges.flow.max() == 32
-    apart = layout(shaft(5), least_area=0.0)
+    apart = layout(shaft(5), min_area_mm2=0.0)
     assert apart.connected.all()
     assert apart.group_parts == ((1,), (2,))
 
@@ -226,7 +227,7 @@ def test_one_network_may_be_asked_for():
 
 @pytest.mark.parametrize("share", ["avoid", "allow"])
 def test_capacities_hold_for_the_whole_build(share):
-    plan = layout(shaft(2), share_between_parts=share, node_capacity=3, least_area=0.0)
+    plan = layout(shaft(2), share_between_parts=share, node_capacity=3, min_area_mm2=0.0)
     assert plan.connected.sum() == 12  # the shaft has four squares of at most three paths each
     assert {reason for reason in plan.reasons if reason} == {CAPACITY}
     _, square = np.unique(plan.edges.upper, axis=0, return_inverse=True)
@@ -237,7 +238,7 @@ def test_notes_say_what_the_router_says_that_capacities_are_raised_and_that_time
     def auto(problem, stop, progress):
         return route_auto(problem, rng=np.random.default_rng(0), stop=stop, progress=progress)
 
-    plan = layout(shaft(2), route=auto, node_capacity=3, escalation="cut", least_area=0.0)
+    plan = layout(shaft(2), route=auto, node_capacity=3, escalation="cut", min_area_mm2=0.0)
     assert plan.connected.all()
     assert any(note.startswith("p1: auto chose the router tree") for note in plan.notes)
     assert (
@@ -310,7 +311,7 @@ def test_a_blocker_mesh_takes_needs_away_and_enforcer_triangles_add_some():
 def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
     post = box((4, 4, 30), (28, 28, 0))
     slab = box((14, 4, 2), (32, 28, 20))
-    free, kept = (layout(placed(post + slab), gap=gap) for gap in (0.0, 2.0))
+    free, kept = (layout(placed(post + slab), gap_mm=gap) for gap in (0.0, 2.0))
     assert free.connected.all()
     x0, y0, _ = kept.frame.origin.astype(int)
     x, y = kept.edges.x + x0, kept.edges.y + y0
@@ -321,25 +322,25 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
 
 
 def test_a_gap_of_any_width_leaves_what_can_stand_below_its_overhang():
-    plan = layout(placed(TABLE), gap=1e9)
+    plan = layout(placed(TABLE), gap_mm=1e9)
     assert plan.connected.all()
     assert set(zip(plan.edges.y, plan.edges.x, strict=True)) <= {(y, x) for _, y, x in plan.red.tolist()}
 
 
 def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
     def pitch(size, space=SPACE):
-        return choose_pitch(placed(box(size, (0, 0, 0))), space)
+        return choose_pitch(placed(box(size, (0, 0, 0))), space, PlanningRules())
 
     assert pitch((30, 30, 30)) == 2.0
     assert pitch((15, 15, 15)) == 1.2
     assert pitch((4, 4, 4)) == 0.8
     assert pitch((700, 700, 700), BuildVolume([800, 800, 800])) > 1.5
-    assert choose_pitch([], SPACE) == 2.0
+    assert choose_pitch([], SPACE, PlanningRules()) == 2.0
 
 
 def test_a_pitch_far_too_fine_is_refused():
     with pytest.raises(JobError, match="choose a larger pitch"):
-        layout(placed(TABLE), pitch=0.02)
+        layout(placed(TABLE), pitch_mm=0.02)
 
 
 def test_a_router_that_breaks_its_promise_is_refused():
@@ -360,13 +361,13 @@ def test_the_same_build_gives_the_same_layout():
 
 def test_the_automatic_pitch_keeps_to_the_memory_allowed_and_a_given_one_is_refused_with_advice():
     part, space = placed(box((300, 300, 300), (50, 50, 20))), BuildVolume([400, 400, 400])
-    pitches = [choose_pitch(part, space, memory_mb=memory) for memory in (60, 150, 2000)]
+    pitches = [choose_pitch(part, space, PlanningRules(memory_mb=memory)) for memory in (60, 150, 2000)]
     assert pitches[0] > pitches[1] > pitches[2] == 2.0
-    layout(part, space=space, pitch=pitches[0], memory_mb=60)
+    layout(part, space=space, pitch_mm=pitches[0], memory_mb=60)
     with pytest.raises(JobError, match=r"supports.memory_mb = 60.*--set supports.pitch_mm=") as refused:
-        layout(part, space=space, pitch=0.5, memory_mb=60)
+        layout(part, space=space, pitch_mm=0.5, memory_mb=60)
     advised = float(str(refused.value).partition("pitch_mm=")[2].split(")")[0])
-    layout(part, space=space, pitch=advised, memory_mb=60)
+    layout(part, space=space, pitch_mm=advised, memory_mb=60)
 
 
 def test_each_part_gets_its_share_of_the_time_and_what_is_not_routed_is_listed():
@@ -386,7 +387,7 @@ def test_each_part_gets_its_share_of_the_time_and_what_is_not_routed_is_listed()
 
 def test_what_is_left_over_is_connected_beside_the_flow_of_other_parts():
     """Of two slabs above one shaft the upper one is left over, until capacities grow around both flows."""
-    plan = layout(shaft(2), node_capacity=3, escalation="cut", least_area=0.0)
+    plan = layout(shaft(2), node_capacity=3, escalation="cut", min_area_mm2=0.0)
     assert plan.connected.all()
     squares, number = np.unique(plan.edges.upper, axis=0, return_inverse=True)
     through = np.bincount(number.reshape(-1), weights=plan.edges.flow)

@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-from amprep.model.support_graph import SupportGraph, support_graph, to_networkx
 from amprep.model.supports import SupportProblem
+from amprep.model.supports.graph import SupportGraph, support_graph, to_networkx
 
 
 class Rival(NamedTuple):

@@ -17,8 +17,8 @@ from amprep.bench.routing.scenes import SIDES, count_graph, scene
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.host import Host
 from amprep.model import Stop, silent
-from amprep.model.support_edges import DIRECTIONS
 from amprep.model.supports import Escalation, SupportPlan, SupportProblem
+from amprep.model.supports.edges import DIRECTIONS
 
 if TYPE_CHECKING:
     from amprep.hookspecs import SupportRouter

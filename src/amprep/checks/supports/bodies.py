@@ -149,7 +149,7 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
         a, b, c = (points[triangles[:, i]] - points[triangles[:, 0]].mean(axis=0) for i in range(3))
         volume = np.bincount(shell, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0, count)
         lowest[volume <= NEGLIGIBLE_VOLUME] = 0.0
-    if build.settings.grounding == "anywhere" and (lowest > TOLERANCE).any():
+    if build.settings.rules.grounding == "anywhere" and (lowest > TOLERANCE).any():
         held = [build.parts[index] for index in body.support.parts]
         on_part = _rest_on(points, held, build.settings.overlap)
         lowest[shell[on_part[triangles].any(axis=1)]] = 0.0
@@ -167,7 +167,7 @@ def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Vi
 
     def rests(points: Floats) -> Bools:
         on_plate = points[:, 2] <= TOLERANCE
-        if build.settings.grounding == "anywhere":
+        if build.settings.rules.grounding == "anywhere":
             held = [build.parts[index] for index in body.support.parts]
             on_plate |= _rest_on(points, held, build.settings.overlap)
         return np.asarray(on_plate)
@@ -195,7 +195,7 @@ def _penetration(
 
     Where supports may stand on parts, those that the body holds may be entered downwards as well.
     """
-    feet = holds and settings.grounding == "anywhere"
+    feet = holds and settings.rules.grounding == "anywhere"
     depth = (settings.overlap if holds else 0.0) + TOLERANCE
     if not placed.part.is_solid:
         return []

@@ -13,7 +13,7 @@ from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs, s
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.mesh import Mesh
-from amprep.overhangs.of_part import needs_of
+from amprep.overhangs.of_part import overhangs_of
 from amprep.overhangs.unsupported import list_bare, region_name
 
 PROMISE = "coverage"
@@ -93,15 +93,9 @@ def _coverage(
     """Sample every part's needs, and see which samples have a contact on the same part within reach."""
     covered = []
     for placed in parts:
-        needs = needs_of(
-            placed,
-            overhang_angle_deg=settings.overhang_angle_deg,
-            least_area=settings.least_area,
-            least_length=settings.least_length,
-            grant_deg=grant_deg,
-        )
+        needs = overhangs_of(placed, settings.rules, add_angle_deg=-grant_deg)
         own = placed.part.overrides.overhang_angle_deg
-        angle = min(settings.overhang_angle_deg if own is None else own, 85.0)
+        angle = min(settings.rules.overhang_angle_deg if own is None else own, 85.0)
         spacing = settings.reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
         samples = sample_overhangs(needs.mesh.vertices, needs.mesh.triangles, needs.overhangs, spacing)
         held = _held(samples.points, placed.mesh, bodies, spacing, reach)

@@ -4,16 +4,16 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.checks.violation import Violation
-from amprep.model.support_edges import DIRECTIONS, SupportEdges, square_keys
-from amprep.model.support_graph import support_graph
 from amprep.model.supports import (
     CAPACITY,
     ENCLOSED,
-    OUT_OF_TIME,
+    ROUTER_REASONS,
     SupportPlan,
     SupportProblem,
     Voxel,
 )
+from amprep.model.supports.edges import DIRECTIONS, SupportEdges, square_keys
+from amprep.model.supports.graph import support_graph
 
 PROMISE = "support plan"
 
@@ -86,7 +86,7 @@ def _check_listing(problem: SupportProblem, plan: SupportPlan) -> list[Violation
         return [_violation("unconnected", f"expected numbers of red squares under {count}")]
     if len(np.unique(listed)) < len(listed):
         return [_violation("unconnected", "a red square is listed twice")]
-    known = (ENCLOSED, CAPACITY) if plan.stop_reason == "finished" else (ENCLOSED, CAPACITY, OUT_OF_TIME)
+    known = ROUTER_REASONS if plan.stop_reason != "finished" else ROUTER_REASONS[:2]
     strange = sorted({each.reason for each in plan.unconnected} - set(known))
     return (
         [_violation("unconnected", f"expected one of the reasons {known}, got {strange[0]!r}")]

@@ -10,7 +10,7 @@ from amprep.geometry.meshes.sampling import sample_triangles
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, wall_distance, walls_of
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
-from amprep.overhangs.of_part import needs_of
+from amprep.overhangs.of_part import overhangs_of
 
 PROMISE = "gap to walls"
 
@@ -30,7 +30,7 @@ def check_gap(build: Build, stop: Stop) -> list[Violation]:
     Walls are all faces that supports do not run up to. A wall counts for points on its outer side that see
     it: what is between them is no part. Walls without thickness and beams are not judged.
     """
-    if build.settings.gap <= 0.0:
+    if build.settings.rules.gap_mm <= 0.0:
         return []
     found: list[Violation] = []
     for placed in build.parts:
@@ -44,12 +44,12 @@ def check_gap(build: Build, stop: Stop) -> list[Violation]:
 
 def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Violation]:
     """Judge one support beside one part."""
-    reach = build.settings.gap - _GRANT
+    reach = build.settings.rules.gap_mm - _GRANT
     walls = _walls(placed, build, stood_on=placed in [build.parts[index] for index in body.parts])
     corners = body.mesh.vertices[body.mesh.triangles]
     by_walls = occupancy_of(walls.corners.min(axis=1), walls.corners.max(axis=1))
     corners = corners[by_walls.near(corners, reach)]
-    points = sample_triangles(corners, min(SPACING, build.settings.gap))
+    points = sample_triangles(corners, min(SPACING, build.settings.rules.gap_mm))
     for up in (0.0, 2.0 * TOLERANCE):  # what is in the part, or right below a face, is contact
         points = points[~inside(points + (0.0, 0.0, up), placed.mesh.vertices, placed.mesh.triangles)]
     away, foot = wall_distance(points, walls, reach, 2.0 * TOLERANCE)
@@ -61,22 +61,16 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     place = np.round(points[worst], 2).tolist()
     message = (
         f"comes within {away[worst]:.3f} mm of a wall of {placed.label} at {place} mm, the gap is "
-        f"{build.settings.gap:g} mm ({len(close)} of {len(points)} points)"
+        f"{build.settings.rules.gap_mm:g} mm ({len(close)} of {len(points)} points)"
     )
     return [Violation(PROMISE, body.name, message)]
 
 
 def _walls(placed: PlacedPart, build: Build, *, stood_on: bool) -> PartWalls:
     settings = build.settings
-    needs = needs_of(
-        placed,
-        overhang_angle_deg=settings.overhang_angle_deg,
-        least_area=settings.least_area,
-        least_length=settings.least_length,
-        grant_deg=-_GRANT_DEG,
-    )
+    needs = overhangs_of(placed, settings.rules, add_angle_deg=_GRANT_DEG)
     overlap = max(settings.overlap, CONTACT_TOLERANCE) + TOLERANCE
-    stood_on = stood_on and settings.grounding == "anywhere"
+    stood_on = stood_on and settings.rules.grounding == "anywhere"
     return walls_of(needs.mesh.vertices, needs.mesh.triangles, needs.overhangs, overlap, stood_on=stood_on)
 
 

@@ -18,7 +18,7 @@ from amprep.geometry.overhangs.surface import LEVEL, above_plate, cross_products
 from amprep.geometry.overhangs.tips import minimum_plateaus, tips_of
 
 
-class Marks(NamedTuple):
+class Modifiers(NamedTuple):
     """What a person marked: triangles that must, triangles and vertices that must not be supported.
 
     A blocked edge has both its ends blocked. Marked triangles count only where they look down.
@@ -34,9 +34,9 @@ def find_overhangs(
     triangles: Int32s,
     *,
     angle_deg: float,
-    least_area: float = 0.0,
-    least_length: float = 0.0,
-    marks: Marks | None = None,
+    min_area: float = 0.0,
+    min_length: float = 0.0,
+    modifiers: Modifiers | None = None,
 ) -> Overhangs:
     """Find what needs support when the mesh is built upwards from the plate z = 0 (thesis 3.1).
 
@@ -46,7 +46,7 @@ def find_overhangs(
     within 0.01 degrees of the threshold count as steep enough. What lies on the plate (z <= 0.001 mm) is
     held by it.
 
-    Regions smaller than `least_area` (mm2) or `least_length` (mm) are dropped, unless they hold a local
+    Regions smaller than `min_area` (mm2) or `min_length` (mm) are dropped, unless they hold a local
     minimum (there the part would start in the air, however small the start) or an enforced triangle. Tips
     are local minima and never dropped.
 
@@ -66,20 +66,20 @@ def find_overhangs(
     tips, tip_label = tips_of(minimum, surface.triangles[needy], sharp)
 
     enforced = np.zeros(len(triangles), np.bool_)
-    if marks is not None:
-        enforced = marks.enforced & (normals[:, 2] < -LEVEL) & above_plate(surface)
-        needy = (needy | enforced) & ~marks.blocked
-        blocked = marks.blocked_vertices[surface.first]
+    if modifiers is not None:
+        enforced = modifiers.enforced & (normals[:, 2] < -LEVEL) & above_plate(surface)
+        needy = (needy | enforced) & ~modifiers.blocked
+        blocked = modifiers.blocked_vertices[surface.first]
         sharp = sharp[~blocked[sharp].all(axis=1)]
         tips, tip_label = tips[~blocked[tips]], tip_label[~blocked[tips]]
     faces = np.flatnonzero(needy)
     area = 0.5 * np.linalg.norm(cross_products(surface.points, surface.triangles[faces]), axis=1)
     face_label = components_of_faces(surface, needy)
     starts = np.asarray((minimum[surface.triangles[faces]] >= 0).any(axis=1) | enforced[faces])
-    face_keep = large_enough(face_label, area, least_area, starts)
+    face_keep = large_enough(face_label, area, min_area, starts)
     length = np.linalg.norm(surface.points[sharp[:, 1]] - surface.points[sharp[:, 0]], axis=1)
     edge_label = components_of_edges(sharp, len(surface.points))
-    edge_keep = large_enough(edge_label, length, least_length, np.asarray((minimum[sharp] >= 0).any(axis=1)))
+    edge_keep = large_enough(edge_label, length, min_length, np.asarray((minimum[sharp] >= 0).any(axis=1)))
     return labelled_regions(
         surface,
         (faces[face_keep], face_label[face_keep], area[face_keep]),

@@ -7,8 +7,3 @@ def require_quantity(quantity: int | None) -> None:
     """Raise `ValueError` unless `quantity` is None or a count that a job may ask for."""
     valid = quantity is None or 1 <= quantity <= LARGEST_COUNT
     require(valid, f"quantity must be between 1 and {LARGEST_COUNT}", quantity)
-
-
-def require_overhang(angle: float) -> None:
-    """Raise `ValueError` unless `angle` (degrees) is an overhang angle that a job may ask for."""
-    require(0 <= angle <= 89, "overhang_angle_deg must be between 0 and 89", angle)

@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Floats, frozen
 from amprep.errors import JobError
-from amprep.job.settings.bounds import require_overhang, require_quantity
+from amprep.job.settings.bounds import require_quantity
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
 from amprep.validation import require, require_bounds
@@ -39,8 +39,7 @@ class PartSettings:
         require("\0" not in (self.file or ""), "file must be a path", repr(self.file))
         require_quantity(self.quantity)
         require_bounds(self, "value", at_least=0)
-        if self.overhang_angle_deg is not None:
-            require_overhang(self.overhang_angle_deg)
+        require_bounds(self, "overhang_angle_deg", at_least=0, at_most=89)
         self._require_boxes()
         try:
             self.orientations  # noqa: B018 reading the property checks the rotations

@@ -1,6 +1,6 @@
 """Voxelisation kernels: which voxels triangles, edges and points meet, and which voxel centres lie inside.
 
-Coordinates are mm relative to the window's corner; a window is an array over voxels ``[k, y, x]``.
+Coordinates are mm relative to the block's corner; a block is an array over voxels ``[k, y, x]``.
 """
 
 import numpy as np

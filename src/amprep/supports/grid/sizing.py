@@ -1,4 +1,4 @@
-"""The support grid of a build: its fineness, its frame, and which voxels are black or closed (thesis 3.2)."""
+"""Choose the pitch, position and shape of the support grid of a build (thesis 3.2)."""
 
 from collections.abc import Sequence
 
@@ -6,28 +6,26 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.errors import JobError
-from amprep.geometry.overhangs.regions import Overhangs
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
-from amprep.model.mesh import Mesh
+from amprep.overhangs.of_part import PartOverhangs
+from amprep.supports.rules import PlanningRules
 
 FINEST_PITCH, USUAL_PITCH = 0.8, 2.0
-"""mm; the bounds of the automatic pitch, before memory."""
-
-MEMORY_MB = 2000
-"""Default budget of a support grid."""
+"""Bounds (mm) of the automatic pitch, before the memory limit is applied."""
 
 _SQUARES_PER_PART = 12
+"""Number of voxels along the mean extent of the median part."""
 
-_BYTES_PER_CUBE = 40
-"""At the peak, measured with the exact routers; `shortest-paths` takes half."""
+_BYTES_PER_VOXEL = 40
+"""Peak memory of a voxel, measured with the exact routers; `shortest-paths` takes half."""
 
 
 def usual_pitch(parts: Sequence[PlacedPart]) -> float:
-    """Return a pitch that suits the parts, in mm.
+    """Return the pitch (mm) at which the median part has 12 voxels along its mean extent, within 0.8 to 2.0 mm.
 
-    The median part gets 12 squares along the geometric mean of its three extents, within 0.8 to 2.0 mm.
+    The mean extent of a part is the geometric mean of the three sides of its bounding box.
     """
     bounds = [placed.mesh.bounds for placed in parts]
     if not bounds:
@@ -36,15 +34,25 @@ def usual_pitch(parts: Sequence[PlacedPart]) -> float:
     return min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), FINEST_PITCH), USUAL_PITCH)
 
 
-def choose_pitch(
-    parts: Sequence[PlacedPart], space: BuildVolume, strut_angle_deg: float = 45.0, memory_mb: int = MEMORY_MB
-) -> float:
-    """Return the usual pitch, or the least larger one (by tenths of a mm) whose grid keeps to the memory.
+def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, rules: PlanningRules) -> float:
+    """Return the pitch of the rules (mm) or, if they leave it open, a pitch that suits parts and memory.
 
-    The grid is taken to be as high as the parts.
+    This is the usual pitch, or the smallest larger one in tenths of a millimetre whose grid, as high as the
+    highest part, fits into ``rules.memory_mb``.
+
+    Parameters
+    ----------
+    parts
+        The parts of one build.
+    space
+        The build volume.
+    rules
+        Pitch, strut angle and memory.
     """
+    if rules.pitch_mm is not None:
+        return rules.pitch_mm
     pitch = usual_pitch(parts)
-    while estimated_megabytes(parts, space, pitch, strut_angle_deg) > memory_mb:
+    while estimated_megabytes(parts, space, pitch, rules.strut_angle_deg) > rules.memory_mb:
         pitch = round(pitch * 1.05 + 0.05, 1)
     return pitch
 
@@ -52,63 +60,67 @@ def choose_pitch(
 def estimated_megabytes(
     parts: Sequence[PlacedPart], space: BuildVolume, pitch: float, strut_angle_deg: float
 ) -> float:
-    """Return about what a grid as high as the parts takes."""
+    """Return the approximate memory (MB) of a grid that is as high as the parts."""
     bounds = [placed.mesh.bounds for placed in parts]
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))
     return _megabytes(_extent(bounds, float(_common_bounds(bounds)[1][2]), space, pitch, step)[1])
 
 
 def _megabytes(count: Sequence[int]) -> float:
-    return float(np.prod(np.array(count, np.float64))) * _BYTES_PER_CUBE / 1e6
+    return float(np.prod(np.array(count, np.float64))) * _BYTES_PER_VOXEL / 1e6
 
 
-def highest_need(meshes: Sequence[Mesh], overhangs: Sequence[Overhangs]) -> float:
-    """Return the greatest height of anything that needs support, mm; 0 when nothing does."""
-    height = 0.0
-    for mesh, needs in zip(meshes, overhangs, strict=True):
-        used = np.concatenate([mesh.triangles[needs.faces].ravel(), needs.edges.ravel(), needs.tips])
-        height = max(height, float(mesh.vertices[used, 2].max(initial=0.0)))
-    return height
+def lay_grid(parts: Sequence[PartOverhangs], space: BuildVolume, pitch: float, rules: PlanningRules) -> Grid:
+    """Return the grid around the parts, inside the build volume, up to the highest overhang.
 
+    The grid is wider than the parts by the distance that paths from its top plane can move sideways. No voxel
+    leaves the build volume. Where the pitch does not divide the build volume and a part reaches into the
+    incomplete last column of voxels, the grid is shifted so that it ends at that wall.
 
-def frame_of(
-    meshes: Sequence[Mesh],
-    overhangs: Sequence[Overhangs],
-    space: BuildVolume,
-    *,
-    pitch: float,
-    strut_angle_deg: float,
-    memory_mb: int = MEMORY_MB,
-) -> Grid:
-    """Lay the grid around the parts, within the build volume, up to the highest overhang.
-
-    It is as much wider than the parts as paths from the highest plane can stray. No voxel sticks out of the
-    box; when the pitch does not divide the box and a part stands in the last, partial square, the grid is
-    shifted to end at that wall.
+    Parameters
+    ----------
+    parts
+        Meshes and overhangs of the placed parts.
+    space
+        The build volume.
+    pitch
+        Horizontal voxel size, mm.
+    rules
+        The strut angle, which gives the voxel height ``pitch * tan(strut angle)``, and the memory.
 
     Raises
     ------
     JobError
-        When that takes more memory than `memory_mb`.
+        If the grid takes more memory than allowed.
     """
-    step = pitch * float(np.tan(np.radians(strut_angle_deg)))
-    bounds = [mesh.bounds for mesh in meshes]
-    origin, count = _extent(bounds, highest_need(meshes, overhangs), space, pitch, step)
+    step = pitch * float(np.tan(np.radians(rules.strut_angle_deg)))
+    origin, count = _extent(
+        [part.mesh.bounds for part in parts], _highest_overhang(parts), space, pitch, step
+    )
     megabytes = _megabytes(count)
-    if megabytes > memory_mb:
-        fitting = max(round(pitch * (megabytes / memory_mb) ** (1 / 3) + 0.05, 1), 0.1)
+    if megabytes > rules.memory_mb:
+        fitting = max(round(pitch * (megabytes / rules.memory_mb) ** (1 / 3) + 0.05, 1), 0.1)
         raise JobError(
-            f"the support grid of {pitch:g} x {pitch:g} x {step:.3g} mm takes about {megabytes:.0f} MB, more than "
-            f"supports.memory_mb = {memory_mb}: choose a larger pitch (--set supports.pitch_mm={fitting:g}) or allow "
-            "more memory"
+            f"a support grid of {pitch:g} x {pitch:g} x {step:.3g} mm takes about {megabytes:.0f} MB, more than "
+            f"supports.memory_mb = {rules.memory_mb}: choose a larger pitch (--set supports.pitch_mm={fitting:g}) or "
+            "allow more memory"
         )
     return Grid(origin, pitch, step, (count[0], count[1], count[2]))
+
+
+def _highest_overhang(parts: Sequence[PartOverhangs]) -> float:
+    """Return the largest height of an overhang, mm; 0 without overhangs."""
+    height = 0.0
+    for mesh, overhangs in parts:
+        used = [mesh.triangles[overhangs.faces].ravel(), overhangs.edges.ravel(), overhangs.tips]
+        height = max(height, float(mesh.vertices[np.concatenate(used), 2].max(initial=0.0)))
+    return height
 
 
 def _extent(
     bounds: Sequence[tuple[Floats, Floats]], height: float, space: BuildVolume, pitch: float, step: float
 ) -> tuple[Floats, list[int]]:
-    """Return the origin, and the numbers of voxels (z, y, x), of a grid for overhangs up to `height` mm."""
+    """Return the origin and the voxel counts (z, y, x) of a grid for overhangs up to `height` mm."""
     top = max(min(whole_count(height / step) + 1, whole_count(space.size[2] / step)), 1)
     lo, hi = _common_bounds(bounds)
     origin, count = np.zeros(3), [top, 1, 1]
@@ -124,7 +136,7 @@ def _extent(
 
 
 def whole_count(count: float) -> int:
-    """Return the number of voxels that cover a length of `count` voxels."""
+    """Return `count` rounded down, with a tolerance for rounding errors."""
     return int(np.floor(count + 1e-9))
 
 

@@ -9,10 +9,10 @@ from amprep.arrays import Ints
 from amprep.flows.complete import complete
 from amprep.flows.reachability import has_way
 from amprep.model.control import Progress, Stop, silent
-from amprep.model.support_edges import SupportEdges, square_keys
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME
+from amprep.model.supports.edges import SupportEdges, square_keys
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.routes.network import NO_VOXELS, Network, voxels_below
+from amprep.supports.routes.network import NO_VOXELS, SupportNetwork, voxels_below
 
 
 class Routed(NamedTuple):
@@ -30,14 +30,14 @@ class Routed(NamedTuple):
     reasons: tuple[str, ...]
 
 
-def route_together(network: Network, progress: Progress) -> Routed:
+def route_together(network: SupportNetwork, progress: Progress) -> Routed:
     """Route all parts as one network, as in the thesis: supports of different parts may merge."""
     reds = _above_plate(network.red)
     edges = network.connect(reds, NO_VOXELS, network.stop, progress)
     return Routed(_with_parts(edges, network.red, reds), tuple(network.reasons))
 
 
-def route_apart(network: Network, progress: Progress) -> Routed:
+def route_apart(network: SupportNetwork, progress: Progress) -> Routed:
     """Route part by part; the voxels in use are closed to the parts that follow.
 
     Parts are routed in the order of their highest red square, lowest first: the lower it is, the fewer squares
@@ -72,7 +72,7 @@ def _fraction_of_time(stop: Stop, count: int) -> Stop:
     return stop if stop.deadline is None else stop.within(stop.remaining() / count)
 
 
-def route_shared(network: Network, edges: SupportEdges) -> SupportEdges:
+def route_shared(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     """Connect the unconnected red squares through the supports of other parts.
 
     The router first connects them within the capacity that the flow of `edges` leaves. Red squares for which that
@@ -98,16 +98,16 @@ def route_shared(network: Network, edges: SupportEdges) -> SupportEdges:
     return edges
 
 
-def _route_within_capacity(network: Network, edges: SupportEdges, left: Ints) -> SupportEdges:
+def _route_within_capacity(network: SupportNetwork, edges: SupportEdges, left: Ints) -> SupportEdges:
     """Route reachable red squares beside the flow of `edges` without exceeding a capacity.
 
     The router does not know that flow. The squares where both flows together exceed a capacity are therefore
     closed, and all is routed again, until no capacity is exceeded.
     """
     rules, closed = network.rules, NO_VOXELS
-    limit = rules.edge_limit(network.frame, int(network.red.square[:, 0].max()))
+    limit = rules.edge_limit(network.laid.grid, int(network.red.square[:, 0].max()))
     while left.size and not network.stop():
-        network.rules = rules._replace(escalation="none")
+        network.rules = replace(rules, escalation="none")
         more = network.connect(left, closed, network.stop, silent)
         network.rules = rules
         network.explain(left[np.isin(left, network.unconnected(ENCLOSED))], CAPACITY)
@@ -131,7 +131,7 @@ def _exceeded(edges: SupportEdges, edge_capacity: int, node_capacity: int) -> In
     return voxels_below(edges.upper[over])
 
 
-def _complete(network: Network, edges: SupportEdges) -> SupportEdges:
+def _complete(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     """Return the edges of a maximum flow in one network of all parts, with escalation where that is allowed."""
     reds = _above_plate(network.red)
     posed = network.pose(reds, NO_VOXELS)

@@ -1,4 +1,4 @@
-"""The voxels of a build and the red squares to connect, as a network that any router can be asked to route."""
+"""Pose support problems on the grid of a build, and keep what the router answers."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bytes, Int64s, Ints, frozen
+from amprep.arrays import Int64s, Ints, frozen
 from amprep.checks.supports.plan import check_plan
 from amprep.errors import PluginError
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.control import Progress, Stop
-from amprep.model.support_edges import SupportEdges, square_keys
-from amprep.model.supports import ENCLOSED, OUT_OF_TIME, Escalation, SupportPlan, SupportProblem, Voxel
-from amprep.supports.grid.red_squares import RedSquares
-from amprep.validation import LARGEST_COUNT
+from amprep.model.supports import ENCLOSED, OUT_OF_TIME, SupportPlan, SupportProblem, Voxel
+from amprep.model.supports.edges import SupportEdges, square_keys
+from amprep.supports.grid.red_squares import SupportGrid
+from amprep.supports.rules import PlanningRules
 
 Route = Callable[[SupportProblem, Stop, Progress], SupportPlan]
 """A router: called with a problem, a stop and a progress callback, it returns a plan."""
@@ -23,48 +23,15 @@ NO_VOXELS = frozen([], np.int32, 3)
 """An empty list ``(0, 3)`` of voxels."""
 
 
-class Rules(NamedTuple):
-    """What holds for every network: capacities (0: none) and the rest as in `SupportProblem`.
-
-    Attributes
-    ----------
-    load_area
-        mm2 of overhang that one edge may carry; 0 for any.
-    load_height
-        mm up to which a support carries that much; a taller one carries less by the square of the height, as
-        columns that buckle do (Euler). 0: any height.
-    """
-
-    edge_capacity: int
-    node_capacity: int
-    costs: tuple[int, int]
-    material: tuple[float, float]
-    escalation: Escalation = "none"
-    load_area: float = 0.0
-    load_height: float = 0.0
-
-    def edge_limit(self, frame: Grid, top: int) -> int:
-        """Return the capacity of edges in a network whose highest red square is in plane `top`; 0 for none.
-
-        A path carries one square of overhang. At least one path may use an edge.
-        """
-        if not self.load_area:
-            return self.edge_capacity
-        height = top * frame.step
-        weaker = min(1.0, self.load_height / height) ** 2 if self.load_height and height else 1.0
-        by_load = max(1, int(min(self.load_area * weaker / frame.pitch**2 + 1e-9, LARGEST_COUNT)))
-        return min(by_load, self.edge_capacity or by_load)
-
-
-class Posed(NamedTuple):
-    """A problem in the block of voxels that paths can reach.
+class PosedProblem(NamedTuple):
+    """A support problem on the block of voxels that paths can reach.
 
     Attributes
     ----------
     corner
         ``(3,)`` plane, y, x of the block's first voxel in the grid.
     number
-        ``(n,)`` which of the problem's red squares each one asked for is; parts may share some.
+        ``(n,)`` index of each requested red square in the problem; red squares of several parts may share one.
     """
 
     problem: SupportProblem
@@ -72,33 +39,49 @@ class Posed(NamedTuple):
     number: Int64s
 
 
-class Network:
-    """The voxels of a build and the red squares to connect, ready to be routed by any of the routers.
+class SupportNetwork:
+    """The red squares of a build and the router that connects them.
 
     Attributes
     ----------
+    red
+        All red squares of the build.
     reasons
-        Of each red square: why it is not connected, ``""`` when it is.
+        For each red square, why it is unconnected; ``""`` when it is connected.
     notes
-        What the user should know of the routing so far, each with the part that it is about, None for several.
+        Sentences for the user about the routing, each with the part it concerns; None for several parts.
     """
 
     def __init__(
-        self, frame: Grid, voxels: Bytes, red: RedSquares, rules: Rules, route: Route, stop: Stop
+        self, laid: SupportGrid, rules: PlanningRules, material: tuple[float, float], route: Route, stop: Stop
     ) -> None:
-        self.frame, self.voxels, self.red = frame, voxels, red
-        self.rules, self.route, self.stop = rules, route, stop
-        self.reasons = [""] * len(red.part)
+        self.laid, self.red = laid, laid.red
+        self.rules, self.material, self.route, self.stop = rules, material, route, stop
+        self.reasons = [""] * len(self.red.part)
         self.notes: list[tuple[int | None, str]] = []
 
     def connect(self, reds: Ints, closed: Ints, stop: Stop, progress: Progress) -> SupportEdges:
-        """Route the red squares numbered `reds` with the voxels ``closed[:, :3]`` (k, y, x) closed for once.
+        """Route red squares, with further voxels closed, and note why red squares stay unconnected.
 
-        Notes the reasons of those that stay unconnected, and returns the edges; without time nothing is routed.
+        Parameters
+        ----------
+        reds
+            ``(n,)`` numbers of the red squares to connect.
+        closed
+            ``(k, 3)`` k, y, x of the voxels that are closed in this problem only.
+        stop
+            Ends the routing; if it says stop already, no edge is returned.
+        progress
+            Progress callback.
+
+        Raises
+        ------
+        PluginError
+            If the router returns a plan that `check_plan` rejects.
         """
-        shut = np.isin(square_keys(voxels_below(self.red.square[reds])), square_keys(closed))
-        self.explain(reds[shut], ENCLOSED)
-        reds = reds[~shut]
+        blocked = np.isin(square_keys(voxels_below(self.red.square[reds])), square_keys(closed))
+        self.explain(reds[blocked], ENCLOSED)
+        reds = reds[~blocked]
         if len(reds) and stop():
             self.explain(reds, OUT_OF_TIME)
             self._note((f"routing ended early: {stop.reason}",), reds)
@@ -106,37 +89,53 @@ class Network:
             return SupportEdges.from_rows([])
         posed = self.pose(reds, closed)
         plan = self.route(posed.problem, stop, progress)
-        broken = check_plan(posed.problem, plan)
-        if broken:
-            raise PluginError(
-                f"the support router broke its promise: {broken[0].subject} {broken[0].message}"
-            )
+        violations = check_plan(posed.problem, plan)
+        if violations:
+            first = violations[0]
+            raise PluginError(f"the support router broke its promise: {first.subject} {first.message}")
         return self.read(plan, posed, reds)
 
-    def pose(self, reds: Ints, closed: Ints) -> Posed:
-        """Return the problem of connecting `reds`, one or more: a path from plane p strays at most p squares."""
-        _, first, number = np.unique(
-            square_keys(self.red.square[reds]), return_index=True, return_inverse=True
-        )
+    def pose(self, reds: Ints, closed: Ints) -> PosedProblem:
+        """Return the problem of connecting one or more red squares.
+
+        A path from plane p moves sideways by at most p squares, which bounds the block of voxels.
+        """
+        keys = square_keys(self.red.square[reds])
+        _, first, number = np.unique(keys, return_index=True, return_inverse=True)
         square = self.red.square[reds[first]]
         top = int(square[:, 0].max())
-        _, ny, nx = self.frame.shape
-        y, x = _stretch(square[:, 1], top, ny), _stretch(square[:, 2], top, nx)
-        voxels = self.voxels[: top + 1, y, x].copy()
+        _, ny, nx = self.laid.grid.shape
+        y, x = _range_around(square[:, 1], top, ny), _range_around(square[:, 2], top, nx)
+        voxels = self.laid.voxels[: top + 1, y, x].copy()
         corner = np.array([0, y.start, x.start], np.int32)
         inner = closed - corner
         inner = inner[((inner >= 0) & (inner < voxels.shape)).all(axis=1)]
         voxels[tuple(inner.T)] = Voxel.CLOSED
-        return Posed(self._problem(voxels, square - corner, reds[first], corner), corner, number)
+        grid, rules = self.laid.grid, self.rules
+        nz, ny, nx = voxels.shape
+        problem = SupportProblem(
+            Grid(grid.origin + corner[::-1] * grid.size, grid.pitch, grid.step, (nz, ny, nx)),
+            voxels,
+            square - corner,
+            self.red.part[reds[first]],
+            self.red.region[reds[first]],
+            voxels[0] == Voxel.FREE,
+            rules.edge_limit(grid, top),
+            rules.node_capacity,
+            (rules.vertical_cost, rules.oblique_cost),
+            self.material,
+            rules.escalation,
+        )
+        return PosedProblem(problem, corner, number)
 
-    def read(self, plan: SupportPlan, posed: Posed, reds: Ints) -> SupportEdges:
-        """Note what a plan says of the red squares it was asked for, and return its edges."""
-        words = list(plan.notes)
+    def read(self, plan: SupportPlan, posed: PosedProblem, reds: Ints) -> SupportEdges:
+        """Note what a plan says about the requested red squares, and return its edges in the whole grid."""
+        sentences = list(plan.notes)
         if plan.raised and self.rules.escalation != "none":
-            words.append(f"capacities are raised by up to {plan.raised}, as supports.escalation allows")
+            sentences.append(f"capacities are raised by up to {plan.raised}, as supports.escalation allows")
         if plan.stop_reason != "finished":
-            words.append(f"routing ended early: {plan.stop_reason}")
-        self._note(words, reds)
+            sentences.append(f"routing ended early: {plan.stop_reason}")
+        self._note(sentences, reds)
         reason = {each.red: each.reason for each in plan.unconnected}
         for red, i in zip(reds, posed.number.tolist(), strict=True):
             self.reasons[red] = reason.get(i, "")
@@ -144,45 +143,27 @@ class Network:
         return replace(plan.edges, y=plan.edges.y + y, x=plan.edges.x + x)
 
     def explain(self, reds: Ints, reason: str) -> None:
-        """Note why red squares are not connected."""
+        """Note why red squares are unconnected."""
         for red in reds:
             self.reasons[red] = reason
 
     def unconnected(self, *reasons: str) -> Ints:
         """Return the numbers of the unconnected red squares; with `reasons`, of those with one of these reasons."""
-        return np.flatnonzero([each in reasons if reasons else each != "" for each in self.reasons]).astype(
-            np.int32
-        )
+        chosen = [each in reasons if reasons else each != "" for each in self.reasons]
+        return np.flatnonzero(chosen).astype(np.int32)
 
-    def _note(self, words: Sequence[str], reds: Ints) -> None:
+    def _note(self, sentences: Sequence[str], reds: Ints) -> None:
         """Keep sentences about the parts of red squares, each once."""
         parts = np.unique(self.red.part[reds])
-        notes = [(int(parts[0]) if len(parts) == 1 else None, each) for each in words]
+        notes = [(int(parts[0]) if len(parts) == 1 else None, each) for each in sentences]
         self.notes += [note for note in notes if note not in self.notes]
-
-    def _problem(self, voxels: Bytes, square: Ints, reds: Ints, corner: Ints) -> SupportProblem:
-        frame, rules = self.frame, self.rules
-        origin = frame.origin + corner[::-1] * (frame.pitch, frame.pitch, frame.step)
-        nz, ny, nx = voxels.shape
-        return SupportProblem(
-            Grid(origin, frame.pitch, frame.step, (nz, ny, nx)),
-            voxels,
-            square,
-            self.red.part[reds],
-            self.red.region[reds],
-            voxels[0] == Voxel.FREE,
-            rules.edge_limit(frame, int(square[:, 0].max())),
-            rules.node_capacity,
-            rules.costs,
-            rules.material,
-            rules.escalation,
-        )
 
 
 def voxels_below(square: Ints) -> Ints:
-    """Return the voxel (k, y, x) below each square."""
+    """Return the voxel (k, y, x) below each square ``(n, 3)``."""
     return np.asarray(square - (1, 0, 0), np.int32)
 
 
-def _stretch(values: Ints, margin: int, limit: int) -> slice:
+def _range_around(values: Ints, margin: int, limit: int) -> slice:
+    """Return the range of indices from the smallest to the largest value, widened by `margin`, within the grid."""
     return slice(max(int(values.min()) - margin, 0), min(int(values.max()) + margin + 1, limit))

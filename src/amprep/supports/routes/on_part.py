@@ -1,18 +1,18 @@
-"""Stands supports on the part they hold where no way leads to the plate: straight columns with a foot."""
+"""Ground supports on parts: straight columns that stand on the part they support."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Bytes, Ints
-from amprep.model.support_edges import SupportEdges
+from amprep.arrays import Bools, Ints
 from amprep.model.supports import Voxel
-from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.grid.voxel_states import PartVoxels
+from amprep.model.supports.edges import SupportEdges
+from amprep.supports.grid.red_squares import SupportGrid
 
-DEEPEST = 2
-"""Cubes below a green square that its foot may pass on its way to the surface."""
+LARGEST_DEPTH = 2
+"""Number of voxels below the lowest square of a column through which its foot may reach the surface."""
+
+Index = tuple[int, int, int]
 
 
 class Grounded(NamedTuple):
@@ -23,59 +23,62 @@ class Grounded(NamedTuple):
     edges
         The edges of the columns.
     feet
-        ``(k, 5)`` int32: the green square (plane, y, x) on top of a occupied voxel, the part, and how many voxels of
-        its column the foot may pass downwards.
-    served
-        ``(m,)`` which red squares they connect.
+        ``(k, 5)`` int32: lowest square of a column (plane, y, x), the part it stands on, and the number of voxels
+        below the square that its foot may pass.
+    connected
+        ``(m,)`` bool, the red squares that the columns connect.
     """
 
     edges: SupportEdges
     feet: Ints
-    served: Bools
+    connected: Bools
 
 
-def stand_on_parts(
-    voxels: Bytes,
-    meeting: Bytes,
-    blocks: Sequence[PartVoxels],
-    red: RedSquares,
-    left: Bools,
-    edges: SupportEdges,
-) -> Grounded:
-    """Lead the red squares that are `left` ``(m,)`` straight down to the first occupied voxel.
+def stand_on_parts(laid: SupportGrid, left: Bools, edges: SupportEdges) -> Grounded:
+    """Connect red squares by straight columns down to the first occupied voxel.
 
-    That voxel has to belong to the part that the square holds, and to no other; the voxels on the way are white
-    and in no other part's supports.
+    The voxel must be occupied by the part that the red square belongs to, and by no other part. The voxels above
+    it must be free and not used by the supports of other parts.
+
+    Parameters
+    ----------
+    laid
+        The grid.
+    left
+        ``(m,)`` bool, the red squares to connect.
+    edges
+        The edges routed so far.
     """
     users = edges.voxel_parts()
-    found: list[list[int]] = []
-    feet: dict[tuple[int, int, int], list[int]] = {}
-    served = np.zeros(len(left), np.bool_)
+    rows: list[list[int]] = []
+    feet: dict[Index, list[int]] = {}
+    connected = np.zeros(len(left), np.bool_)
     for number in np.flatnonzero(left).tolist():
-        (plane, y, x), part = red.square[number].tolist(), int(red.part[number])
+        (plane, y, x), part = laid.red.square[number].tolist(), int(laid.red.part[number])
         below = plane - 1
-        while below >= 0 and voxels[below, y, x] == Voxel.FREE and users.get((below, y, x), part) == part:
+        while (
+            below >= 0 and laid.voxels[below, y, x] == Voxel.FREE and users.get((below, y, x), part) == part
+        ):
             below -= 1
-        if below < 0 or below == plane - 1 or not _bears(voxels, meeting, blocks[part], (below, y, x)):
+        if below < 0 or below == plane - 1 or not _is_bearing(laid, part, (below, y, x)):
             continue
-        served[number] = True
+        connected[number] = True
         for k in range(below + 1, plane):
             users[k, y, x] = part
-        found += [[k + 1, y, x, 0, 1, 1, part] for k in range(below + 1, plane)]
-        deep = 1
-        while deep < DEEPEST and _bears(voxels, meeting, blocks[part], (below - deep, y, x)):
-            deep += 1
-        feet[below + 1, y, x] = [below + 1, y, x, part, deep]
+        rows += [[k + 1, y, x, 0, 1, 1, part] for k in range(below + 1, plane)]
+        depth = 1
+        while depth < LARGEST_DEPTH and _is_bearing(laid, part, (below - depth, y, x)):
+            depth += 1
+        feet[below + 1, y, x] = [below + 1, y, x, part, depth]
     return Grounded(
-        SupportEdges.from_rows(found),
-        np.array(list(feet.values()), np.int32).reshape(-1, 5),
-        served,
+        SupportEdges.from_rows(rows), np.array(list(feet.values()), np.int32).reshape(-1, 5), connected
     )
 
 
-def _bears(voxels: Bytes, meeting: Bytes, block: PartVoxels, voxel: tuple[int, int, int]) -> bool:
-    """Tell whether a voxel is black because of the part alone."""
-    inner = tuple(at - first for at, first in zip(voxel, block.window.first, strict=True))
-    if not all(0 <= at < count for at, count in zip(inner, block.window.shape, strict=True)):
+def _is_bearing(laid: SupportGrid, part: int, voxel: Index) -> bool:
+    """Tell whether a voxel is occupied by this part alone."""
+    own = laid.parts[part]
+    inner = tuple(at - first for at, first in zip(voxel, own.block.first, strict=True))
+    if not all(0 <= at < count for at, count in zip(inner, own.block.shape, strict=True)):
         return False
-    return bool(block.black[inner] and meeting[voxel] == 1 and voxels[voxel] == Voxel.OCCUPIED)
+    return bool(own.occupied[inner] and laid.part_count[voxel] == 1 and laid.voxels[voxel] == Voxel.OCCUPIED)

@@ -6,10 +6,11 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
-from amprep.model.build import TARGETS, BuildSettings, Grounding, SupportsAs, Target, Unsupported
+from amprep.model.build import TARGETS, BuildSettings, SupportsAs, Target, Unsupported
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
+from amprep.model.supports.rules import Grounding, SupportRules
 from amprep.threemf.build.values import (
     JsonObject,
     as_list,
@@ -43,24 +44,16 @@ def numbered(name: str, number: int) -> str:
 
 
 _SETTING_STRINGS = ("build_id", "printer")
-_SETTING_NUMBERS = (
-    "clearance",
-    "lift",
-    "gap",
-    "overlap",
-    "reach",
-    "overhang_angle_deg",
-    "strut_angle_deg",
-    "least_area",
-    "least_length",
-)
+_SETTING_NUMBERS = ("clearance", "lift", "overlap", "reach")
+_RULE_NUMBERS = ("overhang_angle_deg", "strut_angle_deg", "min_area_mm2", "min_length_mm", "gap_mm")
 _OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
 
 
 def settings_record(settings: BuildSettings) -> JsonObject:
     """Return the settings of a build without its build volume."""
-    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "grounding", "supports_as")
-    return {name: getattr(settings, name) for name in names}
+    names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "supports_as")
+    rules = {name: getattr(settings.rules, name) for name in (*_RULE_NUMBERS, "grounding")}
+    return {name: getattr(settings, name) for name in names} | rules
 
 
 def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
@@ -69,9 +62,8 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     strings = {name: string(values, name) for name in _SETTING_STRINGS}
     numbers = {name: number(values, name) for name in _SETTING_NUMBERS}
     target = cast("Target", choice(values, "target", TARGETS))
-    grounding = cast(
-        "Grounding", choice(values, "grounding", get_args(Grounding)) if "grounding" in values else "plate"
-    )
+    grounding = cast("Grounding", choice(values, "grounding", get_args(Grounding)))
+    limits = {name: number(values, name) for name in _RULE_NUMBERS}
     supports_as = cast(
         "SupportsAs",
         choice(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
@@ -82,7 +74,7 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         **numbers,  # type: ignore[arg-type]
         target=target,
         supported=supported,
-        grounding=grounding,
+        rules=SupportRules(grounding=grounding, **limits),
         supports_as=supports_as,
         space=space,
     )

@@ -20,6 +20,7 @@ from amprep.model import (
     SupportBody,
     Unsupported,
 )
+from amprep.model.supports.rules import SupportRules
 
 Solid = manifold3d.Manifold
 SETTINGS = BuildSettings("b.build-1", BuildVolume([60, 60, 60]), reach=1.5, overlap=0.1)
@@ -55,7 +56,7 @@ def judged(*bodies, parts=(TABLE,), unsupported=(), **settings):
 
 
 def listed(*bodies, parts=(TABLE,), **settings):
-    return find_unsupported(parts, bodies, replace(SETTINGS, **settings), reasons)
+    return find_unsupported(parts, bodies, replace(SETTINGS, rules=SupportRules(**settings)), reasons)
 
 
 def test_a_support_under_everything_covers_everything():
@@ -191,14 +192,14 @@ def minor_of(*bodies, parts=(TABLE,), **settings):
     return [region for region in listed(*bodies, parts=parts, **settings) if region.minor]
 
 
-def test_a_bare_corner_below_the_least_area_is_listed_as_minor():
+def test_a_bare_corner_below_the_smallest_area_is_listed_as_minor():
     """A support that leaves a corner: what lies beyond the reach of it is a triangle of about 2 mm2."""
     most = body(box((20, 20, 10.1), (0, 0, 0)) - box((3.2, 3.2, 20), (16.8, 16.8, -1)))
-    (region,) = listed(most, least_area=4.0)
+    (region,) = listed(most, min_area_mm2=4.0)
     assert region.minor
     assert 0 < region.measure < 4.0
     assert region.reason == REASON
-    (fault,) = listed(most, least_area=0.5)
+    (fault,) = listed(most, min_area_mm2=0.5)
     assert not fault.minor
     assert judged(most, unsupported=(region,)) == [], "what is listed breaks no promise, minor or not"
 
@@ -207,7 +208,7 @@ def test_patches_are_measured_one_by_one():
     corners = box((3.2, 3.2, 20), (16.8, 16.8, -1)) + box((3.2, 3.2, 20), (0, 0, -1))
     most = body(box((20, 20, 10.1), (0, 0, 0)) - corners)
     one = body(box((20, 20, 10.1), (0, 0, 0)) - box((3.2, 3.2, 20), (16.8, 16.8, -1)))
-    (region,), (half,) = listed(most, least_area=5.0), listed(one, least_area=5.0)
+    (region,), (half,) = listed(most, min_area_mm2=5.0), listed(one, min_area_mm2=5.0)
     assert region.minor
     assert region.measure == pytest.approx(2 * half.measure, rel=0.5)
 
@@ -218,7 +219,7 @@ def test_a_small_patch_that_starts_in_the_air_is_never_minor():
         box((20, 20, 3), (0, 0, 10)) + box((4, 4, 10), (8, 8, 0)) + box((1.9, 1.9, 3), (18, 18, 7.5))
     )
     held = body(box((20, 20, 10.1), (0, 0, 0)) - box((6, 6, 20), (14, 14, -1)))
-    stud = [region for region in listed(held, parts=(table,), least_area=30.0) if region.measure < 4.0]
+    stud = [region for region in listed(held, parts=(table,), min_area_mm2=30.0) if region.measure < 4.0]
     assert stud
     assert not any(region.minor for region in stud)
 
@@ -228,7 +229,7 @@ def test_tips_are_never_minor():
     upside_down = part_of(_flipped(tip))
     found = [
         region
-        for region in listed(parts=(upside_down,), least_area=50, least_length=50)
+        for region in listed(parts=(upside_down,), min_area_mm2=50, min_length_mm=50)
         if region.kind == "tip"
     ]
     assert found

@@ -7,8 +7,8 @@ import pytest
 
 from amprep.checks.supports.plan import check_plan
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.support_edges import SupportEdges
 from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem, Unconnected
+from amprep.model.supports.edges import SupportEdges
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from amprep.geometry.meshes.sampling import sample_triangles
 from amprep.geometry.overhangs.find import find_overhangs
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, spaces_beside, wall_distance, walls_of
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, SupportBody
+from amprep.model.supports.rules import SupportRules
 
 GAP = 0.5
 
@@ -32,8 +33,9 @@ TABLE = box((0, 0, 10), (20, 20, 13)) + box((8, 8, 0), (12, 12, 10))
 def build_of(support: Manifold, part: Manifold = TABLE, gap: float = GAP, **settings) -> Build:
     mesh = mesh_of(part)
     placed = PlacedPart("table", Part("table", mesh, mesh.signed_volume), np.eye(4))
-    rules = BuildSettings("test", BuildVolume(np.array([50.0, 50.0, 50.0])), gap=gap, **settings)
-    return Build(rules, (placed,), (SupportBody("post", mesh_of(support), (0,)),))
+    rules = SupportRules(gap_mm=gap, **settings)
+    made_under = BuildSettings("test", BuildVolume(np.array([50.0, 50.0, 50.0])), rules=rules)
+    return Build(made_under, (placed,), (SupportBody("post", mesh_of(support), (0,)),))
 
 
 def judged(*arguments, **settings) -> int:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.geometry.overhangs.find import Marks, find_overhangs
+from amprep.geometry.overhangs.find import Modifiers, find_overhangs
 
 Solid = manifold3d.Manifold
 
@@ -129,14 +129,14 @@ def test_the_bottom_of_a_pit_is_no_tip():
 def test_small_regions_are_dropped():
     notch = box((10, 10, 10)) - box((0.5, 0.5, 1), (4, 4, 0))
     assert summary(needs(notch)) == [("face", 0.25)]
-    assert needs(notch, least_area=0.3).regions == ()
+    assert needs(notch, min_area=0.3).regions == ()
 
 
 def test_a_region_that_starts_in_the_air_is_kept_however_small():
     blunt = Solid.cylinder(20, 0.1, 5, 4).translate((0, 0, 2))
-    assert summary(needs(blunt, least_area=5.0)) == [("face", pytest.approx(0.02, abs=1e-3))]
+    assert summary(needs(blunt, min_area=5.0)) == [("face", pytest.approx(0.02, abs=1e-3))]
     short = Solid.hull_points([(0, 0, 1), (0.2, 0, 1), (0, -3, 9), (0.2, -3, 9), (0, 3, 9), (0.2, 3, 9)])
-    assert summary(needs(short, least_length=1.0)) == [("edge", 0.2)]
+    assert summary(needs(short, min_length=1.0)) == [("edge", 0.2)]
 
 
 def test_a_ball_needs_its_cap_under_45_degrees():
@@ -173,22 +173,25 @@ def test_marks_block_and_enforce():
     vertices, triangles = arrays(box((10, 10, 5), (0, 0, 3)))
     none, every = np.zeros(len(triangles), bool), np.ones(len(triangles), bool)
     corners = np.ones(len(vertices), bool)
-    assert find_overhangs(vertices, triangles, angle_deg=45, marks=Marks(none, every, corners)).regions == ()
-    steep = ramp(60.0)
-    marks = Marks(np.array([True, True]), np.zeros(2, bool), np.zeros(len(steep[0]), bool))
-    assert len(find_overhangs(*steep, angle_deg=45, marks=marks).faces) == 2
-    upper = Marks(every, none, ~corners)
     assert (
-        len(find_overhangs(vertices, triangles, angle_deg=45, marks=upper).faces) == 2
+        find_overhangs(vertices, triangles, angle_deg=45, modifiers=Modifiers(none, every, corners)).regions
+        == ()
+    )
+    steep = ramp(60.0)
+    marks = Modifiers(np.array([True, True]), np.zeros(2, bool), np.zeros(len(steep[0]), bool))
+    assert len(find_overhangs(*steep, angle_deg=45, modifiers=marks).faces) == 2
+    upper = Modifiers(every, none, ~corners)
+    assert (
+        len(find_overhangs(vertices, triangles, angle_deg=45, modifiers=upper).faces) == 2
     )  # only the underside
 
 
 def test_what_lies_on_the_plate_is_held_by_it_even_when_support_is_enforced():
     vertices, triangles = arrays(box((10, 10, 5), (0, 0, 0)))
-    marks = Marks(
+    marks = Modifiers(
         np.ones(len(triangles), bool), np.zeros(len(triangles), bool), np.zeros(len(vertices), bool)
     )
-    assert find_overhangs(vertices, triangles, angle_deg=45, marks=marks).regions == ()
+    assert find_overhangs(vertices, triangles, angle_deg=45, modifiers=marks).regions == ()
 
 
 @examples(60)
@@ -198,6 +201,6 @@ def test_the_lowest_point_of_a_lifted_convex_solid_is_always_among_its_needs(poi
     if hull.volume() < 1.0:
         return
     vertices, triangles = arrays(on_plate(hull, lift=1.0))
-    found = find_overhangs(vertices, triangles, angle_deg=angle_deg, least_area=1e9, least_length=1e9)
+    found = find_overhangs(vertices, triangles, angle_deg=angle_deg, min_area=1e9, min_length=1e9)
     used = np.concatenate([triangles[found.faces].ravel(), found.edges.ravel(), found.tips])
     assert vertices[used, 2].min() == pytest.approx(1.0, abs=1e-5)

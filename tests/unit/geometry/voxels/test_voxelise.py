@@ -23,7 +23,7 @@ def arrays(solid):
 
 def whole(shape, pitch=1.0, step=1.0, origin=(0, 0, 0)):
     grid = Grid(np.array(origin, float), pitch, step, shape)
-    return grid.window(grid.origin - 9, grid.origin + 1e3)
+    return grid.block(grid.origin - 9, grid.origin + 1e3)
 
 
 def marked(array):

@@ -16,8 +16,8 @@ from amprep.checks.supports.plan import check_plan
 from amprep.errors import JobError
 from amprep.flows import maximum_flow as pushing
 from amprep.model.control import Stop, silent
-from amprep.model.support_graph import to_networkx
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, Voxel
+from amprep.model.supports.graph import to_networkx
 from amprep.plugins.routers.min_cost_certificate import find_gaps
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 

@@ -13,8 +13,8 @@ from tests.shared.grids import hanging, problem
 from amprep.checks.supports.plan import check_plan
 from amprep.flows.reachability import has_way
 from amprep.model.control import Stop, silent
-from amprep.model.support_graph import to_networkx
 from amprep.model.supports import CAPACITY, ENCLOSED, Voxel
+from amprep.model.supports.graph import to_networkx
 from amprep.plugins.routers.params import ShortestPathsParams
 from amprep.plugins.routers.shortest_paths import route_shortest_paths
 

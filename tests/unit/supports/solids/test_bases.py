@@ -13,7 +13,7 @@ from amprep.geometry.supports import footprints
 from amprep.host import Host
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
 from amprep.model.contacts import BaseRules, ConnectorRules
-from amprep.supports.plan import Wishes, plan_supports
+from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.bases import LEAST_GAP, make_bases
 from amprep.supports.solids.build import build_supports
 
@@ -61,7 +61,7 @@ def layout_of(parts, space=PLAIN):
             router, problem, params=host().params(router, {}), rng=rng, stop=stop, progress=progress
         )
 
-    return plan_supports(parts, space, Wishes(pitch=2.0), route=route, stop=Stop(), progress=silent)
+    return plan_supports(parts, space, PlanningRules(pitch_mm=2.0), route=route, stop=Stop(), progress=silent)
 
 
 def supports(parts, layout, base, cell="prism", space=PLAIN, surface=False, params=None, **more):

@@ -16,7 +16,7 @@ from amprep.host import Host
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
 from amprep.model.contacts import ConnectorRules
-from amprep.supports.plan import Wishes, plan_supports
+from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.build import build_supports
 
 SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
@@ -86,7 +86,9 @@ def scene(shape):
             router, problem, params=host().params(router, {}), rng=rng, stop=stop, progress=progress
         )
 
-    return part, plan_supports((part,), SPACE, Wishes(pitch=PITCH), route=route, stop=Stop(), progress=silent)
+    return part, plan_supports(
+        (part,), SPACE, PlanningRules(pitch_mm=PITCH), route=route, stop=Stop(), progress=silent
+    )
 
 
 def supports(shape, connector, cell="prism", **more):

@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Bools
 from amprep.errors import JobError
 from amprep.model import CellRequest, Cells, Progress, Role, Stop
-from amprep.model.support_edges import square_keys
+from amprep.model.supports.edges import square_keys
 from amprep.plugins.cells.hatch.shapes import Walls, hatch_template
 
 HAIR = 1e-3

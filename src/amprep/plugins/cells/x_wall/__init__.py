@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from amprep.errors import JobError
 from amprep.model import CellRequest, Cells, Progress, Role, Stop, Template
-from amprep.model.support_edges import square_keys
+from amprep.model.supports.edges import square_keys
 from amprep.plugins.cells.x_wall.shapes import Window, solid_x, surface_x
 
 HAIR = 1e-3

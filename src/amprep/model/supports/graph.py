@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.model.support_edges import DIRECTIONS
 from amprep.model.supports import SupportProblem, Voxel
+from amprep.model.supports.edges import DIRECTIONS
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -1,0 +1,41 @@
+"""Records of support planning: the problem on the layered grid, the edges, the plan, and the rules."""
+
+from amprep.model.supports.edges import DIRECTIONS, SupportEdges
+from amprep.model.supports.problem import (
+    CAPACITY,
+    CONNECTOR_BLOCKED,
+    ENCLOSED,
+    LARGEST_COST,
+    NO_FREE_VOXEL_BELOW,
+    OUT_OF_TIME,
+    REASONS,
+    ROUTER_REASONS,
+    Escalation,
+    Status,
+    SupportPlan,
+    SupportProblem,
+    Unconnected,
+    Voxel,
+)
+from amprep.model.supports.rules import Grounding, SupportRules
+
+__all__ = [
+    "CAPACITY",
+    "CONNECTOR_BLOCKED",
+    "DIRECTIONS",
+    "ENCLOSED",
+    "LARGEST_COST",
+    "NO_FREE_VOXEL_BELOW",
+    "OUT_OF_TIME",
+    "REASONS",
+    "ROUTER_REASONS",
+    "Escalation",
+    "Grounding",
+    "Status",
+    "SupportEdges",
+    "SupportPlan",
+    "SupportProblem",
+    "SupportRules",
+    "Unconnected",
+    "Voxel",
+]
