@@ -11,7 +11,7 @@ def test_merging_cells_of_200_triangles(benchmark, cells):
     benchmark.extra_info.update(result.record)
     assert result.validated
     if cells == 100_000:
-        assert result.junctions >= 0.2
+        assert result.junction_fraction >= 0.2
         assert result.seconds <= 15.0
         assert result.peak_mb is None or result.peak_mb <= 6 * 1024
-    assert result.times_ours >= (50 if cells == 100_000 else 10)
+    assert result.time_ratio >= (50 if cells == 100_000 else 10)

@@ -1,48 +1,48 @@
-"""Runs a packer over benchmark instances; the judge looks at every answer."""
+"""Run a packer on benchmark instances and check each packing independently."""
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from amprep.bench.packing.instances import Instance
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.geometry.boxes.build_space import union_volume
 from amprep.host import Host
 from amprep.model import Boxes, PackingProblem, Stop, silent
 from amprep.model.packing import Packing
+from amprep.testing.packing_instances import PackingInstance
 
 if TYPE_CHECKING:
     from amprep.hookspecs import Packer
     from amprep.host import Listed
 
 UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12, "proof": 1e12}
-"""Parameters that end a packer before its time."""
+"""Parameters that would end a packer before the time limit, and values that never do."""
 
 
 @dataclass(frozen=True)
-class Result:
-    """What a packer made of one instance.
+class PackingResult:
+    """The packing of one instance in figures.
 
     Attributes
     ----------
     measure
-        ``bins`` for the fewest builds, ``value`` for the greatest value.
+        ``builds`` (fewer is better) or ``value`` (more is better).
     reached, bound
-        The number of builds or the value, and what cannot be beaten.
-    share
-        Filled share of the builds' volume.
+        Number of builds or value, and a proven bound on it.
+    fill_ratio
+        Volume of the placed items over the volume of the builds used.
     faults
-        What the judge has to say against it; none in a valid answer.
+        Violations that the independent check found.
     """
 
     name: str
     measure: str
     reached: float
     bound: float | None
-    share: float
+    fill_ratio: float
     unplaced: int
     status: str
     stop_reason: str
@@ -51,18 +51,18 @@ class Result:
 
     @property
     def validated(self) -> bool:
-        """Whether the judge found nothing."""
+        """Whether the independent check found no violation."""
         return not self.faults
 
     @property
     def record(self) -> dict[str, Any]:
-        """The result as JSON can hold it."""
-        whole = int(self.reached) if self.measure == "bins" else self.reached
+        """The result for JSON."""
+        reached = int(self.reached) if self.measure == "builds" else self.reached
         return {
             "name": self.name,
-            self.measure: whole,
+            self.measure: reached,
             "bound": self.bound,
-            "share": round(self.share, 6),
+            "fill_ratio": round(self.fill_ratio, 6),
             "unplaced": self.unplaced,
             "status": self.status,
             "stop_reason": self.stop_reason,
@@ -73,132 +73,126 @@ class Result:
 
     @property
     def line(self) -> str:
-        """The result in a line."""
+        """The result in one line."""
         bound = "unknown" if self.bound is None else f"{self.bound:g}"
         verdict = "valid" if self.validated else f"INVALID: {self.faults[0]}"
         return (
-            f"{self.name}: {self.measure} {self.reached:g}, bound {bound}, filled {self.share:.1%}, "
+            f"{self.name}: {self.measure} {self.reached:g}, bound {bound}, filled {self.fill_ratio:.1%}, "
             f"{self.status} ({self.stop_reason}), {self.seconds:.2f} s, {verdict}"
         )
 
 
+@dataclass(frozen=True)
+class PackerRun:
+    """A packer with its parameters, a time limit per instance (s) and a seed."""
+
+    host: Host
+    packer: "Listed[Packer]"
+    params: dict[str, Any]
+    seconds: float
+    seed: int
+
+    def warm_up(self, problem: PackingProblem) -> None:
+        """Pack a problem with default parameters until everything is imported and compiled."""
+        brief = replace(self, params={}, seconds=min(self.seconds, 2.0), seed=0)
+        for _ in range(5):
+            start = time.monotonic()
+            brief.pack(problem)
+            if time.monotonic() - start < brief.seconds + 0.5:
+                return
+
+    def run(self, instance: PackingInstance) -> PackingResult:
+        """Pack an instance and check the packing."""
+        self.host.refuse_mismatch(self.packer, instance.problem)
+        start = time.monotonic()
+        packing = self.pack(instance.problem)
+        return _result(instance, packing, time.monotonic() - start)
+
+    def pack(self, problem: PackingProblem) -> Packing:
+        """Pack a problem; only the time limit and the packer itself end the search."""
+        known = {field.name for field in fields(self.packer.offer.params)}
+        unlimited = {name: value for name, value in UNLIMITED.items() if name in known}
+        params = self.host.params(self.packer, unlimited | self.params)
+        rng, stop = np.random.default_rng(self.seed), Stop.after(self.seconds)
+        return self.host.call(self.packer, problem, params=params, rng=rng, stop=stop, progress=silent)
+
+
 def run_instances(
-    instances: Sequence[Instance],
+    instances: Sequence[PackingInstance],
     packer: str,
     *,
     seconds: float,
     seed: int,
-    progress: Callable[[Result], None],
-) -> list[Result]:
-    """Run a packer on each instance for at most `seconds`; a budget counted in work is lifted.
+    progress: Callable[[PackingResult], None],
+) -> list[PackingResult]:
+    """Run a packer on each instance; limits on the amount of work are lifted.
 
-    The first instance is packed for a second or so before, so that no time counts that goes into loading
-    or compiling.
+    The first instance is packed once more beforehand, so that importing and compiling are not measured.
+
+    Parameters
+    ----------
+    instances
+        The instances.
+    packer
+        Name of the packer.
+    seconds
+        Time limit per instance.
+    seed
+        Seed of the packer's random numbers.
+    progress
+        Called with each result.
 
     Raises
     ------
     PluginError
-        For an unknown packer, or one that does not accept such problems.
+        If the packer is unknown or does not accept such problems.
     """
     host = Host.load()
-    listed = host.choose("packer", packer)
+    run = PackerRun(host, host.choose("packer", packer), {}, seconds, seed)
     for instance in instances[:1]:
-        _warm_up(host, listed, instance.problem, min(seconds, 2.0))
+        run.warm_up(instance.problem)
     results = []
     for instance in instances:
-        results.append(_run(host, listed, instance, {}, seconds=seconds, seed=seed))
+        results.append(run.run(instance))
         progress(results[-1])
     return results
 
 
-def run_one(
-    host: Host, packer: str, instance: Instance, table: dict[str, Any], *, seconds: float, seed: int
-) -> Result:
-    """Run a packer with parameters of its own on one instance, warm."""
-    listed = host.choose("packer", packer)
-    _warm_up(host, listed, instance.problem, min(seconds, 2.0))
-    return _run(host, listed, instance, table, seconds=seconds, seed=seed)
-
-
-def _run(
-    host: Host,
-    listed: "Listed[Packer]",
-    instance: Instance,
-    table: dict[str, Any],
-    *,
-    seconds: float,
-    seed: int,
-) -> Result:
-    """Run a packer and let the judge look at the answer."""
-    host.refuse_mismatch(listed, instance.problem)
-    start = time.monotonic()
-    packing = _pack(host, listed, instance.problem, table, seconds=seconds, seed=seed)
-    took = time.monotonic() - start
-    return _result(instance, packing, took)
-
-
-def means(results: Sequence[Result]) -> dict[str, float]:
-    """Return the means of what was reached, of the bounds known, of the share filled and of the time."""
+def means(results: Sequence[PackingResult]) -> dict[str, float]:
+    """Return the means of the objective, the bound (if known for all), the fill ratio and the time."""
     if not results:
         return {}
     found = {results[0].measure: float(np.mean([result.reached for result in results]))}
     bounds = [result.bound for result in results if result.bound is not None]
     if len(bounds) == len(results):
         found["bound"] = float(np.mean(bounds))
-    found["share"] = float(np.mean([result.share for result in results]))
+    found["fill_ratio"] = float(np.mean([result.fill_ratio for result in results]))
     found["seconds"] = float(np.mean([result.seconds for result in results]))
     return found
 
 
-def _warm_up(host: Host, listed: "Listed[Packer]", problem: PackingProblem, seconds: float) -> None:
-    """Pack again and again until it takes no longer than it should: then all is loaded and compiled."""
-    for _ in range(5):
-        start = time.monotonic()
-        _pack(host, listed, problem, {}, seconds=seconds, seed=0)
-        if time.monotonic() - start < seconds + 0.5:
-            return
-
-
-def _pack(
-    host: Host,
-    listed: "Listed[Packer]",
-    problem: PackingProblem,
-    table: dict[str, Any],
-    *,
-    seconds: float,
-    seed: int,
-) -> Packing:
-    known = {field.name for field in fields(listed.offer.params)}
-    lifted = {name: most for name, most in UNLIMITED.items() if name in known}
-    params = host.params(listed, lifted | table)
-    rng, stop = np.random.default_rng(seed), Stop.after(seconds)
-    return host.call(listed, problem, params=params, rng=rng, stop=stop, progress=silent)
-
-
-def _result(instance: Instance, packing: Packing, seconds: float) -> Result:
+def _result(instance: PackingInstance, packing: Packing, seconds: float) -> PackingResult:
     problem = instance.problem
     placed = [placement.item for build in packing.builds for placement in build]
-    filling = problem.objective == "fill"
-    worth = sum(problem.items[item].value for item in placed)
+    is_fill = problem.objective == "fill"
+    value = sum(problem.items[item].value for item in placed)
     volume = sum(_volume(problem, item) for item in placed)
-    room = problem.space.volume_mm3 * max(len(packing.builds), 1)
-    return Result(
-        instance.name,
-        "value" if filling else "bins",
-        worth if filling else float(len(packing.builds)),
-        packing.bound,
-        volume / room,
-        len(packing.unplaced),
-        packing.status,
-        packing.stop_reason,
-        seconds,
-        tuple(
-            f"{fault.promise}: {fault.subject} {fault.message}" for fault in check_packing(problem, packing)
-        ),
+    faults = check_packing(problem, packing)
+    return PackingResult(
+        name=instance.name,
+        measure="value" if is_fill else "builds",
+        reached=value if is_fill else float(len(packing.builds)),
+        bound=packing.bound,
+        fill_ratio=volume / (problem.space.volume_mm3 * max(len(packing.builds), 1)),
+        unplaced=len(packing.unplaced),
+        status=packing.status,
+        stop_reason=packing.stop_reason,
+        seconds=seconds,
+        faults=tuple(f"{fault.promise}: {fault.subject} {fault.message}" for fault in faults),
     )
 
 
 def _volume(problem: PackingProblem, item: int) -> float:
-    """Return the volume of an item's union of boxes."""
+    """Return the volume of the union of an item's boxes."""
     volume = problem.items[item].volume
     return union_volume(volume.lo, volume.hi) if isinstance(volume, Boxes) else 0.0

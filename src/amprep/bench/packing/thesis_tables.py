@@ -1,4 +1,4 @@
-"""The thesis's two packing tables (chapter 4) beside ours, on generated instances of the same shape."""
+"""The two packing tables of the thesis (chapter 4) next to our results on generated instances of the same shape."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from amprep.bench.packing.instances import Instance
-from amprep.bench.packing.run import Result, run_one
+from amprep.bench.packing.run import PackerRun, PackingResult
 from amprep.host import Host
 from amprep.model import Boxes, BuildVolume, Item, Objective, PackingProblem
+from amprep.testing.packing_instances import PackingInstance
 
 BUILDS_BOXES = (15, 30, 45, 60, 75, 120)
 FILL_BOXES = (20, 25, 30, 35)
@@ -29,8 +29,8 @@ THESIS_FILL: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True)
-class Row:
-    """One packer under one choice of parameters; its label in the table."""
+class TableRow:
+    """A packer with parameters, and its label in the table."""
 
     label: str
     packer: str
@@ -38,14 +38,14 @@ class Row:
 
 
 BUILDS_ROWS = tuple(
-    Row(name, name, {}) for name in ("extreme-points", "tabu", "auto", "ip", "column-generation")
+    TableRow(name, name, {}) for name in ("extreme-points", "tabu", "auto", "ip", "column-generation")
 )
 FILL_ROWS = (
-    Row("extreme-points", "extreme-points", {}),
-    Row("auto", "auto", {}),
-    Row("ip", "ip", {}),
+    TableRow("extreme-points", "extreme-points", {}),
+    TableRow("auto", "auto", {}),
+    TableRow("ip", "ip", {}),
     *(
-        Row(
+        TableRow(
             f"ip-local-search, used {used}, dir {direction}",
             "ip-local-search",
             {"used_distance": used, "direction_distance": direction},
@@ -56,57 +56,75 @@ FILL_ROWS = (
 
 
 @dataclass(frozen=True)
-class Table:
-    """One of the tables: what the thesis found and what is found here, column by column of boxes."""
+class ThesisTable:
+    """One table: the thesis's results and ours, one column per number of boxes."""
 
     title: str
     boxes: tuple[int, ...]
     thesis: dict[str, tuple[str, ...]]
-    ours: dict[str, tuple[Result, ...]]
-
-
-_Asked = tuple[str, tuple[int, ...], dict[str, tuple[str, ...]], tuple[Row, ...], Objective]
+    ours: dict[str, tuple[PackingResult, ...]]
 
 
 def thesis_tables(
-    packers: Sequence[str], most_boxes: int, *, seconds: float, seed: int, progress: Callable[[str], None]
-) -> list[Table]:
-    """Run the packers on offer (of `packers`, all when empty) and return both tables.
+    packers: Sequence[str], max_boxes: int, *, seconds: float, seed: int, progress: Callable[[str], None]
+) -> list[ThesisTable]:
+    """Run the packers and return both tables.
 
-    The thesis's own instances are not published. Ours are of its shape: several copies of each size, box by
-    box in the orientation given, some five boxes a build.
+    The thesis's own instances are not published. Ours have the same shape: several copies of each size, fixed
+    orientations, and about five boxes per build.
+
+    Parameters
+    ----------
+    packers
+        Names of the packers; all that are available if empty.
+    max_boxes
+        Columns with more boxes are left out.
+    seconds
+        Time limit per instance.
+    seed
+        Seed of the packers' random numbers.
+    progress
+        Called with a line for each result.
     """
     host = Host.load()
     known = [name for name in host.offers("packer") if not packers or name in packers]
     for name in packers:
         host.choose("packer", name)
-    asked: tuple[_Asked, ...] = (
-        ("fewest builds", BUILDS_BOXES, THESIS_BUILDS, BUILDS_ROWS, "builds"),
-        ("greatest filling of one build", FILL_BOXES, THESIS_FILL, FILL_ROWS, "fill"),
-    )
-    tables = []
-    for title, boxes, thesis, rows, objective in asked:
-        columns = tuple(n for n in boxes if n <= most_boxes)
-        ours: dict[str, tuple[Result, ...]] = {}
-        for row in rows:
-            if row.packer in known:
-                found = []
-                for n in columns:
-                    instance = repeated_boxes(n, objective)
-                    found.append(run_one(host, row.packer, instance, row.params, seconds=seconds, seed=seed))
-                    progress(f"{row.label}: {found[-1].line}")
-                ours[row.label] = tuple(found)
-        tables.append(
-            Table(title, columns, {name: cells[: len(columns)] for name, cells in thesis.items()}, ours)
+
+    def run(row: TableRow, n: int, objective: Objective) -> PackingResult:
+        instance = repeated_boxes(n, objective)
+        packer = PackerRun(host, host.choose("packer", row.packer), row.params, seconds, seed)
+        packer.warm_up(instance.problem)
+        result = packer.run(instance)
+        progress(f"{row.label}: {result.line}")
+        return result
+
+    def table(
+        title: str,
+        boxes: tuple[int, ...],
+        thesis: dict[str, tuple[str, ...]],
+        rows: tuple[TableRow, ...],
+        objective: Objective,
+    ) -> ThesisTable:
+        columns = tuple(n for n in boxes if n <= max_boxes)
+        ours = {
+            row.label: tuple(run(row, n, objective) for n in columns) for row in rows if row.packer in known
+        }
+        return ThesisTable(
+            title, columns, {name: cells[: len(columns)] for name, cells in thesis.items()}, ours
         )
-    return tables
+
+    return [
+        table("fewest builds", BUILDS_BOXES, THESIS_BUILDS, BUILDS_ROWS, "builds"),
+        table("greatest value in one build", FILL_BOXES, THESIS_FILL, FILL_ROWS, "fill"),
+    ]
 
 
-def repeated_boxes(n: int, objective: Objective) -> Instance:
-    """Return `n` boxes, three copies of each size, for cubes of side 100; the seed is `n`.
+def repeated_boxes(n: int, objective: Objective) -> PackingInstance:
+    """Return `n` boxes, three copies of each size, for cubes with sides of 100 mm; the seed is `n`.
 
-    For `builds` sides are 30 to 80: 120 boxes need 24 builds, in the thesis 27. For `fill` they are 20 to 55,
-    so that 20 boxes nearly fill one build.
+    For `builds` the sides are 30 to 80 mm: 120 boxes need 24 builds, in the thesis 27. For `fill` they are 20
+    to 55 mm, so that 20 boxes nearly fill one build.
     """
     rng = np.random.default_rng(n)
     least, most = (30, 80) if objective == "builds" else (20, 55)
@@ -116,13 +134,13 @@ def repeated_boxes(n: int, objective: Objective) -> Instance:
         part, volume = len(items) // COPIES, Boxes(np.zeros((1, 3)), size[None])
         copies = min(COPIES, n - len(items))
         items += [Item(part, copy, volume, float(size.prod())) for copy in range(copies)]
-    room = BuildVolume(np.full(3, float(SIDE)))
-    return Instance(f"{objective}_{n:03d}", PackingProblem(tuple(items), room, objective))
+    cube = BuildVolume(np.full(3, float(SIDE)))
+    return PackingInstance(f"{objective}_{n:03d}", PackingProblem(tuple(items), cube, objective))
 
 
-def cell(result: Result) -> str:
+def table_cell(result: PackingResult) -> str:
     """Return a result as the table shows it."""
     proof = ", proven" if result.status == "optimal" else ""
     if result.measure == "value":
-        return f"{result.share:.0%}, {result.seconds:.2f} s{proof}"
+        return f"{result.fill_ratio:.0%}, {result.seconds:.2f} s{proof}"
     return f"{result.reached:g} builds (bound {result.bound or 0:g}), {result.seconds:.2f} s{proof}"

@@ -1,4 +1,4 @@
-"""Other solvers on the same support problems, for comparison: OR-tools, scipy and networkx."""
+"""Solve support problems with OR-tools, scipy and networkx for comparison."""
 
 import time
 from collections.abc import Callable
@@ -9,16 +9,25 @@ from amprep.model.supports.graph import SupportGraph, support_graph, to_networkx
 
 
 class Rival(NamedTuple):
-    """A solver: what it is compared with, the package it needs, how many squares it manages in minutes.
+    """Another solver.
 
-    `solve` returns the greatest flow, its least cost (None for solvers that know no costs), and seconds of
-    solving alone.
+    Attributes
+    ----------
+    router
+        Our router that it is compared with: `push-relabel` for maximum flow, else `min-cost-flow`.
+    package
+        The package that it needs.
+    max_squares
+        Number of squares up to which it takes at most minutes.
+    solve
+        Returns the maximum flow, its minimum cost (None for maximum-flow solvers), and the time of solving
+        alone (s).
     """
 
     name: str
     router: str
     package: str
-    most_squares: int
+    max_squares: int
     solve: Callable[[SupportProblem], tuple[int, int | None, float]]
 
 
@@ -75,7 +84,7 @@ def _networkx_min_cost(problem: SupportProblem) -> tuple[int, int | None, float]
 
 
 def _graph(problem: SupportProblem) -> SupportGraph:
-    """Return the graph without arcs at nodes that nothing leads to, or that lead nowhere at once."""
+    """Return the graph after two rounds that drop the arcs at nodes without an arc in or without an arc out."""
     import numpy as np
 
     graph = support_graph(problem)
@@ -97,4 +106,3 @@ RIVALS = (
     Rival("or-tools min-cost-flow", "min-cost-flow", "ortools", 1_500_000, _ortools_min_cost),
     Rival("networkx min-cost-flow", "min-cost-flow", "networkx", 10_000, _networkx_min_cost),
 )
-"""Flows with no costs are compared with `push-relabel`, the others with `min-cost-flow`."""

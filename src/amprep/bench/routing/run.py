@@ -1,24 +1,22 @@
-"""Runs support routers over generated scenes of the thesis's sizes; the judge looks at every plan."""
+"""Run support routers on generated scenes at the sizes of the thesis and check each plan independently."""
 
-import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from amprep.arrays import Int64s
+from amprep.bench.memory import peak_mb, reset_peak
 from amprep.bench.routing.rivals import RIVALS, Rival
-from amprep.bench.routing.scenes import SIDES, count_graph, scene
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.host import Host
 from amprep.model import Stop, silent
 from amprep.model.supports import Escalation, SupportPlan, SupportProblem
 from amprep.model.supports.edges import DIRECTIONS
+from amprep.testing.support_scenes import SIDES, count_graph, support_scene
 
 if TYPE_CHECKING:
     from amprep.hookspecs import SupportRouter
@@ -29,43 +27,45 @@ THESIS_SECONDS = {
     "min-cost-flow": dict(zip(SIDES, (0.017, 0.089, 0.133, 12.1, 186.0), strict=True)),
     "shortest-paths": dict(zip(SIDES, (0.092, 0.325, 0.948, 20.73, 142.0), strict=True)),
 }
-"""Router -> size -> seconds, of the table in chapter 4."""
+"""Running times of the thesis (chapter 4, seconds) by router and size."""
 
-_FIRST = {"rounds": 0, "paths_per_square": 0}
-"""Parameters with which `shortest-paths` gives its first paths, shortest by the plain costs."""
+_INITIAL = {"rounds": 0, "paths_per_square": 0}
+"""Parameters with which `shortest-paths` returns its initial paths, before any is rerouted."""
 
-_MOST_FOR_RAISES = 100_000
-"""Squares up to which it is judged whether what escalation has raised was needed."""
+_MAX_SQUARES_FOR_RAISES = 100_000
+"""Largest number of squares for which the check of raised capacities is run."""
 
 
 @dataclass(frozen=True)
-class Result:
-    """What a router, or a rival, made of one scene.
+class RoutingResult:
+    """The plan of a router, or the flow of another solver, in figures.
 
     Attributes
     ----------
     nodes, edges
-        All squares of the grid, and the edges that exist between them.
+        Numbers of squares of the grid and of edges between them.
+    red_squares, connected
+        Number of red squares, and how many of them are connected.
     seconds
-        Of routing alone, after one run to warm up; of a rival's solving alone. None when it did not run.
-    flow
-        Number of red squares connected, of `reds`.
+        Time of routing alone, after a warm-up run; None if a solver did not run.
     cost
-        Sum over all edges of flow times the problem's cost.
-    squares_first, squares_final
-        Number of squares in use; `squares_first` before any path was redrawn, None for other routers.
-    most_in_a_square
-        Greatest number of paths in any square, those on the plate included.
-    raised
-        The most that escalation has added to a capacity.
+        Sum of flow times cost over all edges.
+    squares_initial, squares_final
+        Number of squares in use; `squares_initial` before rerouting, None for routers that do not reroute.
+    max_paths_per_square
+        Largest number of paths in a square, including those on the plate.
+    capacity_raised
+        Largest amount that escalation added to a capacity.
+    material
+        Material of the edges in use.
     peak_mb
-        Peak memory of the whole process while it ran; None where the system does not tell.
+        Peak memory of the process (MiB); None where the system does not tell.
     validated
-        Whether the judge found nothing; for a rival, whether its value equals ours.
-    times_ours
-        Seconds of a rival over those of our router.
+        True if the independent check found no violation; for another solver, if its values equal ours.
+    time_ratio
+        Time of another solver over that of our router.
     notes
-        What the router says, or why a rival did not run.
+        Notes of the router, or the reason why a solver did not run.
     """
 
     router: str
@@ -74,51 +74,54 @@ class Result:
     capacity: int
     nodes: int
     edges: int
-    reds: int
+    red_squares: int
     seconds: float | None
     thesis_seconds: float | None = None
-    flow: int | None = None
+    connected: int | None = None
     cost: int | None = None
-    squares_first: int | None = None
+    squares_initial: int | None = None
     squares_final: int | None = None
-    most_in_a_square: int | None = None
-    raised: int | None = None
+    max_paths_per_square: int | None = None
+    capacity_raised: int | None = None
     material: float | None = None
     status: str | None = None
     peak_mb: int | None = None
     validated: bool | None = None
-    times_ours: float | None = None
+    time_ratio: float | None = None
     notes: tuple[str, ...] = ()
 
     @property
     def record(self) -> dict[str, Any]:
-        """The result as JSON can hold it."""
+        """The result for JSON."""
         seconds = {} if self.seconds is None else {"seconds": round(self.seconds, 4)}
         return asdict(self) | seconds
 
     @property
     def line(self) -> str:
-        """The result in a line."""
+        """The result in one line."""
         name = f"{self.router}, {self.scene} {self.size}"
         if self.seconds is None:
             return f"{name}: {', '.join(self.notes)}"
-        said = [f"{self.seconds:.3f} s" + _maybe(" (thesis {:g} s)", self.thesis_seconds)]
-        said.append(_maybe("{:.1f} times ours", self.times_ours))
-        said.append(f"{self.flow} of {self.reds} connected")
-        said.append(
-            _maybe("cost {}", self.cost) + _maybe(", capacities raised by up to {}", self.raised or None)
-        )
-        first = _maybe(" after {}", self.squares_first)
-        said.append(_maybe("{} squares" + first, self.squares_final))
-        said.append(_maybe("at most {} paths in one", self.most_in_a_square))
-        said.append(_maybe("material {:g}", self.material))
-        said.append(_maybe("{} MB", self.peak_mb))
-        said.append({True: "valid", False: "INVALID", None: ""}[self.validated])
-        return f"{name}: " + ", ".join(filter(None, said)) + "".join(f"\n  {note}" for note in self.notes)
+        verdict = {True: "valid", False: "INVALID", None: ""}[self.validated]
+        parts = [
+            f"{self.seconds:.3f} s" + _format(" (thesis {:g} s)", self.thesis_seconds),
+            _format("{:.1f} times our time", self.time_ratio),
+            f"{self.connected} of {self.red_squares} red squares connected",
+            _format("cost {}", self.cost),
+            _format("capacities raised by up to {}", self.capacity_raised or None),
+            _format("{} squares used", self.squares_final)
+            + _format(" ({} before rerouting)", self.squares_initial),
+            _format("at most {} paths per square", self.max_paths_per_square),
+            _format("material {:g}", self.material),
+            _format("peak memory {} MB", self.peak_mb),
+            verdict,
+        ]
+        return f"{name}: " + ", ".join(filter(None, parts)) + "".join(f"\n  {note}" for note in self.notes)
 
 
-def _maybe(words: str, value: float | None) -> str:
-    return "" if value is None else words.format(value)
+def _format(text: str, value: float | None) -> str:
+    """Return the text with the value filled in, or nothing without a value."""
+    return "" if value is None else text.format(value)
 
 
 def run_scene(
@@ -130,24 +133,36 @@ def run_scene(
     seed: int,
     escalation: Escalation = "none",
     rivals: bool = False,
-) -> Iterator[Result]:
-    """Run routers on a scene, each twice; the second run counts. Rivals follow, each once.
+) -> Iterator[RoutingResult]:
+    """Run routers on a scene and yield their results, then those of other solvers.
+
+    Each router runs twice and the second run is measured. Other solvers run once.
 
     Parameters
     ----------
+    routers
+        Names of the routers.
+    name, size
+        The scene, and its size, A to E.
     capacity
-        Of each square; 0 for none. Edges are unbounded.
+        Capacity of each square; 0 for no limit. Edges have no limit.
+    seed
+        Seed of the routers' random numbers.
+    escalation
+        How capacities are raised if red squares stay unconnected.
+    rivals
+        Run OR-tools, scipy and networkx on the same scene.
 
     Raises
     ------
     PluginError
-        For an unknown router, or one that fails.
+        If a router is unknown or fails.
     """
     host = Host.load()
     chosen = [host.choose("router", router) for router in routers]
-    problem = replace(scene(name, SIDES[size], capacity=capacity), escalation=escalation)
+    problem = replace(support_scene(name, SIDES[size], capacity=capacity), escalation=escalation)
     nodes, edges = count_graph(problem)
-    blank = Result("", name, size, capacity, nodes, edges, len(problem.red), None)
+    blank = RoutingResult("", name, size, capacity, nodes, edges, len(problem.red), None)
     ours = {}
     for listed in chosen:
         result = _run(host, listed, problem, seed, blank)
@@ -159,30 +174,30 @@ def run_scene(
 
 
 def _run(
-    host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, blank: Result
-) -> Result:
+    host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, blank: RoutingResult
+) -> RoutingResult:
     name, size = listed.offer.name, blank.size
-    first = _route(host, listed, problem, seed, _FIRST) if name == "shortest-paths" else None
+    initial = _route(host, listed, problem, seed, _INITIAL) if name == "shortest-paths" else None
     _route(host, listed, problem, seed, {})
-    _forget_peak()
+    reset_peak()
     start = time.monotonic()
     plan = _route(host, listed, problem, seed, {})
     took = time.monotonic() - start
     peak = peak_mb()
     wrong = check_plan(problem, plan)
-    if blank.nodes <= _MOST_FOR_RAISES:
+    if blank.nodes <= _MAX_SQUARES_FOR_RAISES:
         wrong += check_raises(problem, plan)
     return replace(
         blank,
         router=name,
         seconds=took,
         thesis_seconds=THESIS_SECONDS.get(name, {}).get(size),
-        flow=len(problem.red) - len(plan.unconnected),
+        connected=len(problem.red) - len(plan.unconnected),
         cost=_cost(problem, plan),
-        squares_first=None if first is None else _squares(problem, first),
+        squares_initial=None if initial is None else _squares(problem, initial),
         squares_final=_squares(problem, plan),
-        most_in_a_square=_most_in_a_square(problem, plan),
-        raised=plan.raised,
+        max_paths_per_square=_max_paths_per_square(problem, plan),
+        capacity_raised=plan.raised,
         material=_material(problem, plan),
         status=plan.status,
         peak_mb=peak,
@@ -191,19 +206,23 @@ def _run(
     )
 
 
-def _run_rival(rival: Rival, problem: SupportProblem, ours: Result, blank: Result) -> Result:
+def _run_rival(
+    rival: Rival, problem: SupportProblem, ours: RoutingResult, blank: RoutingResult
+) -> RoutingResult:
     if problem.escalation != "none":
-        return replace(blank, notes=("raises no capacities",))
-    if blank.nodes > rival.most_squares:
-        return replace(blank, notes=(f"left out: takes minutes over {rival.most_squares} squares",))
+        return replace(blank, notes=("not run: it does not raise capacities",))
+    if blank.nodes > rival.max_squares:
+        return replace(blank, notes=(f"not run: takes minutes for more than {rival.max_squares} squares",))
     if find_spec(rival.package) is None:
-        return replace(blank, notes=("not installed",))
-    _forget_peak()
+        return replace(blank, notes=(f"not run: the package {rival.package} is not installed",))
+    reset_peak()
     flow, cost, took = rival.solve(problem)
-    same = flow == ours.flow and cost in (None, ours.cost)
-    times = took / ours.seconds if ours.seconds else None
+    same = flow == ours.connected and cost in (None, ours.cost)
+    ratio = took / ours.seconds if ours.seconds else None
     peak = peak_mb()
-    return replace(blank, seconds=took, flow=flow, cost=cost, peak_mb=peak, validated=same, times_ours=times)
+    return replace(
+        blank, seconds=took, connected=flow, cost=cost, peak_mb=peak, validated=same, time_ratio=ratio
+    )
 
 
 def _route(
@@ -227,12 +246,12 @@ def _material(problem: SupportProblem, plan: SupportPlan) -> float:
 
 
 def _squares(problem: SupportProblem, plan: SupportPlan) -> int:
-    """Count the squares from which an edge in use leads down."""
+    """Return the number of squares from which an edge in use leads down."""
     return len(np.unique(_number(problem, plan, 0)))
 
 
-def _most_in_a_square(problem: SupportProblem, plan: SupportPlan) -> int:
-    """Return the greatest number of paths that leave a square, or that arrive at one."""
+def _max_paths_per_square(problem: SupportProblem, plan: SupportPlan) -> int:
+    """Return the largest number of paths that leave a square or arrive at one."""
     most = 0
     for end in (0, 1):
         _, square = np.unique(_number(problem, plan, end), return_inverse=True)
@@ -246,22 +265,3 @@ def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Int64s:
     step = end * np.array(DIRECTIONS, np.int64)[plan.edges.direction]
     plane = plan.edges.plane.astype(np.int64) - end
     return np.asarray((plane * ny + plan.edges.y + step[:, 0]) * nx + plan.edges.x + step[:, 1])
-
-
-def _forget_peak() -> None:
-    """Let the peak of this process start anew, where Linux can do that."""
-    with suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
-
-
-def peak_mb() -> int | None:
-    """Return the greatest memory of this process since the last reset; None where the system does not tell."""
-    with suppress(OSError):
-        status = Path("/proc/self/status").read_text(encoding="ascii")
-        return int(status.split("VmHWM:")[1].split()[0]) // 2**10
-    if sys.platform == "win32":
-        return None
-    import resource
-
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return int(peak // (2**20 if sys.platform == "darwin" else 2**10))

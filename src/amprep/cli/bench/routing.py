@@ -1,17 +1,16 @@
-"""``amprep bench supports``: support routers on generated scenes, thesis seconds beside ours."""
+"""``amprep bench supports``: run support routers on generated scenes, next to the thesis's times."""
 
-import json
 from enum import StrEnum
 from itertools import product
 from typing import Annotated
 
 import typer
 
-from amprep import cli
+from amprep.cli.bench.options import AsJson, Seed, finish, print_json
 
 
-class Size(StrEnum):
-    """The thesis's sizes, about 8,400 to 6.5 million squares."""
+class SceneSize(StrEnum):
+    """Sizes of the thesis, from about 8,400 to 6.5 million squares."""
 
     A = "A"
     B = "B"
@@ -20,7 +19,7 @@ class Size(StrEnum):
     E = "E"
 
 
-class Scene(StrEnum):
+class SceneName(StrEnum):
     """The generated scenes."""
 
     BALL = "ball"
@@ -28,8 +27,8 @@ class Scene(StrEnum):
     PLATE = "plate"
 
 
-class Escalate(StrEnum):
-    """What gives way when capacities leave red squares out."""
+class EscalationName(StrEnum):
+    """How capacities are raised."""
 
     NONE = "none"
     CUT = "cut"
@@ -38,37 +37,44 @@ class Escalate(StrEnum):
 
 def supports(
     sizes: Annotated[
-        list[Size], typer.Option("--size", case_sensitive=False, help="Size of the grid; repeatable.")
+        list[SceneSize], typer.Option("--size", case_sensitive=False, help="Size of the grid; repeatable.")
     ],
     scenes: Annotated[
-        list[Scene] | None, typer.Option("--scene", help="Scene; repeatable, default all.")
+        list[SceneName] | None, typer.Option("--scene", help="Scene; repeatable. Default: all.")
     ] = None,
     routers: Annotated[
         list[str] | None,
         typer.Option(
-            "--router", metavar="NAME", help="Router; repeatable, default push-relabel and min-cost-flow."
+            "--router", metavar="NAME", help="Router; repeatable. Default: push-relabel and min-cost-flow."
         ),
     ] = None,
     capacity: Annotated[
-        int, typer.Option("--capacity", metavar="C", min=0, help="Paths a square holds; 0: any number.")
+        int,
+        typer.Option(
+            "--capacity", metavar="N", min=0, help="Largest number of paths through a square; 0: no limit."
+        ),
     ] = 0,
     escalate: Annotated[
-        Escalate,
+        EscalationName,
         typer.Option(
-            "--escalate", help="What gives way when not all can be connected: nothing, a minimum cut, or all."
+            "--escalate",
+            help="Capacities to raise if some red squares cannot be connected: none, a minimum cut, or all.",
         ),
-    ] = Escalate.NONE,
+    ] = EscalationName.NONE,
     rivals: Annotated[
-        bool, typer.Option("--rivals", help="Run OR-tools, scipy and networkx on the same scenes.")
+        bool, typer.Option("--rivals", help="Also run OR-tools, scipy and networkx on the same scenes.")
     ] = False,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the router's random numbers.")] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    seed: Seed = 0,
+    as_json: AsJson = False,
 ) -> None:
-    """Route the supports of generated scenes (thesis chapter 4); the judge looks at every plan."""
+    """Route the supports of generated scenes (thesis chapter 4).
+
+    Each plan is checked independently. The exit code is 1 if a plan is invalid.
+    """
     from amprep.bench.routing.run import run_scene
 
     results = []
-    for size, scene in product(sizes, scenes or list(Scene)):
+    for size, scene in product(sizes, scenes or list(SceneName)):
         for result in run_scene(
             routers or ["push-relabel", "min-cost-flow"],
             scene.value,
@@ -82,7 +88,5 @@ def supports(
             if not as_json:
                 typer.echo(result.line)
     if as_json:
-        typer.echo(
-            json.dumps({"benchmark": "supports", "results": [each.record for each in results]}, indent=2)
-        )
-    raise typer.Exit(cli.DONE if all(each.validated is not False for each in results) else cli.INCOMPLETE)
+        print_json({"benchmark": "supports", "results": [each.record for each in results]})
+    finish(valid=all(each.validated is not False for each in results))

@@ -1,39 +1,43 @@
-"""``amprep bench support-volume``: how much support, against straight columns and PrusaSlicer."""
+"""``amprep bench support-volume``: compare support volumes with straight columns and PrusaSlicer."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from amprep.cli.bench.options import AsJson, print_json
+
 if TYPE_CHECKING:
-    from amprep.bench.support_volume import VolumeResult
+    from amprep.bench.support_volume import SupportVolumeResult
 
 
 def support_volume(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="Mesh files to support too, each part standing on the plate.")
+        list[Path] | None,
+        typer.Argument(help="Mesh files to support as well; each part is moved onto the plate."),
     ] = None,
     routers: Annotated[
         list[str] | None,
-        typer.Option("--router", metavar="NAME", help="Router; repeatable, default shortest-paths."),
+        typer.Option("--router", metavar="NAME", help="Router; repeatable. Default: shortest-paths."),
     ] = None,
     cell: Annotated[str, typer.Option("--cell", metavar="NAME", help="Lattice cell.")] = "x-wall",
-    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", min=0.1, help="Grid pitch.")] = 2.0,
-    generated: Annotated[bool, typer.Option(help="Also support the generated parts.")] = True,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", min=0.1, help="Grid pitch (mm).")] = 2.0,
+    generated: Annotated[
+        bool, typer.Option("--generated/--no-generated", help="Support the generated parts.")
+    ] = True,
+    as_json: AsJson = False,
 ) -> None:
-    """Compare the volume of supports with straight columns of the same contact.
+    """Compare the volume of supports with straight columns of the same contact area.
 
-    Every red square with nothing below it is held: once as amprep plans it, once by a straight column of the same
-    cells. Where PrusaSlicer is installed, the support in its G-code stands beside.
+    Only red squares with a free column down to the plate are supported.
+    If PrusaSlicer is installed, the volume of its own supports is listed as well.
     """
-    from amprep.bench.support_volume import compare, find_slicer, generated_parts, meshes_of
+    from amprep.bench.prusaslicer import find_slicer
+    from amprep.bench.support_volume import compare, generated_parts, meshes_of
     from amprep.host import Host
     from amprep.model import Stop
 
-    host = Host.load()
-    slicer = find_slicer()
+    host, slicer = Host.load(), find_slicer()
     parts = {**(generated_parts() if generated else {}), **meshes_of(files or [], host)}
     results = []
     for name, mesh in parts.items():
@@ -53,19 +57,19 @@ def support_volume(
             typer.echo(_line(results[-1]))
     if as_json:
         record = {"benchmark": "support-volume", "cell": cell, "pitch_mm": pitch}
-        typer.echo(json.dumps(record | {"results": [each.record for each in results]}, indent=2))
+        print_json(record | {"results": [each.record for each in results]})
 
 
-def _line(result: "VolumeResult") -> str:
+def _line(result: "SupportVolumeResult") -> str:
     ours = ", ".join(
-        f"{name} {volume / 1000:.3f} ({volume / result.straight:.0%} of straight)"
+        f"{name} {volume / 1000:.3f} cm3 ({volume / result.straight:.0%} of straight columns)"
         for name, volume in result.routers.items()
     )
     rivals = ", ".join(
-        f"{style} {'-' if volume is None else f'{volume / 1000:.3f}'}"
+        f"{style} {'none' if volume is None else f'{volume / 1000:.3f} cm3'}"
         for style, volume in result.rivals.items()
     )
     return (
-        f"{result.part}: contact {result.contact_mm2:.0f} mm2; cm3: {ours}; straight {result.straight / 1000:.3f}; "
-        f"PrusaSlicer {rivals}"
+        f"{result.part}: contact {result.contact_mm2:.0f} mm2; {ours}; straight columns "
+        f"{result.straight / 1000:.3f} cm3; PrusaSlicer: {rivals}"
     )

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.bench.merging import barrel, random_layout, run_merging
 from amprep.cells import instances as instances_module
 from amprep.cells.instances import classify, expand_cells
 from amprep.geometry.merging.merge_cells import unite_cells
@@ -16,6 +15,7 @@ from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import degenerate, edges_match
 from amprep.host import Host
 from amprep.model import DIRECTIONS, CellRequest, Grid, Stop, SupportEdges, silent
+from amprep.testing.random_lattice import barrel, random_layout
 
 ORIGIN, SIZE = np.array([3.0, 5.0, 0.0]), np.array([2.0, 2.0, 1.5])
 
@@ -160,12 +160,3 @@ def test_cells_that_cannot_be_joined_on_arrays_come_one_mesh_a_direction(monkeyp
     meshes = [as_manifold(*each) for each in expand_cells(found, every)]
     assert len(meshes) >= 5
     assert union(meshes).volume() == pytest.approx(as_manifold(*mesh).volume(), rel=1e-6)
-
-
-def test_the_benchmark_judges_what_it_times():
-    result = run_merging(400, 150)
-    assert result.validated
-    assert result.junctions > 0.15
-    assert result.triangles == 200
-    assert result.record["cells"] == 400
-    assert "batch union" in result.line

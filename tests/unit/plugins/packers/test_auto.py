@@ -32,7 +32,7 @@ def test_three_rooms_cut_up_without_waste_are_put_together_again():
 
 def test_the_search_saves_builds_that_the_sortings_do_not():
     # class 1 of Martello, Pisinger, Vigo, n = 50, instances 2 and 3: sortings alone need one build more
-    from amprep.bench.packing.instances import mpv_instance
+    from amprep.testing.packing_instances import mpv_instance
 
     for index, builds in ((2, 14), (3, 14)):
         task = mpv_instance(1, 50, index).problem
@@ -87,7 +87,7 @@ def test_the_budget_of_work_ends_the_search_at_the_same_place_every_time():
 
 
 def test_a_proof_that_ends_after_the_search_is_the_reason_too():
-    from amprep.bench.packing.instances import mpv_instance
+    from amprep.testing.packing_instances import mpv_instance
 
     packing = run(mpv_instance(1, 50, 1).problem, work=0.001, proof=400.0)
     assert (packing.status == "optimal") == (packing.stop_reason == "bound met")
@@ -99,7 +99,7 @@ def test_many_small_boxes_in_few_builds_need_no_memory_for_every_build_met():
 
 
 def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
-    from amprep.bench.packing.instances import mpv_instance
+    from amprep.testing.packing_instances import mpv_instance
 
     packing = run(mpv_instance(5, 50, 1).problem, Stop.after(0.0))
     assert packing.stop_reason == "time limit"

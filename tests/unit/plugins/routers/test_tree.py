@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.bench.routing.scenes import scene
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.geometry.voxels.grid import Grid
 from amprep.host import Host
@@ -16,6 +15,7 @@ from amprep.model.control import Stop, silent
 from amprep.model.supports import SupportProblem, Voxel
 from amprep.plugins.routers import auto
 from amprep.plugins.routers.params import TreeParams
+from amprep.testing.support_scenes import support_scene
 
 HOST = Host.load()
 
@@ -35,7 +35,7 @@ def material(task, plan):
 @pytest.mark.parametrize("name", ["ball", "two-balls", "plate"])
 @pytest.mark.parametrize("rules", [{}, {"edge_capacity": 3}, {"material": (1.0, 3.0)}], ids=str)
 def test_it_takes_no_more_material_than_the_routers_it_starts_from(name, rules):
-    task = replace(scene(name, 30), **rules)
+    task = replace(support_scene(name, 30), **rules)
     plan = route("tree", task)
     assert plan.objective == material(task, plan)
     for other in ("shortest-paths", "min-cost-flow"):
@@ -75,7 +75,7 @@ def test_it_connects_as_many_as_the_exact_routers(seed):
 def test_a_stopped_search_is_a_legal_plan():
     stop = Stop()
     stop.cancelled.set()
-    assert route("tree", scene("ball", 20), stop).stop_reason == "interrupted"
+    assert route("tree", support_scene("ball", 20), stop).stop_reason == "interrupted"
 
 
 @pytest.mark.parametrize("wrong", [{"rounds": -1}, {"neighbours": 0}, {"seconds": 0.0}])
@@ -97,7 +97,7 @@ def test_parameters_out_of_bounds_are_refused(wrong):
 def test_auto_picks_by_size_and_capacity_and_says_so(monkeypatch, rules, small, jam, expected):
     monkeypatch.setattr(auto, "SMALL", small)
     monkeypatch.setattr(auto, "LARGE_JAM", jam)
-    task = replace(scene("ball", 16), **rules)
+    task = replace(support_scene("ball", 16), **rules)
     plan, chosen = route("auto", task), route(expected, task)
     assert plan.notes[0].startswith(f"auto chose the router {expected}: ")
     assert plan.edges.flow.tolist() == chosen.edges.flow.tolist()

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem as problem
 from tests.shared.examples import examples
 
-from amprep.bench.packing.instances import mpv_instance
 from amprep.kernels.boxes.relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_together, relation_scratch
 from amprep.model import Stop, silent
 from amprep.plugins.packers.auto import pack_auto
@@ -20,6 +19,7 @@ from amprep.plugins.packers.bounds.relaxation import relaxed_boxes
 from amprep.plugins.packers.bounds.volume import builds_bound
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import AutoParams
+from amprep.testing.packing_instances import mpv_instance
 
 
 def proved(task, work=50e6):

@@ -1,0 +1,26 @@
+"""Options that several benchmark commands share, and their output."""
+
+import json
+from typing import Annotated, Any
+
+import typer
+
+from amprep import cli
+
+TimeLimit = Annotated[
+    float, typer.Option("--time-limit", metavar="S", min=0.0, help="Time limit per instance (s).")
+]
+PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to measure.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the random numbers.")]
+First = Annotated[int, typer.Option("--first", min=1, help="Number of the first instance, from 1.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
+
+
+def print_json(record: Any) -> None:
+    """Print a record as indented JSON."""
+    typer.echo(json.dumps(record, indent=2))
+
+
+def finish(*, valid: bool) -> None:
+    """End the command with exit code 0, or 1 if a result failed its independent check."""
+    raise typer.Exit(cli.DONE if valid else cli.INCOMPLETE)
