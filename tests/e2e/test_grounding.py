@@ -28,7 +28,7 @@ def supported(amprep, tmp_path, solid, *options):
 def test_by_default_everything_stands_on_the_plate_and_the_rest_is_enclosed(amprep, tmp_path):
     outcome, supports, build = supported(amprep, tmp_path, CHEST)
     assert outcome.code == 1
-    assert {square["reason"] for square in supports["unconnected"]} == {"enclosed"}
+    assert {square["reason"] for square in supports["unconnected_squares"]} == {"enclosed"}
     assert build.settings.rules.grounding == "plate-only"
     assert build.supports == ()
 
@@ -63,7 +63,7 @@ def test_what_reaches_the_plate_still_does(amprep, tmp_path):
     table = Solid.cube((30, 30, 3)).translate((0, 0, 20)) + Solid.cube((6, 6, 20)).translate((12, 12, 0))
     _, _, plate = supported(amprep, tmp_path, table, "--cell", "prism")
     _, supports, anywhere = supported(amprep, tmp_path, table, "--cell", "prism", "--grounding", "anywhere")
-    assert supports["notes"] == supports["shared"] == []
+    assert supports["notes"] == supports["shared_supports"] == []
     assert anywhere.supports[0].mesh.digest == plate.supports[0].mesh.digest
 
 

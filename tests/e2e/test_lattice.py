@@ -25,13 +25,13 @@ def test_the_web_of_a_wheel_becomes_cells_in_a_file_that_run_packs(amprep, fixtu
     report = json.loads((tmp_path / "wheel.lattice.report.json").read_text(encoding="utf-8"))
     (part,) = report["parts"]
     assert (part["name"], part["regions"], part["violations"]) == ("wheel", ["web"], [])
-    assert part["region_mm3"] == pytest.approx(WEB, rel=1e-5)
-    assert part["after_mm3"] == pytest.approx(WHEEL - WEB + part["cells_mm3"], rel=1e-5)
-    assert part["after_g"] == pytest.approx(part["after_mm3"] * 0.0044)
+    assert part["region_volume_mm3"] == pytest.approx(WEB, rel=1e-5)
+    assert part["volume_after_mm3"] == pytest.approx(WHEEL - WEB + part["cell_volume_mm3"], rel=1e-5)
+    assert part["mass_after_g"] == pytest.approx(part["volume_after_mm3"] * 0.0044)
     for name in ("wheel.lattice.3mf", "wheel.lattice.001.wheel.stl"):
         mesh = read(tmp_path / name)
         assert mesh.is_watertight
-        assert mesh.volume == pytest.approx(part["after_mm3"], rel=1e-4)
+        assert mesh.volume == pytest.approx(part["volume_after_mm3"], rel=1e-4)
     assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
     packed = amprep(
         "run", tmp_path / "wheel.lattice.3mf", "--dry-run", "--json", "--set", "supports.enabled=false"
@@ -80,7 +80,7 @@ def test_a_shell_leaves_a_wall_around_cells(amprep, tmp_path):
     )
     assert done.code == 0
     (part,) = done.json["parts"]
-    assert 0.95 * 12**3 < part["region_mm3"] <= 12**3 + 1e-6
+    assert 0.95 * 12**3 < part["region_volume_mm3"] <= 12**3 + 1e-6
 
 
 def test_a_cell_that_does_not_hold_the_part_together_gives_exit_code_1(amprep, tmp_path):

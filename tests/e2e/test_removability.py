@@ -19,7 +19,7 @@ def supports(amprep, tmp_path, fixture, *sets):
 def test_low_x_walls_with_gaps_let_all_powder_out_from_below_a_level_plate(amprep, tmp_path):
     trimesh.creation.box((24, 24, 4)).export(tmp_path / "plate.stl")
     found, done = supports(amprep, tmp_path, tmp_path / "plate.stl", "supports.pitch_mm=2")
-    assert found["trapped_mm3"] == 0.0
+    assert found["trapped_powder_mm3"] == 0.0
     assert "powder" not in done.out
 
 
@@ -30,22 +30,22 @@ def test_x_walls_without_gaps_lock_powder_in_and_that_is_no_fault(amprep, fixtur
     assert "powder cannot leave" in done.out
     pockets = [pocket for body in found["bodies"] for pocket in body["pockets"]]
     assert len(pockets) > 50
-    assert found["trapped_mm3"] == pytest.approx(sum(pocket["volume_mm3"] for pocket in pockets))
+    assert found["trapped_powder_mm3"] == pytest.approx(sum(pocket["volume_mm3"] for pocket in pockets))
 
 
 @pytest.mark.parametrize("name", ["ball", "two-balls"])
 def test_x_walls_with_gaps_lock_in_no_powder_and_joined_ones_do(amprep, fixtures, tmp_path, name):
     gap, done = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
-    assert gap["trapped_mm3"] == 0.0
+    assert gap["trapped_powder_mm3"] == 0.0
     assert done.code == 0
     joined, _ = supports(amprep, tmp_path / "joined", fixtures / f"{name}.stl", "cells.params.join_every=1")
-    assert joined["trapped_mm3"] > 100.0
+    assert joined["trapped_powder_mm3"] > 100.0
 
 
 def test_mass_and_scanned_area_follow_from_the_volume(amprep, fixtures, tmp_path):
     keys = ("supports.pitch_mm=4", "cells.density_g_cm3=8", "cells.layer_mm=0.05")
     found, _ = supports(amprep, tmp_path, fixtures / "table.stl", *keys)
     assert found["mass_g"] == pytest.approx(found["volume_mm3"] * 0.008)
-    assert found["scan_mm2"] == pytest.approx(found["volume_mm3"] / 0.05)
-    assert 0.0 < found["contact_mm2"] <= 1600.0
-    assert found["contacts"] >= 1
+    assert found["scanned_area_mm2"] == pytest.approx(found["volume_mm3"] / 0.05)
+    assert 0.0 < found["contact_area_mm2"] <= 1600.0
+    assert found["contact_patches"] >= 1

@@ -49,7 +49,7 @@ def test_the_report_says_what_the_issue_promises(demo):
     for part in build["parts"]:
         assert [len(row) for row in part["transform"]] == [4, 4, 4, 4]
         assert part["transform"][3] == [0, 0, 0, 1]
-    assert build["supports"]["red"] > 0
+    assert build["supports"]["demand_squares"] > 0
     assert build["supports"]["volume_mm3"] > 0
     assert all(stage["seconds"] >= 0 for stage in report["stages"])
 

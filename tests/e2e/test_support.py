@@ -140,7 +140,7 @@ def test_a_job_blocks_part_of_a_face_by_a_mesh(amprep, tmp_path):
     outcome = amprep("run", tmp_path / "job.toml", "-o", tmp_path / "out", "--json")
     assert outcome.code == 0
     (region,) = outcome.json["builds"][0]["supports"]["overhangs"]
-    assert (region["name"], region["kind"], region["held"]) == ("overhang 1 of slab", "face", "whole")
+    assert (region["name"], region["kind"], region["supported"]) == ("overhang 1 of slab", "face", "fully")
     assert region["area_mm2"] == pytest.approx(400, rel=0.03)
     build = read_build(tmp_path / "out" / "job.build-1.3mf")
     part_lo, _ = build.parts[0].mesh.bounds
@@ -198,7 +198,7 @@ def test_every_overhang_is_listed_with_its_size_place_and_fate(amprep, fixtures,
         "support", tmp_path / "cone.stl", "--json", "-o", tmp_path, "--set", "supports.pitch_mm=1"
     )
     (tip,) = outcome.json["builds"][0]["supports"]["overhangs"]
-    assert (tip["name"], tip["kind"], tip["held"]) == ("overhang 1 of cone", "tip", "whole")
+    assert (tip["name"], tip["kind"], tip["supported"]) == ("overhang 1 of cone", "tip", "fully")
     assert tip["height_mm"] == pytest.approx(8.0, abs=1e-4)
     assert tip["position_mm"] == pytest.approx([30, 30, 8], abs=1e-4)
     assert (tip["area_mm2"], tip["length_mm"]) == (None, None)
@@ -207,7 +207,9 @@ def test_every_overhang_is_listed_with_its_size_place_and_fate(amprep, fixtures,
     outcome = amprep("run", fixtures / "knife-edge.stl", "--json", "--dry-run", "--set", "packing.lift_mm=5")
     edges = [each for each in outcome.json["builds"][0]["supports"]["overhangs"] if each["kind"] == "edge"]
     assert edges
-    assert all(each["length_mm"] > 0 and each["connected"] == each["red"] > 0 for each in edges)
+    assert all(
+        each["length_mm"] > 0 and each["connected_squares"] == each["demand_squares"] > 0 for each in edges
+    )
 
 
 def test_a_lack_of_room_is_answered_by_the_advice_of_a_finer_grid(amprep, tmp_path):
@@ -248,7 +250,7 @@ def test_supports_are_planned_whatever_the_job_says_and_a_limit_of_time_is_liste
     command = ("support", tmp_path / "box.stl", "--json", "--dry-run", "--set", "supports.enabled=false")
     outcome = amprep(*command)
     assert outcome.code == 0
-    assert outcome.json["builds"][0]["supports"]["red"] > 0
+    assert outcome.json["builds"][0]["supports"]["demand_squares"] > 0
     assert any(
         words.startswith("'amprep support' ignores supports.enabled = false")
         for words in outcome.json["notes"]
@@ -256,7 +258,7 @@ def test_supports_are_planned_whatever_the_job_says_and_a_limit_of_time_is_liste
     late = amprep(*command, "--time-limit", "0.000001")
     assert late.code == 1
     supports = late.json["builds"][0]["supports"]
-    assert {each["reason"] for each in supports["unconnected"]} == {"time limit"}
+    assert {each["reason"] for each in supports["unconnected_squares"]} == {"time limit"}
     assert any("allow a longer time limit" in words for words in late.json["warnings"])
 
 

@@ -13,7 +13,7 @@ from amprep.cli.options import JobOptions, with_options
 if TYPE_CHECKING:
     from amprep.host import Host
     from amprep.pipeline.stages import Watcher
-    from amprep.report.infill import LatticeRecord
+    from amprep.report.infill import InfillRecord
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +78,7 @@ def lattice(
 
     job = make_job(inputs, options, {})
 
-    def work(host: "Host", watcher: "Watcher") -> "LatticeRecord":
+    def work(host: "Host", watcher: "Watcher") -> "InfillRecord":
         from amprep.model import Stop
         from amprep.pipeline.fill_parts import LatticeOptions, fill_lattice
 

@@ -1,7 +1,19 @@
-"""Draws triangles into a depth buffer and shades the result: orthographic, on the processor alone."""
+"""Rasterise triangles into a depth buffer and shade the result: orthographic, without a graphics card.
+
+Strategy: triangles are drawn one after the other into a buffer of twice the picture's width and height, which
+keeps the nearest triangle of each pixel. Shading then visits each pixel once. Its light has three factors: the
+angle of the facet to the sun and to the viewer (computed once per triangle), the shadow (a second depth buffer, seen
+from the sun), and the openness of the surface (the depth of 7 pixels around it, in 4 different spirals for the 4 pixels
+of a block). Averaging blocks of 2 x 2 pixels smooths edges and the spirals' pattern. Drawing takes time in proportion
+to the pixels covered, shading to the pixels of the picture.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
+from amprep.arrays import Bytes, Float32s, Floats, Int32s, Int64s
 
 PLATE = 0
 """Kind of a triangle of the build plate: shaded with a millimetre grid."""
@@ -10,22 +22,121 @@ PART = 1
 SUPPORT = 2
 """Kind of a triangle of a support: outlines are drawn faintly."""
 
+_SUN = 0.68
+"""Brightness of direct light."""
+_AMBIENT, _FROM_ABOVE, _FROM_VIEWER = 0.34, 0.20, 0.10
+"""Brightness of ambient light, and its change for facets that face upwards or the viewer."""
+_GRAZING = -0.08
+"""Limit of a facet's slope towards the viewer, beyond which its depth per pixel is not computed."""
+_CREASE = 0.86
+"""Cosine of the angle between facets above which their common edge is not drawn."""
+_FADED, _MARKED = 0.40, 0.95
+"""Opacity of marks behind and before other surfaces."""
+
+
+class DepthBuffer(NamedTuple):
+    """Nearest surface of each pixel.
+
+    Attributes
+    ----------
+    depth
+        ``(h, w)`` float32 mm, infinite where nothing is drawn.
+    ids
+        ``(h, w)`` int32 index of the triangle or -1; of shape (0, 0) to keep the depth only.
+    """
+
+    depth: Float32s
+    ids: Int32s
+
+
+class Facets(NamedTuple):
+    """Properties of each triangle of a scene.
+
+    Attributes
+    ----------
+    normals
+        ``(m, 3)`` float32 unit normals; zero for triangles without area.
+    light
+        ``(m, 4)`` float32: direct light, ambient light, and the increase of depth in mm for one pixel to the
+        right and for one pixel down.
+    kinds
+        ``(m,)`` `PLATE`, `PART` or `SUPPORT`.
+    owner
+        ``(m,)`` index of the mesh.
+    colours
+        ``(m, 3)`` float32 linear colour.
+    """
+
+    normals: Float32s
+    light: Float32s
+    kinds: Bytes
+    owner: Int32s
+    colours: Float32s
+
+
+class DrawnMarks(NamedTuple):
+    """Marks over the scene: their buffer, and the shaded linear colour ``(k, 3)`` of each triangle."""
+
+    buffer: DepthBuffer
+    colours: Float32s
+
+
+class Sun(NamedTuple):
+    """The shadow map.
+
+    Attributes
+    ----------
+    depth
+        ``(s, s)`` float32 depth seen from the sun.
+    from_pixel
+        ``(3, 4)`` map of the picture's column, row and depth to the shadow map's.
+    bias
+        Difference of depth in mm that still counts as lit.
+    """
+
+    depth: Float32s
+    from_pixel: Floats
+    bias: float
+
+
+class Openness(NamedTuple):
+    """Parameters of `openness_at`.
+
+    Attributes
+    ----------
+    offsets
+        ``(4, k, 2)`` rows and columns to look at, for each pixel of a 2 x 2 block.
+    reach
+        Difference of depth in mm beyond which a nearer surface counts less and less.
+    """
+
+    offsets: Int64s
+    reach: float
+
+
+class PlateShape(NamedTuple):
+    """The build plate: its sizes in mm, whether it is round, and the size of a pixel in mm."""
+
+    size_x: float
+    size_y: float
+    is_round: bool
+    pixel: float
+
 
 @njit(cache=True)
-def draw(points, triangles, first, depth, ids):
-    """Draw triangles where they are nearer than what is there.
+def draw(points: Floats, triangles: Int32s, buffer: DepthBuffer) -> None:
+    """Draw triangles where they are nearer than the buffer's surface.
 
     Parameters
     ----------
     points
-        ``(n, 3)`` float64: column, row, depth; pixel (i, j) has its centre at column j, row i.
+        ``(n, 3)`` column, row and depth; pixel (i, j) has its centre at column j and row i.
     triangles
-        ``(m, 3)`` int32.
-    first
-        Triangle k is entered as ``first + k``.
-    depth, ids
-        ``(h, w)`` float32 and int32, modified in place; ids may be of shape (0, 0): then only depth is kept.
+        ``(m, 3)``.
+    buffer
+        Modified in place.
     """
+    depth, ids = buffer.depth, buffer.ids
     height, width = depth.shape
     keep = ids.shape[0] > 0
     for k in range(triangles.shape[0]):
@@ -42,7 +153,7 @@ def draw(points, triangles, first, depth, ids):
         right = min(width - 1, int(np.floor(max(xa, xb, xc))))
         if top > bottom or left > right:
             continue
-        # barycentric weights of b and c and the depth are linear in column and row
+        # The barycentric weights of b and c and the depth are linear in column and row.
         beta_x, beta_y = (yc - ya) / area, (xa - xc) / area
         gamma_x, gamma_y = (ya - yb) / area, (xb - xa) / area
         slope = beta_x * (zb - za) + gamma_x * (zc - za)
@@ -57,32 +168,34 @@ def draw(points, triangles, first, depth, ids):
                     if near < depth[row, column]:
                         depth[row, column] = near
                         if keep:
-                            ids[row, column] = first + k
+                            ids[row, column] = k
                 elif entered:
-                    break  # a row meets a triangle in one run
+                    break  # the pixels of a triangle in a row are consecutive
                 beta += beta_x
                 gamma += gamma_x
                 near += slope
 
 
 @njit(cache=True)
-def light_facets(vertices, triangles, axes, sun, pixels_per_mm, normals, facets):
-    """Compute the normal of each triangle and how it takes the light on the side that the viewer sees.
+def light_facets(
+    vertices: Floats, triangles: Int32s, axes: Floats, sun: Floats, pixels_per_mm: float, facets: Facets
+) -> None:
+    """Compute the normal of each triangle and the light on the side that the viewer sees.
 
     Parameters
     ----------
     vertices, triangles
-        ``(n, 3)`` float64 mm, ``(m, 3)`` int32.
+        ``(n, 3)`` mm, ``(m, 3)``.
     axes
-        ``(3, 3)`` float64, rows: right, down, away from the viewer.
+        ``(3, 3)``, rows: right, down, away from the viewer.
     sun
-        ``(3,)`` float64, unit vector along the light's way.
-    normals
-        ``(m, 3)`` float32, modified in place: unit normals, zero without area.
+        ``(3,)`` unit vector in the direction of the light.
+    pixels_per_mm
+        Scale of the picture.
     facets
-        ``(m, 4)`` float32, modified in place: share of direct light, share of ambient light, and how the
-        depth grows in mm for a pixel to the right and down.
+        Normals and light are modified in place.
     """
+    normals, light = facets.normals, facets.light
     for k in range(triangles.shape[0]):
         a, b, c = vertices[triangles[k, 0]], vertices[triangles[k, 1]], vertices[triangles[k, 2]]
         x = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])
@@ -95,37 +208,35 @@ def light_facets(vertices, triangles, axes, sun, pixels_per_mm, normals, facets)
         if x * axes[2, 0] + y * axes[2, 1] + z * axes[2, 2] > 0.0:
             x, y, z = -x, -y, -z
         away = x * axes[2, 0] + y * axes[2, 1] + z * axes[2, 2]
-        steep = min(away, -0.08) * pixels_per_mm
-        facets[k, 0] = 0.68 * max(-(x * sun[0] + y * sun[1] + z * sun[2]), 0.0)
-        facets[k, 1] = 0.34 + 0.20 * z - 0.10 * away
-        facets[k, 2] = -(x * axes[0, 0] + y * axes[0, 1] + z * axes[0, 2]) / steep
-        facets[k, 3] = -(x * axes[1, 0] + y * axes[1, 1] + z * axes[1, 2]) / steep
+        steep = min(away, _GRAZING) * pixels_per_mm
+        light[k, 0] = _SUN * max(-(x * sun[0] + y * sun[1] + z * sun[2]), 0.0)
+        light[k, 1] = _AMBIENT + _FROM_ABOVE * z - _FROM_VIEWER * away
+        light[k, 2] = -(x * axes[0, 0] + y * axes[0, 1] + z * axes[0, 2]) / steep
+        light[k, 3] = -(x * axes[1, 0] + y * axes[1, 1] + z * axes[1, 2]) / steep
 
 
 @njit(cache=True)
-def lit_share(shadow, column, row, near, bias):
-    """Return the share in [0, 1] of the four nearest shadow cells that do not lie nearer to the light."""
+def lit_fraction(shadow: Float32s, column: float, row: float, near: float, bias: float) -> float:
+    """Return the fraction in [0, 1] of the four nearest shadow pixels whose surface is not nearer to the sun."""
     height, width = shadow.shape
     j, i = int(np.floor(column)), int(np.floor(row))
     if i < 0 or j < 0 or i >= height - 1 or j >= width - 1:
         return 1.0
     u, v = column - j, row - i
-    share = (1 - u) * (1 - v) * (near < shadow[i, j] + bias) + u * (1 - v) * (near < shadow[i, j + 1] + bias)
-    return (
-        share + (1 - u) * v * (near < shadow[i + 1, j] + bias) + u * v * (near < shadow[i + 1, j + 1] + bias)
+    above = (1 - u) * (1 - v) * (near < shadow[i, j] + bias) + u * (1 - v) * (near < shadow[i, j + 1] + bias)
+    return float(
+        above + (1 - u) * v * (near < shadow[i + 1, j] + bias) + u * v * (near < shadow[i + 1, j + 1] + bias)
     )
 
 
 @njit(cache=True)
-def openness(depth, row, column, slope_x, slope_y, offsets, reach):
-    """Return in [0, 1] how open the surface at a pixel lies: depths nearer than its tangent plane close it.
-
-    `offsets` is ``(4, k, 2)`` int64: rows and columns to look at, one list for each pixel of a 2 x 2 block;
-    what is nearer by more than `reach` mm counts less and less.
-    """
+def openness_at(
+    depth: Float32s, row: int, column: int, slope_x: float, slope_y: float, openness: Openness
+) -> float:
+    """Return in [0, 1] how open the surface at a pixel is; surfaces nearer than its tangent plane close it."""
     height, width = depth.shape
     here, closed, seen = depth[row, column], 0.0, 0
-    own = offsets[2 * (row & 1) + (column & 1)]
+    own, reach = openness.offsets[2 * (row & 1) + (column & 1)], openness.reach
     for k in range(own.shape[0]):
         i, j = row + own[k, 0], column + own[k, 1]
         if i < 0 or j < 0 or i >= height or j >= width:
@@ -138,8 +249,15 @@ def openness(depth, row, column, slope_x, slope_y, offsets, reach):
 
 
 @njit(cache=True)
-def outline(ids, depth, row, column, slope_x, slope_y, owner, normals, jump):
-    """Return 2 where another body or a step in depth adjoins, 1 at a crease of the same body, 0 elsewhere."""
+def outline_at(
+    buffer: DepthBuffer, row: int, column: int, slope_x: float, slope_y: float, facets: Facets, jump: float
+) -> int:
+    """Return 2 at an outline, 1 at a crease, and 0 elsewhere.
+
+    An outline is the border to the background, to another mesh behind this one, or to a surface that is more than
+    `jump` mm behind. A crease is the border between facets of the same mesh at different angles.
+    """
+    ids, depth = buffer.ids, buffer.depth
     height, width = depth.shape
     here, found = ids[row, column], 0
     for i, j, step in ((0, 1, slope_x), (0, -1, -slope_x), (1, 0, slope_y), (-1, 0, -slope_y)):
@@ -149,26 +267,27 @@ def outline(ids, depth, row, column, slope_x, slope_y, owner, normals, jump):
         if there == here:
             continue
         behind = depth[row + i, column + j] - depth[row, column] - step
-        if there < 0 or (owner[there] != owner[here] and behind > 0.0) or behind > jump:
+        if there < 0 or (facets.owner[there] != facets.owner[here] and behind > 0.0) or behind > jump:
             return 2
         dot = 0.0
         for axis in range(3):
-            dot += normals[here, axis] * normals[there, axis]
-        if owner[there] == owner[here] and abs(dot) < 0.86 and abs(behind) < jump:
+            dot += facets.normals[here, axis] * facets.normals[there, axis]
+        if facets.owner[there] == facets.owner[here] and abs(dot) < _CREASE and abs(behind) < jump:
             found = 1
     return found
 
 
 @njit(cache=True)
-def plate_tone(x, y, size_x, size_y, is_round, pixel):
-    """Return the tone of the plate at x, y mm: edge, lines each 10 and 50 mm; negative outside."""
-    if is_round:
-        off = size_x / 2 - np.sqrt((x - size_x / 2) ** 2 + (y - size_y / 2) ** 2)
+def plate_tone(x: float, y: float, plate: PlateShape) -> float:
+    """Return the tone of the plate at x, y mm, with its edge and lines every 10 and 50 mm; negative outside."""
+    pixel = plate.pixel
+    if plate.is_round:
+        inside = plate.size_x / 2 - np.sqrt((x - plate.size_x / 2) ** 2 + (y - plate.size_y / 2) ** 2)
     else:
-        off = min(x, size_x - x, y, size_y - y)
-    if off < 0.0:
+        inside = min(x, plate.size_x - x, y, plate.size_y - y)
+    if inside < 0.0:
         return -1.0
-    if off < 3.0 * pixel:
+    if inside < 3.0 * pixel:
         return 0.35
     to_ten = min(abs(x - 10.0 * np.round(x / 10.0)), abs(y - 10.0 * np.round(y / 10.0)))
     to_fifty = min(abs(x - 50.0 * np.round(x / 50.0)), abs(y - 50.0 * np.round(y / 50.0)))
@@ -178,69 +297,75 @@ def plate_tone(x, y, size_x, size_y, is_round, pixel):
 
 
 @njit(cache=True)
+def _mapped(matrix: Floats, axis: int, column: int, row: int, near: float) -> float:
+    """Return one coordinate of a pixel and its depth under a ``(3, 4)`` map."""
+    return float(matrix[axis, 0] * column + matrix[axis, 1] * row + matrix[axis, 3] + matrix[axis, 2] * near)
+
+
+@njit(cache=True)
 def shade(
-    ids, depth, mark_ids, mark_depth, shadow, to_world, to_light, facets, normals, kinds, owner, colours,
-    mark_colours, offsets, plate, background, image,
-):  # fmt: skip
-    """Shade every pixel of the buffers and average blocks of 2 x 2 into the picture.
+    buffer: DepthBuffer,
+    marks: DrawnMarks,
+    facets: Facets,
+    to_world: Floats,
+    sun: Sun,
+    openness: Openness,
+    plate: PlateShape,
+    background: Float32s,
+    image: Float32s,
+) -> None:
+    """Shade every pixel of the buffers and average blocks of 2 x 2 pixels into the picture.
 
     Parameters
     ----------
-    ids, depth
-        ``(2h, 2w)`` int32 triangle or -1, float32 depth in mm.
-    mark_ids, mark_depth
-        The same for marks, which shine through what hides them.
-    shadow
-        ``(s, s)`` float32 depth seen from the light.
-    to_world, to_light
-        ``(3, 4)`` float64: (column, row, depth) to build coordinates, and to the shadow's column, row, depth.
-    normals, facets
-        Per triangle, see `light_facets`.
-    kinds, owner, colours
-        Per triangle: uint8 kind, int32 body, ``(m, 3)`` float32 linear colour.
-    mark_colours
-        ``(k, 3)`` float32 linear colour per triangle of the marks, shaded already.
-    offsets
-        See `openness`.
-    plate
-        Size x, size y, 1 for a round one, mm a pixel, reach of the openness in mm, bias of the shadow in mm.
+    buffer
+        ``(2h, 2w)``, the scene.
+    marks
+        ``(2h, 2w)``; they are faintly visible behind other surfaces.
+    facets
+        Of the scene's triangles.
+    to_world
+        ``(3, 4)`` map of column, row and depth to build coordinates.
+    sun, openness, plate
+        Shadow, ambient occlusion, and the build plate.
     background
-        ``(h, 3)`` float32 linear colour of each row.
+        ``(h, 3)`` linear colour of each row.
     image
-        ``(h, w, 3)`` float32 linear colour, zeros, modified in place.
+        ``(h, w, 3)`` linear colour, zeros, modified in place.
     """
-    pixel, reach, bias = plate[3], plate[4], plate[5]
-    at, lit = np.zeros(3), np.zeros(3)
+    ids, depth = buffer.ids, buffer.depth
+    jump = 1.5 + 4 * plate.pixel
     for row in range(ids.shape[0]):
         for column in range(ids.shape[1]):
             here, near, tone = ids[row, column], depth[row, column], 1.0
             if here >= 0:
-                for axis in range(3):
-                    at[axis] = to_world[axis, 0] * column + to_world[axis, 1] * row + to_world[axis, 3]
-                    at[axis] += to_world[axis, 2] * near
-                    lit[axis] = to_light[axis, 0] * column + to_light[axis, 1] * row + to_light[axis, 3]
-                    lit[axis] += to_light[axis, 2] * near
-                slope_x, slope_y = facets[here, 2], facets[here, 3]
-                share = openness(depth, row, column, slope_x, slope_y, offsets, reach)
-                sun = facets[here, 0]
-                if sun > 0.0:
-                    sun *= lit_share(shadow, lit[0], lit[1], lit[2], bias)
-                tone = facets[here, 1] * share * share + sun * (0.35 + 0.65 * share)
-                if kinds[here] == PLATE:
-                    pattern = plate_tone(at[0], at[1], plate[0], plate[1], plate[2] > 0.0, pixel)
+                slope_x, slope_y = facets.light[here, 2], facets.light[here, 3]
+                opened = openness_at(depth, row, column, slope_x, slope_y, openness)
+                direct = facets.light[here, 0]
+                if direct > 0.0:
+                    sun_column = _mapped(sun.from_pixel, 0, column, row, near)
+                    sun_row = _mapped(sun.from_pixel, 1, column, row, near)
+                    sun_depth = _mapped(sun.from_pixel, 2, column, row, near)
+                    direct *= lit_fraction(sun.depth, sun_column, sun_row, sun_depth, sun.bias)
+                tone = facets.light[here, 1] * opened * opened + direct * (0.35 + 0.65 * opened)
+                if facets.kinds[here] == PLATE:
+                    x = _mapped(to_world, 0, column, row, near)
+                    y = _mapped(to_world, 1, column, row, near)
+                    pattern = plate_tone(x, y, plate)
                     tone *= pattern
                     if pattern < 0.0:
                         here = -1
                 else:
-                    line = outline(ids, depth, row, column, slope_x, slope_y, owner, normals, 1.5 + 4 * pixel)
-                    if kinds[here] == PART:
+                    line = outline_at(buffer, row, column, slope_x, slope_y, facets, jump)
+                    if facets.kinds[here] == PART:
                         tone *= 0.32 if line == 2 else (0.62 if line == 1 else 1.0)
                     elif line == 2:
                         tone *= 0.7
-            mark = mark_ids[row, column]
-            over = 0.0 if mark < 0 else (0.40 if mark_depth[row, column] > near + 0.5 else 0.95)
+            mark = marks.buffer.ids[row, column]
+            hidden = marks.buffer.depth[row, column] > near + 0.5
+            opacity = 0.0 if mark < 0 else (_FADED if hidden else _MARKED)
             for channel in range(3):
-                value = colours[here, channel] * tone if here >= 0 else background[row // 2, channel]
-                if over > 0.0:
-                    value += over * (mark_colours[mark, channel] - value)
+                value = facets.colours[here, channel] * tone if here >= 0 else background[row // 2, channel]
+                if opacity > 0.0:
+                    value += opacity * (marks.colours[mark, channel] - value)
                 image[row // 2, column // 2, channel] += 0.25 * value

@@ -21,7 +21,7 @@ from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.pipeline.resolve import choose_cell
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.report.cutaway import draw_cut
-from amprep.report.infill import FilledRecord, LatticeRecord, write_json
+from amprep.report.infill import FilledPartRecord, InfillRecord, write_json
 from amprep.stl import write_stl
 from amprep.threemf import write_parts
 
@@ -80,7 +80,7 @@ class _PartFill:
 
 def fill_lattice(
     job: Job, host: Host, options: LatticeOptions, *, watcher: Watcher, stop: Stop
-) -> LatticeRecord:
+) -> InfillRecord:
     """Fill the marked regions of the job's parts with its cell and return what was done.
 
     Files appear together at the end; an interrupted run leaves none.
@@ -112,7 +112,7 @@ def fill_lattice(
     for each in done:
         if each.filled is not None:
             records.append(_measured(each, each.filled, job, clock))
-    record = LatticeRecord(
+    record = InfillRecord(
         job.name,
         __version__,
         cell.name,
@@ -196,7 +196,7 @@ def _beams(job: Job) -> bool | None:
     return True if job.cells.lattice == "beams" else None
 
 
-def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> FilledRecord:
+def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> FilledPartRecord:
     """Judge a filled part and measure it."""
     part, wishes = each.part, job.cells
     regions = [region.mesh for region in each.regions if region.mesh]
@@ -208,20 +208,20 @@ def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> Filled
         pockets = pockets_of(filled.mesh, wishes.powder_hole_mm)
         before = pockets_of(part.mesh, wishes.powder_hole_mm) if pockets else ()
     volume, density = filled.mesh.signed_volume, wishes.density_g_cm3
-    return FilledRecord(
+    return FilledPartRecord(
         name=part.name,
         regions=tuple(region.name for region in each.regions),
         cells=filled.count,
         beams=0 if filled.lattice is None else len(filled.lattice.struts),
         triangles=len(filled.mesh.triangles),
-        before_mm3=part.volume_mm3,
-        after_mm3=volume,
-        region_mm3=filled.region.signed_volume,
-        cells_mm3=filled.cells_mm3,
-        before_g=mass(part, part.volume_mm3, density),
-        after_g=mass(part, volume, density),
-        islands=filled.islands,
-        islands_mm3=filled.islands_mm3,
+        volume_before_mm3=part.volume_mm3,
+        volume_after_mm3=volume,
+        region_volume_mm3=filled.region.signed_volume,
+        cell_volume_mm3=filled.cells_mm3,
+        mass_before_g=mass(part, part.volume_mm3, density),
+        mass_after_g=mass(part, volume, density),
+        dropped_components=filled.islands,
+        dropped_volume_mm3=filled.islands_mm3,
         genus=filled.genus,
         pockets=pockets,
         pockets_before_mm3=sum(pocket.volume for pocket in before),
@@ -247,13 +247,13 @@ def _notes(done: Sequence[_PartFill], job: Job) -> list[str]:
 
 
 def _written(
-    record: LatticeRecord,
+    record: InfillRecord,
     done: Sequence[_PartFill],
     job: Job,
     options: LatticeOptions,
     outputs: OutputFolder,
     clock: Clock,
-) -> LatticeRecord:
+) -> InfillRecord:
     """Write everything, let all files appear, and return the record with their names."""
     parts = [each.result for each in done]
     lattices: dict[int, tuple[Lattice, Mesh]] = {

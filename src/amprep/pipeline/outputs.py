@@ -1,4 +1,4 @@
-"""The output folder: files are made in a hidden folder beside their place and appear together at the end."""
+"""The output folder: files are written to a hidden folder inside it and appear together at the end."""
 
 import re
 import shutil
@@ -11,23 +11,27 @@ from amprep.errors import InputError
 
 
 def safe_name(text: str) -> str:
-    """Return `text` as a file name that stays in its folder: letters, digits, dot, dash, underscore, space."""
+    """Return `text` as a valid file name of letters, digits, dots, dashes, underscores and spaces."""
     kept = re.sub(r"[^\w.\- ]+", "_", text).strip(". ")
     return kept[:100] or "unnamed"
 
 
 class OutputFolder:
-    """Collects a run's files and publishes them all at once; on any exception nothing appears.
+    """Collects the files of a run and publishes them together; after an exception no file appears.
 
     Parameters
     ----------
+    folder
+        Created if it does not exist.
+    stem
+        Beginning of all file names.
     numbered
-        False when there is one build only: its files then need no number.
+        False if there is only one build, whose files need no number.
 
     Raises
     ------
     InputError
-        If the folder cannot be made or written.
+        If the folder cannot be created or written.
     """
 
     def __init__(self, folder: Path, stem: str, *, numbered: bool = True) -> None:
@@ -44,31 +48,31 @@ class OutputFolder:
         return self
 
     def path(self, suffix: str) -> Path:
-        """Return where to make the file that will be called ``STEM.suffix``."""
+        """Return the path at which to write the file ``STEM.suffix``; it will be published."""
         path = self.staged(suffix)
         self._names.append(path.name)
         return path
 
     def staged(self, suffix: str) -> Path:
-        """Return where the file made for ``STEM.suffix`` lies until it is published."""
+        """Return the path of the file ``STEM.suffix`` before it is published."""
         return self._staging / f"{self.stem}.{suffix}"
 
     def name(self, suffix: str) -> str:
-        """Return what ``STEM.suffix`` will be called."""
+        """Return the name ``STEM.suffix``."""
         return f"{self.stem}.{suffix}"
 
     def of_build(self, number: int, suffix: str) -> str:
-        """Return the suffix of a file of build `number`: ``build-2.3mf``, or ``3mf`` without numbers."""
+        """Return the suffix of a file of build `number`: ``build-2.3mf``, or ``3mf`` if builds are not numbered."""
         return f"build-{number}.{suffix}" if self.numbered else suffix
 
     def stale_builds(self, count: int) -> list[str]:
-        """Names of build files of an earlier run with more builds than `count`; they are left alone."""
+        """Return the names of build files with numbers above `count`, from an earlier run; they are not changed."""
         pattern = re.compile(re.escape(self.stem) + r"\.build-(\d+)\.3mf")
         matches = (pattern.fullmatch(path.name) for path in self.folder.iterdir())
         return sorted(match[0] for match in matches if match and int(match[1]) > count)
 
     def publish(self) -> None:
-        """Move every finished file to its place; a single rename each, so none is ever half there."""
+        """Move every file to the output folder; a rename is atomic, so no file is ever incomplete."""
         for name in self._names:
             (self._staging / name).replace(self.folder / name)
 

@@ -1,4 +1,4 @@
-"""Turns what the stages returned into the record that reports are made of."""
+"""Collect the results of the stages in the records from which reports are made."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -15,12 +15,19 @@ from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.supporting import SupportedBuild
-from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord, UnplacedRecord
+from amprep.report.record import (
+    BuildRecord,
+    OverhangRecord,
+    RunRecord,
+    Supported,
+    UnconnectedSquare,
+    UnplacedRecord,
+)
 from amprep.supports.plan import SupportLayout
 
 
 def build_record(supported: SupportedBuild) -> BuildRecord:
-    """Return the figures of one build; file names and the verdict are added as they come."""
+    """Return the record of a build, without file names and verification."""
     build, layout = supported.build, supported.layout
     return BuildRecord(
         build=build,
@@ -29,11 +36,11 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         support_volume_mm3=support_volume(build),
         advice=supported.advice,
         removal=supported.removal,
-        columns=tuple(measure_slenderness(body) for body in build.supports),
+        slenderness=tuple(measure_slenderness(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
-        red=0 if layout is None else len(layout.red),
+        demand_squares=0 if layout is None else len(layout.red),
         unconnected=() if layout is None else _unconnected(supported, layout),
-        shared=() if layout is None else layout.shared,
+        shared_supports=() if layout is None else layout.shared,
         notes=() if layout is None else layout.notes,
     )
 
@@ -47,9 +54,23 @@ def run_record(
     packing: Packing,
     unplaced: tuple[UnplacedRecord, ...] = (),
 ) -> RunRecord:
-    """Return the record of a whole run."""
+    """Return the record of a run.
+
+    Parameters
+    ----------
+    parts
+        The job's parts, whose notes the record repeats.
+    builds
+        Records of all builds.
+    outputs
+        The output folder; files of an earlier run with more builds are reported.
+    packing
+        Supplies status, stop reason and bound.
+    unplaced
+        Copies that are in no build.
+    """
     stale = outputs.stale_builds(len(builds))
-    left = [f"{name} is from an earlier run with more builds; it was left alone" for name in stale]
+    left = [f"{name} is from an earlier run with more builds and was not changed" for name in stale]
     return RunRecord(
         job=job.name,
         version=__version__,
@@ -75,58 +96,59 @@ def _advice(builds: Sequence[BuildRecord]) -> list[str]:
 def unplaced_records(
     parts: Sequence[Part], problem: PackingProblem, packing: Packing
 ) -> tuple[UnplacedRecord, ...]:
-    """Return the copies that found no place, and why."""
+    """Return the copies that are in no build, with the reasons."""
     items = ((problem.items[entry.item], entry.reason) for entry in packing.unplaced)
     return tuple(UnplacedRecord(parts[item.part].name, item.copy + 1, reason) for item, reason in items)
 
 
 def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...]:
-    """Return a record of each overhang region of each part."""
-    bare: dict[str, list[Unsupported]] = {}
+    """Return a record of each overhang of each part."""
+    unsupported: dict[str, list[Unsupported]] = {}
     for each in build.unsupported:
-        bare.setdefault(each.label, []).append(each)
+        unsupported.setdefault(each.label, []).append(each)
     records = []
     for part, (placed, overhangs) in enumerate(zip(build.parts, layout.overhangs, strict=True)):
         count = len(overhangs.regions)
         own = layout.red_part == part
-        red = np.bincount(layout.red_region[own], minlength=count)
+        squares = np.bincount(layout.red_region[own], minlength=count)
         connected = np.bincount(layout.red_region[own & layout.connected], minlength=count)
         for number, region in enumerate(overhangs.regions):
             name = region_name(number, placed.label)
+            left = unsupported.get(name, ())
             x, y, z = region.centre.tolist()
             records.append(
                 OverhangRecord(
-                    name,
-                    placed.label,
-                    region.kind,
-                    z if region.kind == "tip" else region.measure,
-                    (x, y, z),
-                    int(red[number]),
-                    int(connected[number]),
-                    _held(region, bare.get(name, ())),
-                    tuple(sorted({each.reason for each in bare.get(name, ())})),
+                    name=name,
+                    part=placed.label,
+                    kind=region.kind,
+                    size=z if region.kind == "tip" else region.measure,
+                    position_mm=(x, y, z),
+                    demand_squares=int(squares[number]),
+                    connected_squares=int(connected[number]),
+                    supported=_supported(region, left),
+                    reasons=tuple(sorted({each.reason for each in left})),
                 )
             )
     return tuple(records)
 
 
-def _held(region: OverhangRegion, bare: Sequence[Unsupported]) -> str:
-    """Say how much of a region is held, from what is listed of it."""
-    if all(each.minor for each in bare):
-        return "whole"
-    return "part" if sum(each.measure for each in bare) < (1.0 - 1e-6) * region.measure else "not"
+def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported:
+    """Return to what extent a region is supported; `left` lists what of it is unsupported."""
+    if all(each.minor for each in left):
+        return "fully"
+    return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"
 
 
-def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedRecord, ...]:
+def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedSquare, ...]:
     frame, records = layout.frame, []
-    for red in (~layout.connected).nonzero()[0].tolist():
-        plane, y, x = (int(value) for value in layout.red[red])
-        label = supported.build.parts[int(layout.red_part[red])].label
+    for index in (~layout.connected).nonzero()[0].tolist():
+        plane, y, x = (int(value) for value in layout.red[index])
+        label = supported.build.parts[int(layout.red_part[index])].label
         records.append(
-            UnconnectedRecord(
+            UnconnectedSquare(
                 label,
-                region_name(int(layout.red_region[red]), label),
-                layout.reasons[red],
+                region_name(int(layout.red_region[index]), label),
+                layout.reasons[index],
                 (plane, y, x),
                 (
                     float(frame.origin[0] + (x + 0.5) * frame.pitch),

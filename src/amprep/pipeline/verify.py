@@ -1,4 +1,4 @@
-"""Judges a build against every promise; the same for a run's own output and for a stranger's file."""
+"""Judge a build against every promise, whether it was just made or read from a file."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -27,13 +27,23 @@ PROMISES = (
     xy_distance.PROMISE,
     coverage.PROMISE,
 )
-"""The names of all promises, in the order they are judged."""
+"""Names of all promises, in the order in which they are judged."""
 
 
 def verify_build(
     build: Build, *, stop: Stop | None = None, progress: Progress = silent
 ) -> tuple[Violation, ...]:
-    """Return every broken promise of `build`, parts first, then supports, then what is left unsupported."""
+    """Return every broken promise: of parts, then of supports, then of overhangs without support.
+
+    Parameters
+    ----------
+    build
+        The build.
+    stop
+        Ends the check of parts and supports early.
+    progress
+        Called before each group of judges.
+    """
     stop = stop or Stop()
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
         ("parts", lambda: check_placed(build.parts, build.settings, stop)),
@@ -44,14 +54,21 @@ def verify_build(
     for index, (name, judge) in enumerate(judges):
         progress(index / len(judges), name)
         violations += judge()
-    progress(1.0, "judged")
+    progress(1.0, "verified")
     return tuple(violations)
 
 
 def verify_file(
     path: Path, *, stop: Stop | None = None, progress: Progress = silent
 ) -> tuple[Violation, ...]:
-    """Read a written build back and judge it from the file alone.
+    """Read a build file and judge the build from the file alone.
+
+    Parameters
+    ----------
+    path
+        The build file.
+    stop, progress
+        See `verify_build`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Writes a build's files, reads the build job back and judges it, then writes the reports."""
+"""Write the files of a build, verify the build as read back from its file, and write the reports."""
 
 from dataclasses import replace
 
@@ -20,19 +20,35 @@ def finish_build(
     clock: Clock,
     stop: Stop,
 ) -> BuildRecord:
-    """Write build `number` unless this is a dry run, and judge it: as read back from its file, or as planned."""
+    """Write and verify a build.
+
+    Parameters
+    ----------
+    supported
+        The build with its supports.
+    number
+        Number of the build, from 1.
+    outputs
+        Folder of the files.
+    dry_run
+        Write nothing, and verify the build as planned instead of as read back from its file.
+    stl
+        Write an STL file of each part and support, too.
+    clock, stop
+        Time the stages; end verification early.
+    """
     build = supported.build
     record = build_record(supported)
     if not dry_run:
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)
     with clock.stage("verify") as progress:
-        judged = build if dry_run else _read_back(number, outputs)
-        return replace(record, verification=verify_build(judged, stop=stop, progress=progress))
+        checked = build if dry_run else _read_back(number, outputs)
+        return replace(record, verification=verify_build(checked, stop=stop, progress=progress))
 
 
 def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:
-    """Write pictures and the HTML and JSON reports; return the record with its times and file names."""
+    """Write pictures and the HTML and JSON reports; return the record with durations and file names."""
     from amprep.report.json_report import write_json
     from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture
@@ -67,7 +83,7 @@ def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool)
 
 
 def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, ...]:
-    """Parts and supports in build coordinates, for machine software that reads nothing else."""
+    """Write parts and supports in build coordinates; return the names of the files."""
     from amprep.stl import write_stl
 
     meshes = [(placed.label, placed.mesh) for placed in build.parts]

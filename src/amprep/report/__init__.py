@@ -1,1 +1,1 @@
-"""Reports of a run: records, JSON, HTML with a 3D view, pictures, the closing table."""
+"""Reports of a run: records, JSON, HTML page with a 3D view, pictures, summary for the terminal."""

@@ -1,4 +1,4 @@
-"""Draws filled parts cut open, so that one sees the cells inside."""
+"""Draw filled parts cut open, which shows the cells inside."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,19 +7,26 @@ import numpy as np
 
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.model import Mesh
+from amprep.model.mesh import Mesh, join_meshes
 
-_SPACE = 0.15
-"""Distance between two parts, as a share of their width."""
+_DISTANCE = 0.15
+"""Distance between two parts as a fraction of their width."""
 
 
 def draw_cut(parts: Sequence[Mesh], path: Path, *, size: tuple[int, int] = (1600, 1200)) -> None:
-    """Write a PNG of parts side by side, each without the quarter that is nearest to the viewer.
+    """Write a picture of parts side by side as PNG, each without the quarter nearest to the viewer.
+
+    Parameters
+    ----------
+    parts, path
+        The meshes and the file; the file appears complete, or not at all.
+    size
+        Width and height in pixels.
 
     Raises
     ------
     AmprepError
-        When the file cannot be written.
+        If the file cannot be written.
     """
     from amprep.report.picture import draw_mesh
 
@@ -28,17 +35,12 @@ def draw_cut(parts: Sequence[Mesh], path: Path, *, size: tuple[int, int] = (1600
         cut = _cut_open(part)
         low, high = part.bounds
         shown.append(Mesh(cut.vertices + np.array([right - low[0], -low[1], -low[2]]), cut.triangles))
-        right += float((1.0 + _SPACE) * (high - low)[0])
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in shown])
-    joined = Mesh(
-        np.concatenate([mesh.vertices for mesh in shown]),
-        np.concatenate([mesh.triangles + start for mesh, start in zip(shown, starts, strict=False)]),
-    )
-    draw_mesh(joined, path, size=size)
+        right += float((1.0 + _DISTANCE) * (high - low)[0])
+    draw_mesh(join_meshes(shown), path, size=size)
 
 
 def _cut_open(part: Mesh) -> Mesh:
-    """Return the part without the quarter in front on the right."""
+    """Return the part without the quarter in front on the right; the whole part if nothing would remain."""
     from manifold3d import Manifold
 
     low, high = part.bounds

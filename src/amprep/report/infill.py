@@ -1,47 +1,47 @@
-"""What filling regions with cells came to: the record, as JSON and as lines for the terminal."""
+"""The report of `amprep lattice`: its records, as JSON and as lines for the terminal."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from amprep.checks.violation import Violation
-from amprep.files import replacing
 from amprep.geometry.powder.pockets import Pocket
-from amprep.report.json_report import NUMBERS, plain
+from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.record import StageTime
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-_MUCH = 0.05
-"""Share of the powder between the cells that has to be locked in before advice is given."""
+_MUCH_TRAPPED = 0.05
+"""Fraction of the powder between the cells above which a warning of trapped powder gives advice."""
 
 FORMAT = 1
-"""Version of the layout; grows when a key changes its meaning or goes."""
+"""Version of the layout; it increases when a key changes its meaning or is removed."""
 
 
 @dataclass(frozen=True)
-class FilledRecord:
-    """One part that was filled.
+class FilledPartRecord:
+    """A part in which regions were filled with cells.
 
     Attributes
     ----------
     regions
         Names of the regions.
     cells, beams
-        How many there are; no beams where cells are solids.
-    before_mm3, after_mm3, region_mm3, cells_mm3
-        The part as it was and as it is; what the cells replaced, and what they fill of it.
-    before_g, after_g
-        None where the density is not known.
-    islands, islands_mm3
-        Pieces of cells that nothing held, and so were dropped.
+        Number of cells, and of beams; 0 beams if cells are solids.
+    volume_before_mm3, volume_after_mm3, region_volume_mm3, cell_volume_mm3
+        Volume of the part before and after; of the material that the cells replaced, and of the cells.
+    mass_before_g, mass_after_g
+        None if the density is unknown.
+    dropped_components, dropped_volume_mm3
+        Disconnected components of cells, which nothing holds; they were removed.
     genus
-        How many handles its surfaces have.
+        Genus of the part's surfaces.
     pockets
-        Powder that cannot leave, largest first, whatever locks it in; `before` is what the part as it was locks in.
+        Powder that cannot leave, largest first, whatever encloses it.
+    pockets_before_mm3
+        Volume of the pockets before filling.
     """
 
     name: str
@@ -49,42 +49,44 @@ class FilledRecord:
     cells: int
     beams: int
     triangles: int
-    before_mm3: float
-    after_mm3: float
-    region_mm3: float
-    cells_mm3: float
-    before_g: float | None
-    after_g: float | None
-    islands: int
-    islands_mm3: float
+    volume_before_mm3: float
+    volume_after_mm3: float
+    region_volume_mm3: float
+    cell_volume_mm3: float
+    mass_before_g: float | None
+    mass_after_g: float | None
+    dropped_components: int
+    dropped_volume_mm3: float
     genus: int
     pockets: tuple[Pocket, ...]
     pockets_before_mm3: float
     violations: tuple[Violation, ...]
 
     @property
-    def density(self) -> float:
-        """Share of the region that the cells fill."""
-        return self.cells_mm3 / self.region_mm3
+    def relative_density(self) -> float:
+        """Fraction of the region that the cells fill."""
+        return self.cell_volume_mm3 / self.region_volume_mm3
 
     @property
-    def trapped_mm3(self) -> float:
-        """Powder that the cells lock in: what cannot leave now, less what could not before."""
+    def trapped_powder_mm3(self) -> float:
+        """Volume of powder that the cells trap: that of the pockets after filling less that before."""
         return max(sum(pocket.volume for pocket in self.pockets) - self.pockets_before_mm3, 0.0)
 
 
 @dataclass(frozen=True)
-class LatticeRecord:
-    """One call of ``amprep lattice``.
+class InfillRecord:
+    """A call of ``amprep lattice``.
 
     Attributes
     ----------
     size_mm, height_mm
-        Of a cell along x and y, and along z.
-    hole_mm
-        Powder is loose where a ball of this diameter can leave.
+        Size of a cell along x and y, and along z.
+    powder_hole_mm
+        Powder can leave where a ball of this diameter can.
+    unchanged_parts
+        Names of the parts without filled regions.
     files
-        Names of what was written; empty for a dry run.
+        Names of the written files; empty for a dry run.
     """
 
     job: str
@@ -92,132 +94,120 @@ class LatticeRecord:
     cell: str
     size_mm: float
     height_mm: float
-    hole_mm: float
-    parts: tuple[FilledRecord, ...]
-    untouched: tuple[str, ...]
+    powder_hole_mm: float
+    parts: tuple[FilledPartRecord, ...]
+    unchanged_parts: tuple[str, ...]
     files: tuple[str, ...] = ()
     stages: tuple[StageTime, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
     def faults(self) -> int:
-        """How many promises are broken."""
+        """Number of broken promises."""
         return sum(len(part.violations) for part in self.parts)
 
 
-def to_json(record: LatticeRecord) -> dict[str, Any]:
+def to_json(record: InfillRecord) -> dict[str, Any]:
     """Return the record as plain values."""
     result: dict[str, Any] = plain(
         {
             "format": FORMAT,
-            "amprep": record.version,
+            "amprep_version": record.version,
             "job": record.job,
             "cell": record.cell,
             "size_mm": record.size_mm,
             "height_mm": record.height_mm,
-            "hole_mm": record.hole_mm,
+            "powder_hole_mm": record.powder_hole_mm,
             "parts": [_part(part) for part in record.parts],
-            "untouched": list(record.untouched),
+            "unchanged_parts": list(record.unchanged_parts),
             "files": list(record.files),
-            "stages": [{"name": stage.name, "seconds": round(stage.seconds, 3)} for stage in record.stages],
+            "stages": stages_json(record.stages),
             "warnings": list(warnings_of(record)),
         }
     )
     return result
 
 
-def write_json(record: LatticeRecord, path: Path) -> None:
-    """Write the record; the file is whole or not there."""
-    text = json.dumps(to_json(record), indent=2, ensure_ascii=False, allow_nan=False)
-    text = NUMBERS.sub(lambda found: " ".join(found[0].split()), text) + "\n"
-    with replacing(path) as temporary:
-        temporary.write_bytes(text.encode("utf-8", "backslashreplace"))
+def write_json(record: InfillRecord, path: Path) -> None:
+    """Write the record; the file appears complete, or not at all."""
+    write_json_file(to_json(record), path)
 
 
-def _part(part: FilledRecord) -> dict[str, Any]:
+def _part(part: FilledPartRecord) -> dict[str, Any]:
     return {
         "name": part.name,
         "regions": list(part.regions),
         "cells": part.cells,
         "beams": part.beams,
         "triangles": part.triangles,
-        "before_mm3": part.before_mm3,
-        "after_mm3": part.after_mm3,
-        "region_mm3": part.region_mm3,
-        "cells_mm3": part.cells_mm3,
-        "density": part.density,
-        "before_g": part.before_g,
-        "after_g": part.after_g,
-        "islands": part.islands,
-        "islands_mm3": part.islands_mm3,
+        "volume_before_mm3": part.volume_before_mm3,
+        "volume_after_mm3": part.volume_after_mm3,
+        "region_volume_mm3": part.region_volume_mm3,
+        "cell_volume_mm3": part.cell_volume_mm3,
+        "relative_density": part.relative_density,
+        "mass_before_g": part.mass_before_g,
+        "mass_after_g": part.mass_after_g,
+        "dropped_components": part.dropped_components,
+        "dropped_volume_mm3": part.dropped_volume_mm3,
         "genus": part.genus,
-        "trapped_mm3": part.trapped_mm3,
-        "pockets": [
-            {
-                "volume_mm3": pocket.volume,
-                "position_mm": pocket.point,
-                "low_mm": pocket.lo,
-                "high_mm": pocket.hi,
-                "closed": pocket.closed,
-            }
-            for pocket in part.pockets
-        ],
-        "violations": [
-            {"promise": found.promise, "subject": found.subject, "message": found.message}
-            for found in part.violations
-        ],
+        "trapped_powder_mm3": part.trapped_powder_mm3,
+        "pockets": pockets_json(part.pockets),
+        "violations": violations_json(part.violations),
     }
 
 
-def warnings_of(record: LatticeRecord) -> Iterator[str]:
-    """Yield what a person should know: powder that cannot leave, cells dropped, parts left alone."""
+def warnings_of(record: InfillRecord) -> Iterator[str]:
+    """Yield warnings: those of the run, trapped powder, dropped components and broken promises."""
     yield from record.warnings
     for part in record.parts:
-        if part.trapped_mm3 > 0.0:
-            advice = "; let the region reach the part's surface, or choose a more open cell"
-            free = part.region_mm3 - part.cells_mm3
+        if part.trapped_powder_mm3 > 0.0:
+            yield _trapped_powder_warning(part, record.powder_hole_mm)
+        if part.dropped_components:
             yield (
-                f"{part.name}: {part.trapped_mm3:.4g} mm3 of powder in {len(part.pockets)} pockets cannot leave, "
-                f"{part.trapped_mm3 / max(free, part.trapped_mm3):.1%} of what is between the cells (a ball of "
-                f"{record.hole_mm:g} mm finds no way out){advice if part.trapped_mm3 > _MUCH * free else ''}"
-            )
-        if part.islands:
-            yield (
-                f"{part.name}: {part.islands} loose pieces of cells ({part.islands_mm3:.3g} mm3) were dropped: "
-                "nothing held them"
+                f"{part.name}: {part.dropped_components} disconnected components of cells "
+                f"({part.dropped_volume_mm3:.3g} mm3) were dropped because nothing holds them"
             )
         for found in part.violations:
             yield f"{part.name}: {found.promise}: {found.message}"
 
 
-def summary(record: LatticeRecord) -> "RenderableType":
-    """Return the figures, what needs a look and the files, ready to print."""
+def _trapped_powder_warning(part: FilledPartRecord, hole_mm: float) -> str:
+    trapped = part.trapped_powder_mm3
+    between = part.region_volume_mm3 - part.cell_volume_mm3
+    advice = "; let the region reach the part's surface, or choose a more open cell"
+    return (
+        f"{part.name}: {trapped:.4g} mm3 of powder in {len(part.pockets)} pockets cannot leave, "
+        f"{trapped / max(between, trapped):.1%} of the powder between the cells (a ball of {hole_mm:g} mm "
+        f"has no way out){advice if trapped > _MUCH_TRAPPED * between else ''}"
+    )
+
+
+def summary(record: InfillRecord) -> "RenderableType":
+    """Return figures, warnings, durations and files, ready to print."""
     from rich import box
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, title=Text(f"{record.job}: {_cells(record)}"), title_justify="left")
+    size = f"{record.size_mm:g} x {record.size_mm:g} x {record.height_mm:g} mm"
+    title = Text(f"{record.job}: cell {record.cell}, {size}")
+    table = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left")
     table.add_column("part")
-    for heading in ("cells", "density", "volume", "mass", "less", "verified"):
+    for heading in ("cells", "relative density", "volume", "mass", "saved", "verified"):
         table.add_column(heading, justify="right", no_wrap=True)
     for part in record.parts:
         table.add_row(
             Text(part.name),
             f"{part.cells} ({part.beams} beams)" if part.beams else str(part.cells),
-            f"{part.density:.1%}",
-            f"{part.after_mm3 / 1000:.4g} cm³",
-            "-" if part.after_g is None else f"{part.after_g:.4g} g",
-            f"{1.0 - part.after_mm3 / part.before_mm3:.0%}",
+            f"{part.relative_density:.1%}",
+            f"{part.volume_after_mm3 / 1000:.4g} cm³",
+            "-" if part.mass_after_g is None else f"{part.mass_after_g:.4g} g",
+            f"{1.0 - part.volume_after_mm3 / part.volume_before_mm3:.0%}",
             f"no ({len(part.violations)})" if part.violations else "yes",
         )
     lines: list[RenderableType] = [table]
     lines += [Text(f"! {line}", style="yellow") for line in warnings_of(record)]
-    times = ", ".join(f"{stage.name} {stage.seconds:.1f} s" for stage in record.stages)
-    lines.append(Text(times, style="dim"))
+    durations = ", ".join(f"{stage.name} {stage.seconds:.1f} s" for stage in record.stages)
+    lines.append(Text(durations, style="dim"))
     lines += [Text(f"wrote {name}", style="dim") for name in record.files]
     return Group(*lines)
-
-
-def _cells(record: LatticeRecord) -> str:
-    return f"cells of {record.cell}, {record.size_mm:g} x {record.size_mm:g} x {record.height_mm:g} mm"

@@ -1,31 +1,34 @@
 """The report for programs: `job.report.json`, described in docs/report.md."""
 
-import json
-import math
-import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from amprep.files import replacing
-from amprep.geometry.powder.pockets import Pocket
 from amprep.measures.density import part_volume
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
-from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedRecord
+from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
+from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedSquare
 
 FORMAT = 1
-"""Version of the layout; grows when a key changes its meaning or goes."""
-NUMBERS = re.compile(r"\[\n[-+.\deE,\s]+\n\s*\]")
-"""A list of numbers over several lines; strings hold no raw line ends, so none is ever inside one."""
+"""Version of the layout; it increases when a key changes its meaning or is removed."""
+
+_REMOVAL_KEYS = {
+    "mass_g": "mass_g",
+    "scan_mm2": "scanned_area_mm2",
+    "contact_mm2": "contact_area_mm2",
+    "contacts": "contact_patches",
+    "trapped_mm3": "trapped_powder_mm3",
+}
+"""Field of `Removal` -> key."""
+
+_OVERHANG_SIZES = {"face": "area_mm2", "edge": "length_mm", "tip": "height_mm"}
 
 
 def to_json(record: RunRecord) -> dict[str, Any]:
-    """Return the run as plain values: dicts, lists, strings, finite numbers, booleans and None."""
+    """Return a run as plain values: dicts, lists, strings, finite numbers, booleans and None."""
     report = {
         "format": FORMAT,
-        "amprep": record.version,
+        "amprep_version": record.version,
         "job": record.job,
         "printer": record.printer,
         "target": record.target,
@@ -38,7 +41,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "unplaced": [
             {"name": item.name, "copy": item.copy, "reason": item.reason} for item in record.unplaced
         ],
-        "stages": [{"name": stage.name, "seconds": round(stage.seconds, 3)} for stage in record.stages],
+        "stages": stages_json(record.stages),
         "warnings": list(record.warnings),
         "notes": list(record.notes),
         "settings": dict(record.settings),
@@ -47,16 +50,9 @@ def to_json(record: RunRecord) -> dict[str, Any]:
     return result
 
 
-def json_text(record: RunRecord) -> str:
-    """Return the report as JSON text, matrices and points on one line each."""
-    text = json.dumps(to_json(record), indent=2, ensure_ascii=False, allow_nan=False)
-    return NUMBERS.sub(lambda found: " ".join(found[0].split()), text) + "\n"
-
-
 def write_json(record: RunRecord, path: Path) -> None:
-    """Write the report; the file is whole or not there."""
-    with replacing(path) as temporary:
-        temporary.write_bytes(json_text(record).encode("utf-8", "backslashreplace"))
+    """Write the report; the file appears complete, or not at all."""
+    write_json_file(to_json(record), path)
 
 
 def _build(entry: BuildRecord) -> dict[str, Any]:
@@ -65,31 +61,15 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
         "id": build.settings.build_id,
         "file": entry.file,
         "picture": entry.picture,
-        "stl": list(entry.stl_files),
-        "space_mm": build.settings.space.size,
-        "space_shape": build.settings.space.shape,
+        "stl_files": list(entry.stl_files),
+        "build_volume_mm": build.settings.space.size,
+        "build_volume_shape": build.settings.space.shape,
         "density": entry.density,
         "height_mm": entry.height_mm,
         "parts": [_part(placed) for placed in build.parts],
-        "supports": {
-            "volume_mm3": entry.support_volume_mm3,
-            "material": entry.support_material,
-            **totals(entry.removal),
-            "overhangs": [_overhang(region) for region in entry.overhangs],
-            "red": entry.red,
-            "unconnected": [_unconnected(square) for square in entry.unconnected],
-            "unsupported_mm2": entry.unsupported_mm2,
-            "minor_mm2": entry.minor_mm2,
-            "unsupported": [_unsupported(entry, region) for region in build.unsupported],
-            "bodies": [_body(entry, index) for index in range(len(build.supports))],
-            "shared": list(entry.shared),
-            "notes": list(entry.notes),
-        },
+        "supports": _supports(entry),
         "verified": entry.verification is not None,
-        "violations": [
-            {"promise": found.promise, "subject": found.subject, "message": found.message}
-            for found in entry.verification or ()
-        ],
+        "violations": violations_json(entry.verification or ()),
     }
 
 
@@ -109,7 +89,25 @@ def _part(placed: PlacedPart) -> dict[str, Any]:
     }
 
 
-def _unconnected(square: UnconnectedRecord) -> dict[str, Any]:
+def _supports(entry: BuildRecord) -> dict[str, Any]:
+    build = entry.build
+    sums = totals(entry.removal)
+    return {
+        "volume_mm3": entry.support_volume_mm3,
+        **{key: sums[name] for name, key in _REMOVAL_KEYS.items()},
+        "overhangs": [_overhang(region) for region in entry.overhangs],
+        "demand_squares": entry.demand_squares,
+        "unconnected_squares": [_square(square) for square in entry.unconnected],
+        "unsupported_mm2": entry.unsupported_mm2,
+        "unsupported_minor_mm2": entry.unsupported_minor_mm2,
+        "unsupported": [_unsupported(entry, region) for region in build.unsupported],
+        "bodies": [_body(entry, index) for index in range(len(build.supports))],
+        "shared_supports": list(entry.shared_supports),
+        "notes": list(entry.notes),
+    }
+
+
+def _square(square: UnconnectedSquare) -> dict[str, Any]:
     return {
         "part": square.part,
         "region": square.region,
@@ -120,16 +118,15 @@ def _unconnected(square: UnconnectedRecord) -> dict[str, Any]:
 
 
 def _overhang(region: OverhangRecord) -> dict[str, Any]:
-    measures = {"face": "area_mm2", "edge": "length_mm", "tip": "height_mm"}
     return {
         "name": region.name,
         "part": region.part,
         "kind": region.kind,
-        **{key: region.measure if kind == region.kind else None for kind, key in measures.items()},
+        **{key: region.size if kind == region.kind else None for kind, key in _OVERHANG_SIZES.items()},
         "position_mm": list(region.position_mm),
-        "red": region.red,
-        "connected": region.connected,
-        "held": region.held,
+        "demand_squares": region.demand_squares,
+        "connected_squares": region.connected_squares,
+        "supported": region.supported,
         "reasons": list(region.reasons),
     }
 
@@ -148,51 +145,33 @@ def _unsupported(entry: BuildRecord, region: Unsupported) -> dict[str, Any]:
 
 def _body(entry: BuildRecord, index: int) -> dict[str, Any]:
     body = entry.build.supports[index]
-    columns = entry.columns[index]._asdict() if entry.columns else {}
     return {
         "name": body.name,
         "parts": [entry.build.parts[index].label for index in body.parts],
         "surface": body.surface,
         "triangles": len(body.mesh.triangles),
         "volume_mm3": 0.0 if body.surface else abs(body.mesh.signed_volume),
-        **columns,
+        **(_slenderness(entry, index) if entry.slenderness else {}),
         **(_removal(entry.removal[index]) if entry.removal else {}),
     }
 
 
+def _slenderness(entry: BuildRecord, index: int) -> dict[str, Any]:
+    found = entry.slenderness[index]
+    return {
+        "components": found.pieces,
+        "most_slender": {
+            "slenderness": found.slenderness,
+            "height_mm": found.height_mm,
+            "width_mm": found.width_mm,
+            "position_mm": found.position_mm,
+        },
+    }
+
+
 def _removal(removal: Removal) -> dict[str, Any]:
-    pockets = removal.pockets
     return {
-        "mass_g": removal.mass_g,
-        "scan_mm2": removal.scan_mm2,
-        "contact_mm2": removal.contact_mm2,
-        "contacts": removal.contacts,
-        "trapped_mm3": removal.trapped_mm3,
-        "resolution_mm": removal.resolution_mm,
-        "pockets": None if pockets is None else [_pocket(pocket) for pocket in pockets],
+        **{key: getattr(removal, name) for name, key in _REMOVAL_KEYS.items()},
+        "powder_resolution_mm": removal.resolution_mm,
+        "pockets": None if removal.pockets is None else pockets_json(removal.pockets),
     }
-
-
-def _pocket(pocket: Pocket) -> dict[str, Any]:
-    return {
-        "volume_mm3": pocket.volume,
-        "position_mm": pocket.point,
-        "low_mm": pocket.lo,
-        "high_mm": pocket.hi,
-        "closed": pocket.closed,
-    }
-
-
-def plain(value: Any) -> Any:
-    """Return numpy values, mappings and tuples as plain ones; a number that is not finite becomes None."""
-    if isinstance(value, dict):
-        return {str(key): plain(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(inner) for inner in value]
-    if isinstance(value, (set, frozenset)):
-        return sorted(map(str, value))
-    if isinstance(value, (np.ndarray, np.generic)):
-        return plain(value.tolist())
-    if isinstance(value, float):
-        return value + 0.0 if math.isfinite(value) else None
-    return value if value is None or isinstance(value, (bool, int, str)) else str(value)

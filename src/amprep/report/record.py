@@ -1,8 +1,8 @@
-"""What a run came to: the records that every report is made of."""
+"""The results of a run as records, from which all reports are made."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
@@ -12,24 +12,27 @@ from amprep.model import Build, Unsupported
 
 @dataclass(frozen=True)
 class StageTime:
-    """How long a stage took, in seconds of wall clock."""
+    """Duration of a stage, in seconds of wall-clock time."""
 
     name: str
     seconds: float
 
 
 @dataclass(frozen=True)
-class UnconnectedRecord:
-    """A red square without a way to the plate.
+class UnconnectedSquare:
+    """A demand square that no support connects with the build plate.
+
+    A demand square is the bottom of a voxel that contains an overhang and has a free voxel below it; the thesis calls
+    it a red square.
 
     Attributes
     ----------
     part, region
-        For people: the placed part's label, the overhang's.
+        Label of the placed part, and name of the overhang.
     reason
         One of `amprep.model.supports.REASONS`.
     square
-        Plane, y, x in the support grid.
+        Plane, y and x in the grid.
     position_mm
         Centre of the square in build coordinates.
     """
@@ -41,24 +44,27 @@ class UnconnectedRecord:
     position_mm: tuple[float, float, float]
 
 
+Supported = Literal["fully", "partly", "not"]
+
+
 @dataclass(frozen=True)
 class OverhangRecord:
-    """An overhang region: what needs support, and what became of it.
+    """A region that needs support, and to what extent it is supported.
 
     Attributes
     ----------
     name
-        For people, ``overhang 7 of bracket-2``.
+        For example ``overhang 7 of bracket-2``.
     kind
         ``face``, ``edge`` or ``tip``.
-    measure
-        Area in mm2, length in mm, or a tip's height above the plate in mm.
+    size
+        Area of a face in mm2, length of an edge in mm, or height of a tip above the plate in mm.
     position_mm
         Its centre in build coordinates.
-    red, connected
-        Its red squares, and those with a way to where supports end.
-    held
-        ``whole`` (minor remainders aside), ``part`` or ``not``.
+    demand_squares, connected_squares
+        Number of its demand squares, and of those that a support connects.
+    supported
+        Minor remainders count as supported.
     reasons
         Why something of it is unsupported, minor remainders included.
     """
@@ -66,17 +72,17 @@ class OverhangRecord:
     name: str
     part: str
     kind: str
-    measure: float
+    size: float
     position_mm: tuple[float, float, float]
-    red: int
-    connected: int
-    held: str
+    demand_squares: int
+    connected_squares: int
+    supported: Supported
     reasons: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class UnplacedRecord:
-    """A copy of a part that is in no build, and why; copies count from 1."""
+    """A copy of a part that is in no build, with the reason; copies are counted from 1."""
 
     name: str
     copy: int
@@ -85,32 +91,30 @@ class UnplacedRecord:
 
 @dataclass(frozen=True, eq=False)
 class BuildRecord:
-    """One build and what was measured on it.
+    """A build and its figures.
 
     Attributes
     ----------
     file, picture, stl_files
-        Names of the files written for it, relative to the report; empty when not written.
+        Names of its files, relative to the report; empty if not written.
     density, height_mm, support_volume_mm3
-        As `amprep.measures.density` defines them.
-    support_material
-        What the supports are made of in words: cell, wall, and the like; shown as it is.
-    red
-        Number of red squares, connected or not.
+        See `amprep.measures.density`.
+    demand_squares
+        Number of demand squares, connected or not.
+    unconnected
+        The demand squares that are not connected.
     verification
-        What `amprep verify` found; None when the build was not verified.
-    shared
-        Supports that hold several parts, one sentence each.
+        Broken promises; None if the build was not verified.
+    shared_supports
+        One sentence for each support that holds several parts.
     notes
-        What else the supports' planning has to say, one sentence each.
+        Further remarks of support planning, one sentence each.
     overhangs
-        Everything that needs support.
+        All regions that need support.
+    slenderness, removal
+        Figures of each support body; empty if not measured.
     advice
-        What to try for a better build, one sentence each.
-    columns
-        How slender each of the build's support bodies is.
-    removal
-        What each of them costs and how it comes off.
+        Suggestions for a better build, one sentence each.
     """
 
     build: Build
@@ -119,50 +123,53 @@ class BuildRecord:
     density: float = 0.0
     height_mm: float = 0.0
     support_volume_mm3: float = 0.0
-    support_material: str = ""
-    red: int = 0
-    unconnected: tuple[UnconnectedRecord, ...] = ()
+    demand_squares: int = 0
+    unconnected: tuple[UnconnectedSquare, ...] = ()
     verification: tuple[Violation, ...] | None = None
     stl_files: tuple[str, ...] = ()
-    shared: tuple[str, ...] = ()
+    shared_supports: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
-    columns: tuple[Slenderness, ...] = ()
+    slenderness: tuple[Slenderness, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
-        """What is listed as unsupported and not minor."""
+        """The unsupported regions that are not minor."""
         return tuple(region for region in self.build.unsupported if not region.minor)
 
     @property
     def unsupported_mm2(self) -> float:
-        """Area of the faces listed as unsupported, mm2, minor ones left out; edges and tips have none."""
+        """Area of the unsupported faces in mm2, without minor ones; edges and tips have no area."""
         return sum(region.measure for region in self.unsupported if region.kind == "face")
 
     @property
-    def minor_mm2(self) -> float:
-        """Area of the minor faces listed as unsupported, mm2."""
+    def unsupported_minor_mm2(self) -> float:
+        """Area of the minor unsupported faces in mm2."""
         return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
 
 
 @dataclass(frozen=True, eq=False)
 class RunRecord:
-    """One run of a job.
+    """A run of a job.
 
     Attributes
     ----------
     job
-        The job's name.
+        Name of the job.
     version
-        amprep's.
+        Version of amprep.
+    status, stop_reason
+        Status of the packing, and why it ended.
     bound
-        What the packing objective cannot beat, or None.
+        Bound on the packing's objective, or None.
+    warnings, notes
+        One sentence each: what needs attention; what was repaired or found in an input.
     settings
-        The job's settings as nested plain values, shown and kept as they are.
+        The job's settings as nested plain values.
     objective
-        ``builds``, ``height`` or ``fill``; in a fill problem unplaced copies are the answer, not a fault.
+        ``builds``, ``height`` or ``fill``; in a fill problem, unplaced copies are not faults.
     """
 
     job: str
@@ -183,6 +190,6 @@ class RunRecord:
 
     @property
     def faults(self) -> int:
-        """How many things a person should look at: copies missing, regions unsupported, promises broken."""
+        """Number of unplaced copies, unsupported regions and broken promises."""
         listed = sum(len(entry.unsupported) + len(entry.verification or ()) for entry in self.builds)
         return listed + (0 if self.objective == "fill" else len(self.unplaced))

@@ -1,4 +1,4 @@
-"""The closing table of a run, for the terminal."""
+"""The summary of a run for the terminal."""
 
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -9,19 +9,19 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-LISTED = 12
-"""How many lines of a list the terminal shows; the reports hold all of them."""
+MOST_LINES = 12
+"""Lines of a list that the terminal shows; the reports contain all of them."""
 
 
 def summary(record: RunRecord) -> "RenderableType":
-    """Return the builds, what needs a look, the time per stage and the files, ready to print."""
+    """Return the table of builds, the issues, the durations of stages and the files, ready to print."""
     from rich.console import Group
     from rich.text import Text
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
-    blocks += [Text(f"! {_shown(line)}", style="yellow") for line in _listed(_attention(record))]
+    blocks += [Text(f"! {_printable(line)}", style="yellow") for line in _listed(_issues(record))]
     blocks += [Text(_stages(record.stages), style="dim")]
-    blocks += [Text(f"wrote {_shown(name)}", style="dim") for name in _listed(_files(record))]
+    blocks += [Text(f"wrote {_printable(name)}", style="dim") for name in _listed(_files(record))]
     return Group(*blocks)
 
 
@@ -31,7 +31,7 @@ def _builds(record: RunRecord) -> "Table":
     from rich.text import Text
 
     table = Table(
-        box=box.SIMPLE_HEAD, title=Text(_shown(f"{record.job} on {record.printer}")), title_justify="left"
+        box=box.SIMPLE_HEAD, title=Text(_printable(f"{record.job} on {record.printer}")), title_justify="left"
     )
     table.add_column("build")
     for heading in ("parts", "density", "height", "supports", "unsupported", "verified"):
@@ -61,11 +61,11 @@ def _totals(record: RunRecord) -> str:
     counts = (
         f"{_count(placed, 'part')} in {_count(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
     )
-    return f"{counts}; {record.status}, {record.stop_reason}{bound}; seed {record.seed}"
+    return f"{counts}; packing {record.status} ({record.stop_reason}{bound}); seed {record.seed}"
 
 
-def _attention(record: RunRecord) -> list[str]:
-    """Return a line for everything that a person should look at."""
+def _issues(record: RunRecord) -> list[str]:
+    """Return one line for each warning, unplaced copy, broken promise, unsupported region and powder pocket."""
     lines = list(record.warnings)
     lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in record.unplaced]
     for number, entry in enumerate(record.builds, start=1):
@@ -73,13 +73,13 @@ def _attention(record: RunRecord) -> list[str]:
             f"build {number}: {found.promise}: {found.subject}: {found.message}"
             for found in entry.verification or ()
         ]
-        lines += [f"build {number}: unsupported: {words}" for words in _unsupported(entry)]
-        lines += [f"build {number}: {words}" for words in _trapped(entry)]
+        lines += [f"build {number}: unsupported: {line}" for line in _unsupported(entry)]
+        lines += [f"build {number}: {line}" for line in _trapped_powder(entry)]
     return lines
 
 
 def _unsupported(entry: BuildRecord) -> list[str]:
-    """Return one line for each part with unsupported regions."""
+    """Return one line for each part that has unsupported regions."""
     lines = []
     for index, placed in enumerate(entry.build.parts):
         regions = [region for region in entry.unsupported if region.part == index]
@@ -92,21 +92,21 @@ def _unsupported(entry: BuildRecord) -> list[str]:
     return lines
 
 
-def _trapped(entry: BuildRecord) -> list[str]:
-    """Return a line when powder is locked in."""
+def _trapped_powder(entry: BuildRecord) -> list[str]:
+    """Return a line if the supports enclose powder."""
     pockets = [pocket for removal in entry.removal for pocket in removal.pockets or ()]
     if not pockets:
         return []
     volume = sum(pocket.volume for pocket in pockets)
     return [
-        f"powder cannot leave {_count(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ together"
+        f"powder cannot leave {_count(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ in total"
     ]
 
 
 def _stages(stages: tuple[StageTime, ...]) -> str:
     total = sum(stage.seconds for stage in stages)
-    words = "  ".join(f"{stage.name} {stage.seconds:.1f}" for stage in stages)
-    return f"{total:.1f} s: {words}" if stages else ""
+    durations = "  ".join(f"{stage.name} {stage.seconds:.1f}" for stage in stages)
+    return f"{total:.1f} s: {durations}" if stages else ""
 
 
 def _files(record: RunRecord) -> list[str]:
@@ -115,17 +115,17 @@ def _files(record: RunRecord) -> list[str]:
 
 
 def _listed(lines: list[str]) -> list[str]:
-    if len(lines) <= LISTED:
+    if len(lines) <= MOST_LINES:
         return lines
-    return [*lines[: LISTED - 1], f"... and {len(lines) - LISTED + 1} more, see the report"]
+    return [*lines[: MOST_LINES - 1], f"... and {len(lines) - MOST_LINES + 1} more, see the report"]
 
 
-def _shown(text: str) -> str:
-    """Return the text without characters that would steer the terminal; names come from files."""
+def _printable(text: str) -> str:
+    """Return the text without control characters, which names from files may contain."""
     return "".join(
         character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text
     )
 
 
-def _count(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -12,18 +12,19 @@ from amprep.checks.violation import Violation
 from amprep.files import replacing
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.model import Build, BuildSettings, BuildVolume
-from amprep.report.json_report import json_text, to_json, write_json
-from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedRecord, UnplacedRecord
-from amprep.report.terminal import LISTED, summary
+from amprep.report.json_report import to_json, write_json
+from amprep.report.json_values import json_text
+from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedSquare, UnplacedRecord
+from amprep.report.terminal import MOST_LINES, summary
 
 
 @pytest.fixture
 def record(make_build) -> RunRecord:
     """Return a run with one of everything: unplaced, unsupported, unconnected, a violation."""
-    lost = UnconnectedRecord("bar", "overhang 1 of bar", "enclosed", (4, 2, 1), (1.5, 2.5, 6.0))
+    lost = UnconnectedSquare("bar", "overhang 1 of bar", "enclosed", (4, 2, 1), (1.5, 2.5, 6.0))
     broken = Violation("clearance", "bar", "expected 0.5 mm, found 0.2 mm")
     entry = BuildRecord(
-        make_build(), "job.build-1.3mf", "job.build-1.png", 0.25, 5.0, 48.4, "x-wall", 7, (lost,), (broken,)
+        make_build(), "job.build-1.3mf", "job.build-1.png", 0.25, 5.0, 48.4, 7, (lost,), (broken,)
     )
     return RunRecord(
         "job",
@@ -48,14 +49,14 @@ def printed(record: RunRecord) -> str:
 
 
 def test_the_json_report_holds_what_the_issue_asks_for(record):
-    report = json.loads(json_text(record))
+    report = json.loads(json_text(to_json(record)))
     build = report["builds"][0]
     assert {"file", "parts", "density", "height_mm", "supports"} <= build.keys()
-    assert {"volume_mm3", "red", "unconnected"} <= build["supports"].keys()
+    assert {"volume_mm3", "demand_squares", "unconnected_squares"} <= build["supports"].keys()
     assert {"builds", "unplaced", "stages", "seed", "status", "stop_reason", "bound"} <= report.keys()
     assert report["stages"] == [{"name": "read", "seconds": 0.25}, {"name": "pack", "seconds": 1.5}]
     assert report["unplaced"] == [{"name": "crane", "copy": 2, "reason": "too large"}]
-    assert build["supports"]["unconnected"][0]["reason"] == "enclosed"
+    assert build["supports"]["unconnected_squares"][0]["reason"] == "enclosed"
     assert build["violations"][0]["promise"] == "clearance"
 
 
@@ -68,7 +69,7 @@ def test_transforms_are_4_by_4_row_major_in_mm(record):
 
 
 def test_numbers_that_are_not_finite_become_null(record):
-    text = json_text(replace(record, bound=inf))
+    text = json_text(to_json(replace(record, bound=inf)))
     report = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert report["bound"] is None
     assert report["settings"]["packing"] == {"clearance_mm": 0.5, "limit": None, "size": [1.0, None]}
@@ -76,8 +77,8 @@ def test_numbers_that_are_not_finite_become_null(record):
 
 def test_the_same_record_gives_the_same_text_and_names_survive_as_they_are(record):
     odd = replace(record, job='a "name" [\n1, 2\n] \\ ü \udc80')
-    assert json_text(odd) == json_text(odd)
-    assert json.loads(json_text(odd))["job"] == odd.job
+    assert json_text(to_json(odd)) == json_text(to_json(odd))
+    assert json.loads(json_text(to_json(odd)))["job"] == odd.job
 
 
 def test_a_name_that_is_no_unicode_is_written_all_the_same(record, tmp_path):
@@ -155,5 +156,5 @@ def test_names_from_files_can_neither_steer_the_terminal_nor_mark_up_the_table(r
 def test_long_lists_are_cut_in_the_terminal(record):
     many = tuple(UnplacedRecord("peg", copy, "no room left") for copy in range(1, 101))
     text = printed(replace(record, unplaced=many))
-    assert text.count("\n!") <= LISTED
+    assert text.count("\n!") <= MOST_LINES
     assert "more, see the report" in text

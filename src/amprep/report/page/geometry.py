@@ -1,6 +1,6 @@
-"""Packs meshes for the 3D view: positions on a 16-bit grid, differences, byte planes, deflate, base64.
+"""Encode meshes for the 3D view: 16-bit positions, as differences in byte planes, deflated, in base64.
 
-`viewer/decode.js` is the other half. A part of 70 mm keeps its shape to 1 micrometre.
+`viewer/decode.js` decodes them. The positions of a part of 70 mm are accurate to 1 micrometre.
 """
 
 import zlib
@@ -14,11 +14,12 @@ from amprep.arrays import Floats
 from amprep.model import Mesh
 
 LEVEL = 6
-GRID = 65535
+STEPS = 65535
+"""Steps of a coordinate from the low to the high side of a mesh."""
 
 
 class GeometryPack:
-    """Collects meshes and gives each an index; equal meshes share one."""
+    """Collects meshes and gives each an index; equal meshes have the same index."""
 
     def __init__(self) -> None:
         self._entries: list[dict[str, Any]] = []
@@ -28,7 +29,7 @@ class GeometryPack:
 
     @property
     def entries(self) -> list[dict[str, Any]]:
-        """What the view must know of each mesh to unpack it."""
+        """Offset, counts and bounds of each mesh, which the view needs to decode it."""
         return list(self._entries)
 
     def add(self, mesh: Mesh) -> int:
@@ -39,7 +40,7 @@ class GeometryPack:
         return self._known[mesh.digest]
 
     def base64(self) -> str:
-        """Return everything added, deflated, as base64."""
+        """Return all meshes, deflated, as base64."""
         return b64encode(zlib.compress(b"".join(self._chunks), LEVEL)).decode("ascii")
 
     def _append(self, mesh: Mesh) -> None:
@@ -59,15 +60,15 @@ class GeometryPack:
 
 
 def _positions(vertices: Floats, low: Floats, high: Floats) -> bytes:
-    """Return x, y, z one after the other: differences modulo 2^16, low bytes before high bytes."""
+    """Return x, then y, then z: differences modulo 2^16, all low bytes before all high bytes."""
     extent = np.where(high > low, high - low, 1.0)
-    steps = np.round((vertices - low) / extent * GRID).astype(np.int32)
+    steps = np.round((vertices - low) / extent * STEPS).astype(np.int32)
     differences = np.diff(steps, axis=0, prepend=0).astype("<u2")
     return b"".join(_planes(differences[:, axis]) for axis in range(3))
 
 
 def _indices(indices: NDArray[np.int32]) -> bytes:
-    """Return differences with the sign folded into the lowest bit, in four byte planes."""
+    """Return differences with the sign in the lowest bit, in four byte planes."""
     differences = np.diff(indices.astype(np.int64), prepend=0)
     folded = np.where(differences < 0, -2 * differences - 1, 2 * differences).astype("<u4")
     return _planes(folded)

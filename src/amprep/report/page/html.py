@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from amprep.files import replacing
-from amprep.report.json_report import plain
+from amprep.report.json_values import plain
 from amprep.report.page.tables import body_sections, header
 from amprep.report.page.view_model import view_model
 from amprep.report.record import RunRecord
@@ -17,14 +17,14 @@ from amprep.report.record import RunRecord
 VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">
 <div id="stage">
-<canvas id="canvas" tabindex="0" title="Drag turns, scroll zooms, right drag moves, click names"></canvas>
-<div id="wait">Unpacking the geometry ...</div>
+<canvas id="canvas" tabindex="0" title="Drag to rotate, scroll to zoom, right-drag to pan, click to identify"></canvas>
+<div id="wait">Loading the geometry ...</div>
 <div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
 <div class="group" id="layers"></div></div>
 <div id="card" hidden></div>
 <div class="bar" id="bottom"><div class="group" id="views"></div>
 <div class="group">
-<label>Section <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
+<label>Cut at height <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
 <span id="section-value">off</span></div></div>
 </div>
 <div id="lists"></div>
@@ -33,10 +33,10 @@ VIEWER = """\
 
 
 def write_html(record: RunRecord, path: Path) -> None:
-    """Write the report as one HTML file without references to other files; it is whole or not there.
+    """Write the report as one HTML file without references to other files; it appears complete, or not at all.
 
-    Every string that came from a file is escaped, and a content security policy allows no script but the
-    bundled one and no network at all.
+    Every string from a file is escaped. A content security policy allows only the bundled script and no network
+    access.
     """
     with replacing(path) as temporary:
         temporary.write_bytes(html_text(record).encode("utf-8", "replace"))
@@ -68,11 +68,11 @@ def _resource(name: str) -> str:
 
 
 def _digest(text: str) -> str:
-    """Return the hash by which the policy admits an inline script or style."""
+    """Return the hash with which the policy allows an inline script or style."""
     return "sha256-" + b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
 
 
 def _json(model: dict[str, Any]) -> str:
-    """Return JSON that no string inside can end the element with."""
+    """Return JSON in which no string can end the HTML element around it."""
     text = json.dumps(plain(model), separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

@@ -1,4 +1,4 @@
-"""The words and tables of the HTML report; every string is escaped where it enters."""
+"""Make the header and the tables of the HTML report; every string from a file is escaped."""
 
 import json
 from collections import Counter
@@ -8,26 +8,25 @@ from textwrap import dedent
 
 from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
-from amprep.report.json_report import plain
+from amprep.report.json_values import plain
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 
 Cell = str | float | tuple[str, str]
-"""Text (escaped), a number (right aligned, as formatted), or (class, HTML made here)."""
+"""Text that is escaped; a number, aligned to the right; or a CSS class and HTML, used as it is."""
 
 
 def header(record: RunRecord) -> str:
-    """Return title, verdict and key figures."""
+    """Return the title with the number of issues, the run's settings and the key figures."""
     faults = record.faults
-    chip = (
-        f'<span class="chip look">{faults} to look at</span>' if faults else '<span class="chip">ready</span>'
-    )
-    words = " · ".join(
-        escape(word)
-        for word in (
+    issues = f"{faults} issue{'s' if faults > 1 else ''}"
+    chip = f'<span class="chip bad">{issues}</span>' if faults else '<span class="chip">no issues</span>'
+    lead = " · ".join(
+        escape(text)
+        for text in (
             record.printer,
-            f"for {record.target}",
-            f"{record.status}, {record.stop_reason}",
+            f"target {record.target}",
+            f"packing {record.status} ({record.stop_reason})",
             f"seed {record.seed}",
         )
     )
@@ -35,33 +34,38 @@ def header(record: RunRecord) -> str:
         f"<div{' class=bad' if bad else ''}><dt>{name}</dt><dd>{value}</dd></div>"
         for name, value, bad in _figures(record)
     )
-    title = f'<header><h1>{escape(record.job)}{chip}</h1>\n<p class="lead">{words}</p></header>\n'
+    title = f'<header><h1>{escape(record.job)}{chip}</h1>\n<p class="lead">{lead}</p></header>\n'
     return f'{title}<dl class="figures">{figures}</dl>\n'
 
 
 def body_sections(record: RunRecord) -> str:
-    """Return every table below the 3D view."""
+    """Return every section below the 3D view."""
+    numbered = list(enumerate(record.builds, start=1))
     sections = [
         ("Builds", _builds(record)),
-        ("Unplaced", _unplaced(record)),
-        ("Unsupported", _unsupported(record)),
-        ("Supports", "".join(_supports(n, entry) for n, entry in enumerate(record.builds, start=1))),
-        ("Removing supports", "".join(_removal(n, each) for n, each in enumerate(record.builds, start=1))),
-        ("Overhangs", "".join(_overhangs(n, entry) for n, entry in enumerate(record.builds, start=1))),
+        ("Unplaced copies", _unplaced(record)),
+        ("Unsupported regions", _unsupported(record)),
+        ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
+        ("Support removal", "".join(_removal(number, entry) for number, entry in numbered)),
+        ("Overhangs", "".join(_overhangs(number, entry) for number, entry in numbered)),
         ("Verification", _verification(record)),
-        ("Parts", "".join(_parts(number, entry) for number, entry in enumerate(record.builds, start=1))),
-        ("Warnings and notes", _words(record)),
-        ("Time", _stages(record)),
+        ("Parts", "".join(_parts(number, entry) for number, entry in numbered)),
+        ("Warnings and notes", _remarks(record)),
+        ("Durations", _stages(record)),
         ("Settings", _settings(record)),
     ]
     body = "".join(
         f"<section><h2>{title}</h2>\n{content}</section>\n" for title, content in sections if content
     )
-    return f"{body}<footer>Made by amprep {escape(record.version)}. Lengths in mm, plate at z = 0.</footer>\n"
+    footer = (
+        f"Made by amprep {escape(record.version)}. Lengths are in mm; the build plate is at z = 0. A demand square is "
+        "a square of the support grid below an overhang."
+    )
+    return f"{body}<footer>{footer}</footer>\n"
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table; headings that end with ``|`` stand over numbers."""
+    """Return a table; a heading that ends with ``|`` is that of a column of numbers."""
     head = "".join(
         f"<th{' class=number' if heading.endswith('|') else ''}>{escape(heading.rstrip('|'))}</th>"
         for heading in headings
@@ -79,25 +83,25 @@ def _cell(value: Cell) -> str:
 
 
 def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
-    """Return name, value (HTML) and whether it is bad news."""
+    """Return the name of each key figure, its value as HTML, and whether it is a fault."""
     builds = record.builds
     placed = sum(len(entry.build.parts) for entry in builds)
     area = sum(entry.unsupported_mm2 for entry in builds)
     broken = sum(len(entry.verification or ()) for entry in builds)
-    judged = bool(builds) and all(entry.verification is not None for entry in builds)
-    verdict = str(broken) if broken else ("none" if judged else "not judged")
+    verified = bool(builds) and all(entry.verification is not None for entry in builds)
+    violations = str(broken) if broken else ("none" if verified else "not verified")
     volume = sum(entry.support_volume_mm3 for entry in builds) / 1000
     density = sum(entry.density for entry in builds) / max(len(builds), 1)
     return [
         ("Builds", str(len(builds)), False),
         ("Parts placed", str(placed), False),
-        ("Unplaced", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
+        ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
-        ("Height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
-        ("Supports", f"{volume:.2f} <small>cm³</small>", False),
-        ("Unsupported", f"{area:.1f} <small>mm²</small>", any(e.unsupported for e in builds)),
-        ("Violations", verdict, bool(broken)),
-        ("Time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
+        ("Build height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
+        ("Support volume", f"{volume:.2f} <small>cm³</small>", False),
+        ("Unsupported area", f"{area:.1f} <small>mm²</small>", any(e.unsupported for e in builds)),
+        ("Violations", violations, bool(broken)),
+        ("Run time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
     ]
 
 
@@ -108,9 +112,9 @@ def _builds(record: RunRecord) -> str:
         "Parts|",
         "Density|",
         "Height mm|",
-        "Supports cm³|",
-        "Red squares|",
-        "Unsupported mm²|",
+        "Support volume cm³|",
+        "Demand squares|",
+        "Unsupported area mm²|",
     )
     rows = (
         (
@@ -120,7 +124,7 @@ def _builds(record: RunRecord) -> str:
             ("number", f"{100 * entry.density:.1f} %"),
             ("number", f"{entry.height_mm:.2f}"),
             ("number", f"{entry.support_volume_mm3 / 1000:.3f}"),
-            entry.red,
+            entry.demand_squares,
             ("number", f"{entry.unsupported_mm2:.2f}"),
         )
         for entry in record.builds
@@ -131,9 +135,16 @@ def _builds(record: RunRecord) -> str:
 def _parts(number: int, entry: BuildRecord) -> str:
     colours = part_colours(entry.build)
     rows = (_part_row(placed, colour) for placed, colour in zip(entry.build.parts, colours, strict=True))
-    headings = ("Part", "Number", "Size mm", "Volume cm³|", "Least corner mm", "Transform (row-major, mm)")
+    headings = (
+        "Part",
+        "Part number",
+        "Size mm",
+        "Volume cm³|",
+        "Lowest corner mm",
+        "Transform (row-major, mm)",
+    )
     name = f"Build {number}: {len(entry.build.parts)} parts"
-    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+    return _details(name, table(headings, rows))
 
 
 def _part_row(placed: PlacedPart, colour: str) -> tuple[Cell, ...]:
@@ -156,23 +167,30 @@ def _unplaced(record: RunRecord) -> str:
 
 
 def _supports(number: int, entry: BuildRecord) -> str:
-    if not entry.columns:
+    if not entry.slenderness:
         return ""
     rows = (
         (
             body.name,
             ("number", "" if body.surface else f"{abs(body.mesh.signed_volume) / 1000:.3f}"),
-            columns.pieces,
-            ("number", f"{columns.slenderness:.1f}"),
-            ("number", f"{columns.height_mm:.1f} / {columns.width_mm:.2f}"),
-            ", ".join(f"{value:.1f}" for value in columns.position_mm),
+            each.pieces,
+            ("number", f"{each.slenderness:.1f}"),
+            ("number", f"{each.height_mm:.1f} / {each.width_mm:.2f}"),
+            ", ".join(f"{value:.1f}" for value in each.position_mm),
         )
-        for body, columns in zip(entry.build.supports, entry.columns, strict=True)
+        for body, each in zip(entry.build.supports, entry.slenderness, strict=True)
     )
-    headings = ("Supports", "Volume cm³|", "Pieces|", "Slenderness|", "Height / width mm|", "There, mm")
-    most = max(columns.slenderness for columns in entry.columns)
-    name = f"Build {number}: {len(entry.columns)} bodies, the most slender piece {most:.1f} times as high as wide"
-    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+    headings = (
+        "Support body",
+        "Volume cm³|",
+        "Components|",
+        "Slenderness ratio|",
+        "Height / width mm|",
+        "Most slender at, mm",
+    )
+    most = max(each.slenderness for each in entry.slenderness)
+    name = f"Build {number}: {len(entry.slenderness)} support bodies, largest slenderness ratio {most:.1f}"
+    return _details(name, table(headings, rows))
 
 
 def _removal(number: int, entry: BuildRecord) -> str:
@@ -191,15 +209,15 @@ def _removal(number: int, entry: BuildRecord) -> str:
         for body, each in zip(entry.build.supports, entry.removal, strict=True)
     )
     headings = (
-        "Supports",
+        "Support body",
         "Mass g|",
-        "Scanned mm²|",
-        "Contact mm²|",
-        "Contacts|",
+        "Scanned area mm²|",
+        "Contact area mm²|",
+        "Contact patches|",
         "Powder pockets|",
-        "Powder locked in mm³|",
+        "Trapped powder mm³|",
     )
-    return f"<details><summary>Build {number}</summary>\n{table(headings, rows)}</details>\n"
+    return _details(f"Build {number}", table(headings, rows))
 
 
 def _figure(value: float | None, form: str) -> tuple[str, str]:
@@ -214,18 +232,18 @@ def _overhangs(number: int, entry: BuildRecord) -> str:
         (
             each.name,
             each.kind,
-            ("number", f"{each.measure:.2f} {units[each.kind]}"),
+            ("number", f"{each.size:.2f} {units[each.kind]}"),
             ", ".join(f"{value:.2f}" for value in each.position_mm),
-            ("number", f"{each.connected} of {each.red}"),
-            each.held,
+            ("number", f"{each.connected_squares} of {each.demand_squares}"),
+            each.supported,
             ", ".join(each.reasons),
         )
         for each in entry.overhangs
     )
-    headings = ("Overhang", "Kind", "Size|", "Centre mm", "Red squares connected|", "Held", "Reasons")
-    held = sum(each.held == "whole" for each in entry.overhangs)
-    name = f"Build {number}: {len(entry.overhangs)} overhangs, {held} held"
-    return f"<details><summary>{name}</summary>\n{table(headings, rows)}</details>\n"
+    headings = ("Overhang", "Kind", "Size|", "Centre mm", "Demand squares connected|", "Supported", "Reasons")
+    supported = sum(each.supported == "fully" for each in entry.overhangs)
+    name = f"Build {number}: {len(entry.overhangs)} overhangs, {supported} fully supported"
+    return _details(name, table(headings, rows))
 
 
 def _unsupported(record: RunRecord) -> str:
@@ -233,9 +251,9 @@ def _unsupported(record: RunRecord) -> str:
     for number, entry in enumerate(record.builds, start=1):
         for region in entry.build.unsupported:
             unit = {"face": " mm²", "edge": " mm"}.get(region.kind, "")
-            measure = f"{region.measure:.2f}{unit}" if unit else ""
-            reason = f"{region.reason} (below the least size)" if region.minor else region.reason
-            rows.append((number, region.label, region.kind, ("number", measure), reason))
+            size = f"{region.measure:.2f}{unit}" if unit else ""
+            reason = f"{region.reason} (below the minimum size)" if region.minor else region.reason
+            rows.append((number, region.label, region.kind, ("number", size), reason))
     listed = table(("Build|", "Region", "Kind", "Size|", "Reason"), rows) if rows else ""
     squares = Counter(
         (number, square.region, square.reason)
@@ -245,9 +263,8 @@ def _unsupported(record: RunRecord) -> str:
     if not squares:
         return listed
     grouped = [(number, region, count, reason) for (number, region, reason), count in squares.items()]
-    name = f"{sum(squares.values())} red squares without a way to the plate"
-    inner = table(("Build|", "Region", "Red squares|", "Reason"), grouped)
-    return f"{listed}<details><summary>{name}</summary>\n{inner}</details>\n"
+    name = f"{sum(squares.values())} demand squares without a support"
+    return listed + _details(name, table(("Build|", "Region", "Demand squares|", "Reason"), grouped))
 
 
 def _verification(record: RunRecord) -> str:
@@ -257,34 +274,34 @@ def _verification(record: RunRecord) -> str:
         for found in entry.verification or ()
     ]
     if rows:
-        return table(("Build|", "Promise", "What broke it", "Found"), rows)
-    judged = record.builds and all(entry.verification is not None for entry in record.builds)
-    words = "Every promise is kept." if judged else "The builds were not judged."
-    return f'<p class="empty">{words}</p>'
+        return table(("Build|", "Promise", "Subject", "Finding"), rows)
+    verified = record.builds and all(entry.verification is not None for entry in record.builds)
+    text = "All checks passed." if verified else "The builds were not verified."
+    return f'<p class="empty">{text}</p>'
 
 
-def _words(record: RunRecord) -> str:
-    supports = [words for entry in record.builds for words in (*entry.notes, *entry.shared)]
+def _remarks(record: RunRecord) -> str:
+    supports = [text for entry in record.builds for text in (*entry.notes, *entry.shared_supports)]
     if not (record.warnings or record.notes or supports):
         return ""
-    items = [f'<li class="look">{escape(words)}</li>' for words in record.warnings]
-    items += [f"<li>{escape(words)}</li>" for words in (*record.notes, *supports)]
-    return f'<ul class="words">{"".join(items)}</ul>'
+    items = [f'<li class="bad">{escape(text)}</li>' for text in record.warnings]
+    items += [f"<li>{escape(text)}</li>" for text in (*record.notes, *supports)]
+    return f'<ul class="remarks">{"".join(items)}</ul>'
 
 
 def _stages(record: RunRecord) -> str:
     total = sum(stage.seconds for stage in record.stages)
     rows = [
-        (stage.name, ("number", f"{stage.seconds:.2f}"), _share(stage.seconds, total))
+        (stage.name, ("number", f"{stage.seconds:.2f}"), _fraction_bar(stage.seconds, total))
         for stage in record.stages
     ]
-    return table(("Stage", "Seconds|", "Share"), rows) if rows else ""
+    return table(("Stage", "Seconds|", "Fraction of the run"), rows) if rows else ""
 
 
-def _share(seconds: float, total: float) -> tuple[str, str]:
+def _fraction_bar(seconds: float, total: float) -> tuple[str, str]:
     width = 100 * seconds / total if total > 0 else 0.0
     bars = f'<rect width="100" height="6"/><rect width="{width:.2f}" height="6"/>'
-    return "bar", f'<svg class="share" viewBox="0 0 100 6" preserveAspectRatio="none">{bars}</svg>'
+    return "fraction", f'<svg viewBox="0 0 100 6" preserveAspectRatio="none">{bars}</svg>'
 
 
 def _settings(record: RunRecord) -> str:
@@ -292,4 +309,9 @@ def _settings(record: RunRecord) -> str:
         return ""
     text = json.dumps(plain(dict(record.settings)), indent=2, ensure_ascii=False)
     inner = f'<div class="scroll"><pre>{escape(text)}</pre></div>'
-    return f"<details><summary>As the run used them</summary>{inner}</details>"
+    return _details("All settings of the run", inner)
+
+
+def _details(summary: str, content: str) -> str:
+    """Return content that a click on its summary shows."""
+    return f"<details><summary>{summary}</summary>\n{content}</details>\n"

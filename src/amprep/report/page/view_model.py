@@ -1,4 +1,4 @@
-"""What the 3D view is told about each build: names, colours, matrices, facts in words."""
+"""Make the data of the 3D view: names, colours, matrices and descriptions of each build's contents."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from amprep.report.record import RunRecord
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
-    """Return the model (plain values) and the geometry (base64) of the 3D view."""
+    """Return the model as plain values, and the geometry in base64, of the 3D view."""
     pack = GeometryPack()
     builds = [_build(entry.build, pack) for entry in record.builds]
     return {"builds": builds, "meshes": pack.entries}, pack.base64()
@@ -43,7 +43,7 @@ def _part(placed: PlacedPart, colour: str, pack: GeometryPack) -> dict[str, Any]
     low, high = placed.mesh.bounds
     facts = [
         " × ".join(f"{size:.1f}" for size in high - low) + f" mm, {part_volume(placed) / 1000:.2f} cm³",
-        "from x {:.2f}, y {:.2f}, z {:.2f} mm".format(*low),
+        "lowest corner at x {:.2f}, y {:.2f}, z {:.2f} mm".format(*low),
     ]
     if placed.part.part_number:
         facts.append(f"part number {placed.part.part_number}")
@@ -57,13 +57,13 @@ def _part(placed: PlacedPart, colour: str, pack: GeometryPack) -> dict[str, Any]
 
 
 def _support(body: SupportBody, build: Build, pack: GeometryPack) -> dict[str, Any]:
-    size = "no thickness" if body.surface else f"{abs(body.mesh.signed_volume) / 1000:.2f} cm³"
+    size = "walls without thickness" if body.surface else f"{abs(body.mesh.signed_volume) / 1000:.2f} cm³"
     held = ", ".join(build.parts[index].label for index in body.parts)
     return {
         "name": body.name,
         "surface": body.surface,
         "mesh": pack.add(body.mesh),
-        "facts": [f"{size}, {len(body.mesh.triangles)} triangles", f"holds {held}"],
+        "facts": [f"{size}, {len(body.mesh.triangles)} triangles", f"supports {held}"],
     }
 
 

@@ -1,4 +1,4 @@
-"""Orthographic views: where a point of the build falls in a picture, and back."""
+"""Map points of a build to pixels of a picture and back, in orthographic views."""
 
 from dataclasses import dataclass
 from math import cos, radians, sin
@@ -10,14 +10,14 @@ from amprep.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """Maps build coordinates (mm) to column, row (pixels) and depth (mm, growing away from the viewer).
+    """Maps build coordinates in mm to column and row in pixels and depth in mm, away from the viewer.
 
     Attributes
     ----------
     axes
         ``(3, 3)``, rows: right, down, away from the viewer.
     offset
-        ``(3,)`` added to (column, row, depth).
+        ``(3,)`` offset of column, row and depth.
     pixels_per_mm
         Scale of column and row.
     """
@@ -46,7 +46,7 @@ class Camera:
 
 
 def view_axes(azimuth_deg: float, elevation_deg: float) -> Floats:
-    """Return the axes of a viewer who stands at `azimuth_deg` (from +x, counter-clockwise) and looks down."""
+    """Return the axes of a viewer at `azimuth_deg` (from +x, counter-clockwise), who looks down by `elevation_deg`."""
     azimuth, elevation = radians(azimuth_deg), radians(elevation_deg)
     away = -np.array([cos(azimuth) * cos(elevation), sin(azimuth) * cos(elevation), sin(elevation)])
     right = np.array([-sin(azimuth), cos(azimuth), 0.0])
@@ -54,7 +54,17 @@ def view_axes(azimuth_deg: float, elevation_deg: float) -> Floats:
 
 
 def fitted(axes: Floats, points: Floats, size: tuple[int, int], margin: float) -> Camera:
-    """Return the camera that shows all `points` in a picture of (width, height), with a margin in pixels."""
+    """Return the camera that shows all points in the middle of a picture.
+
+    Parameters
+    ----------
+    axes
+        ``(3, 3)``, see `Camera`.
+    points
+        ``(n, 3)`` mm.
+    size, margin
+        Width and height, and the free border, in pixels.
+    """
     seen = points @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)
     extent = np.maximum(high - low, 1e-6)

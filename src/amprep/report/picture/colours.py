@@ -1,4 +1,4 @@
-"""One colour for each part, the same in the picture and in the 3D view."""
+"""Choose one colour for each part, the same in the picture and in the 3D view."""
 
 import re
 
@@ -15,8 +15,8 @@ UNSUPPORTED = "#e5202b"
 def part_colours(build: Build) -> list[str]:
     """Return ``#rrggbb`` for each placed part: its own colour if it has one, else one of the palette.
 
-    Copies of a part share a colour. When all parts carry one and the same colour, it tells them apart no
-    better than none, and the palette is used.
+    Copies of a part have the same colour. The palette is also used if all parts have the same colour, which would
+    not distinguish them.
     """
     names = list(dict.fromkeys(placed.part.name for placed in build.parts))
     given = [_own(placed.part.appearance.colour) for placed in build.parts]
@@ -29,12 +29,13 @@ def part_colours(build: Build) -> list[str]:
 
 
 def rgb(colour: str) -> tuple[float, float, float]:
-    """Return the shares of red, green and blue in [0, 1] of ``#rrggbb``."""
+    """Return red, green and blue of ``#rrggbb``, each in [0, 1]."""
     value = int(colour[1:7], 16)
     return (value >> 16) / 255, (value >> 8 & 255) / 255, (value & 255) / 255
 
 
 def _own(colour: str | None) -> str | None:
+    """Return ``#RRGGBB[AA]`` as ``#rrggbb``; None for anything else."""
     return (
         colour[:7].lower() if colour and re.fullmatch(r"#[0-9a-fA-F]{6}([0-9a-fA-F]{2})?", colour) else None
     )

@@ -1,4 +1,4 @@
-"""Words on a picture: what the build is, and a ruler in millimetres along the plate."""
+"""Draw the title of a picture and a ruler in millimetres along the plate."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ INK, SOFT = (38, 46, 58), (112, 121, 134)
 
 
 def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
-    """Return the picture with its title and ruler; the camera is made for twice its size."""
+    """Draw title and ruler on a picture and return it; the camera is made for twice its size."""
     from PIL import ImageDraw, ImageFont
 
     draw = ImageDraw.Draw(image)
@@ -31,15 +31,15 @@ def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
 def _subtitle(build: Build) -> str:
     x, y, z = build.settings.space.size.tolist()
     box = f"{x:g} x {y:g} x {z:g} mm" if build.settings.space.shape == "box" else f"⌀ {x:g} x {z:g} mm"
-    words = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
+    items = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
     count = sum(not region.minor for region in build.unsupported)
     if count:
-        words.append(f"{count} region{'s' if count > 1 else ''} unsupported (red)")
-    return "   ·   ".join(word for word in words if word)
+        items.append(f"{count} unsupported region{'s' if count > 1 else ''} (red)")
+    return "   ·   ".join(item for item in items if item)
 
 
 def _ruler(draw: "ImageDraw", plate: Floats, camera: Camera, unit: float) -> None:
-    """Draw ticks each 10 mm and numbers each 50 mm along the two edges nearest to the viewer."""
+    """Draw ticks every 10 mm and numbers every 50 mm along the two edges nearest to the viewer."""
     from PIL import ImageFont
 
     font = ImageFont.load_default(17 * unit)

@@ -1,4 +1,4 @@
-"""Small balls that mark places in pictures."""
+"""Make small spheres that mark points in pictures."""
 
 import numpy as np
 
@@ -6,25 +6,24 @@ from amprep.arrays import Floats, Ints
 from amprep.model import Mesh
 
 MOST_MARKS = 400
-"""Marks shown for one region; they are for finding it, not for measuring it."""
-
+"""Largest number of marks of one region; they show where it is, not how large it is."""
 
 MARK_MM = (0.6, 0.9)
-"""Least and greatest radius of a mark."""
+"""Smallest and largest radius of a mark."""
 
 
-def mark_radius(reach: float, least: float = MARK_MM[0]) -> float:
-    """Return the radius of marks for a region whose points cover `reach` mm, at least `least`."""
-    return max(min(reach, MARK_MM[1]), least)
+def mark_radius(reach: float, minimum: float = MARK_MM[0]) -> float:
+    """Return the radius of the marks of a region whose points represent `reach` mm around them, at least `minimum`."""
+    return max(min(reach, MARK_MM[1]), minimum)
 
 
 def thinned(points: Floats) -> Floats:
-    """Return at most `MOST_MARKS` of the points, evenly taken."""
+    """Return at most `MOST_MARKS` of the points, at regular intervals."""
     return points[:: max(1, -(-len(points) // MOST_MARKS))]
 
 
 def balls(centres: Floats, radii: Floats) -> Mesh:
-    """Return one mesh of coarse balls; centres ``(n, 3)`` mm, radii ``(n,)`` mm."""
+    """Return one mesh of coarse spheres with centres ``(n, 3)`` mm and radii ``(n,)`` mm."""
     vertices, triangles = _octahedron_twice()
     spread = centres[:, None, :] + radii[:, None, None] * vertices[None]
     shifts = len(vertices) * np.arange(len(centres))

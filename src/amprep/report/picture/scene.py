@@ -1,33 +1,40 @@
-"""A build as one list of triangles with colours, for pictures."""
+"""Collect the meshes of a build as one list of coloured triangles."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from amprep.arrays import Floats, Ints
+from amprep.arrays import Bytes, Float32s, Floats, Ints
 from amprep.model import Build, Mesh
 from amprep.report.picture.colours import SUPPORT, UNSUPPORTED, part_colours, rgb
 from amprep.report.picture.marks import balls, mark_radius, thinned
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
-"""The kinds of `amprep.kernels.raster`, repeated here so that scenes can be made without the compiler."""
+"""The kinds of `amprep.kernels.raster`, repeated here because importing that module takes time."""
 PLATE_COLOUR = "#ccd2da"
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """Triangles ``(m, 3)`` over vertices ``(n, 3)`` mm; kind, body and linear colour ``(m, 3)`` of each."""
+class TriangleScene:
+    """All triangles of a picture.
+
+    Attributes
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    kinds, owner, colours
+        Of each triangle: ``(m,)`` kind, ``(m,)`` index of its mesh, ``(m, 3)`` linear colour.
+    """
 
     vertices: Floats
     triangles: Ints
-    kinds: NDArray[np.uint8]
+    kinds: Bytes
     owner: Ints
-    colours: NDArray[np.float32]
+    colours: Float32s
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class ColouredMesh:
     """A mesh with its colour ``#rrggbb`` and kind."""
 
     mesh: Mesh
@@ -35,55 +42,54 @@ class Body:
     kind: int
 
 
-def build_bodies(build: Build) -> list[Body]:
+def build_meshes(build: Build) -> list[ColouredMesh]:
     """Return the parts and supports of a build."""
     parts = [
-        Body(placed.mesh, colour, PART_KIND)
+        ColouredMesh(placed.mesh, colour, PART_KIND)
         for placed, colour in zip(build.parts, part_colours(build), strict=True)
     ]
-    return parts + [Body(body.mesh, SUPPORT, SUPPORT_KIND) for body in build.supports]
+    return parts + [ColouredMesh(body.mesh, SUPPORT, SUPPORT_KIND) for body in build.supports]
 
 
-def plate_body(low: Floats, high: Floats) -> Body:
-    """Return a rectangle of the plate z = 0 between two corners, facing up."""
+def plate_mesh(low: Floats, high: Floats) -> ColouredMesh:
+    """Return the rectangle of the plane z = 0 between two corners, facing up."""
     corners = [[low[0], low[1], 0], [high[0], low[1], 0], [high[0], high[1], 0], [low[0], high[1], 0]]
-    return Body(
-        Mesh(np.array(corners, np.float64), np.array([[0, 1, 2], [0, 2, 3]])), PLATE_COLOUR, PLATE_KIND
-    )
+    rectangle = Mesh(np.array(corners, np.float64), np.array([[0, 1, 2], [0, 2, 3]]))
+    return ColouredMesh(rectangle, PLATE_COLOUR, PLATE_KIND)
 
 
-def unsupported_marks(build: Build, least_radius: float) -> Body | None:
-    """Return small balls over every point that is unsupported, specks below the least size left out; None for none."""
+def unsupported_marks(build: Build, min_radius: float) -> ColouredMesh | None:
+    """Return small spheres at the points of unsupported regions that are not minor; None if there are none."""
     regions = [region for region in build.unsupported if len(region.points) and not region.minor]
     if not regions:
         return None
     points = [thinned(region.points) for region in regions]
     radii = [
-        np.full(len(some), mark_radius(region.radius, least_radius))
+        np.full(len(some), mark_radius(region.radius, min_radius))
         for some, region in zip(points, regions, strict=True)
     ]
-    return Body(balls(np.concatenate(points), np.concatenate(radii)), UNSUPPORTED, PART_KIND)
+    return ColouredMesh(balls(np.concatenate(points), np.concatenate(radii)), UNSUPPORTED, PART_KIND)
 
 
-def assemble(bodies: list[Body]) -> Scene:
-    """Return the bodies as one scene; body k owns the triangles with ``owner == k``."""
-    starts = np.cumsum([0, *(len(body.mesh.vertices) for body in bodies)])
-    counts = [len(body.mesh.triangles) for body in bodies]
-    return Scene(
-        vertices=np.concatenate([body.mesh.vertices for body in bodies]),
+def assemble(meshes: list[ColouredMesh]) -> TriangleScene:
+    """Return all meshes as one scene; mesh k owns the triangles with ``owner == k``."""
+    starts = np.cumsum([0, *(len(each.mesh.vertices) for each in meshes)])
+    counts = [len(each.mesh.triangles) for each in meshes]
+    return TriangleScene(
+        vertices=np.concatenate([each.mesh.vertices for each in meshes]),
         triangles=np.concatenate(
-            [body.mesh.triangles + np.int32(start) for body, start in zip(bodies, starts[:-1], strict=True)]
+            [each.mesh.triangles + np.int32(start) for each, start in zip(meshes, starts[:-1], strict=True)]
         ),
-        kinds=np.repeat(np.array([body.kind for body in bodies], np.uint8), counts),
-        owner=np.repeat(np.arange(len(bodies), dtype=np.int32), counts),
-        colours=np.repeat(np.array([linear(body.colour) for body in bodies], np.float32), counts, axis=0),
+        kinds=np.repeat(np.array([each.kind for each in meshes], np.uint8), counts),
+        owner=np.repeat(np.arange(len(meshes), dtype=np.int32), counts),
+        colours=np.repeat(np.array([linear(each.colour) for each in meshes], np.float32), counts, axis=0),
     )
 
 
 def linear(colour: str) -> tuple[float, float, float]:
     """Return ``#rrggbb`` as linear light in [0, 1]."""
     red, green, blue = (
-        (share + 0.055) / 1.055 if share > 0.04045 else share / 12.92 for share in rgb(colour)
+        (value + 0.055) / 1.055 if value > 0.04045 else value / 12.92 for value in rgb(colour)
     )
     return red**2.4, green**2.4, blue**2.4
 

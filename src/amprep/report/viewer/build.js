@@ -1,4 +1,4 @@
-// One build as three.js objects: parts, supports, marks over what is unsupported.
+// Makes the three.js objects of a build: parts, supports, and marks on unsupported regions.
 import * as THREE from "three";
 import { decodeMesh } from "./decode.js";
 
@@ -32,7 +32,7 @@ export class Geometries {
   }
 }
 
-// Faces are flat shaded; the inside, seen through a section, is darker so that a cut reads as a cut.
+// Faces are flat shaded. Back faces, which only a cut shows, are darker than front faces.
 function material(colour, extra = {}) {
   const made = new THREE.MeshStandardMaterial({
     color: colour, flatShading: true, roughness: 0.62, metalness: 0.08, side: THREE.DoubleSide,
@@ -69,7 +69,7 @@ export function showBuild(build, geometries) {
   return shown;
 }
 
-// Balls over the points of an unsupported region; they shine through parts, faintly.
+// Spheres at the points of an unsupported region; they are faintly visible through parts.
 function marks(region, index, geometries) {
   if (region.points < 0) return null;
   const positions = geometries.get(region.points).getAttribute("position");
@@ -91,7 +91,7 @@ function marks(region, index, geometries) {
   return group;
 }
 
-// Outlines are made one mesh at a time between frames: the view is usable before they are there.
+// Makes the outlines of one mesh at a time between frames, so that the view can be used at once.
 export function addEdges(shown, geometries, done) {
   const look = new THREE.LineBasicMaterial({ color: 0x10151c, transparent: true, opacity: 0.45 });
   const queue = [...shown.parts];
@@ -110,7 +110,7 @@ export function addEdges(shown, geometries, done) {
   setTimeout(next);
 }
 
-// Frees what a build no longer shown holds on the graphics card; its geometry is kept for coming back.
+// Frees the materials of a build that is no longer shown; its geometry is kept for the next time.
 export function retire(shown) {
   shown.gone = true;
   shown.group.traverse((object) => object.material?.dispose());

@@ -1,4 +1,4 @@
-// Unpacks the geometry that amprep.report.geometry packed: deflated, byte planes, differences, 16-bit grid.
+// Decodes the geometry that amprep.report.page.geometry encodes.
 
 export async function inflate(base64) {
   const binary = atob(base64.trim());

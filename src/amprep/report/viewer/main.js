@@ -1,4 +1,4 @@
-// Starts the 3D view of a report: reads the page's data blocks, shows a build, connects the controls.
+// Starts the 3D view of a report: reads the data blocks of the page, shows a build and connects the controls.
 import * as THREE from "three";
 import { inflate } from "./decode.js";
 import { addEdges, Geometries, retire, showBuild } from "./build.js";
@@ -46,7 +46,7 @@ class Viewer {
     this.model = model;
     this.geometries = new Geometries(bytes, model.meshes);
     this.stage = new Stage(element("canvas"));
-    this.layers = { parts: true, supports: true, marks: true, edges: true, frame: true, glass: false };
+    this.layers = { parts: true, supports: true, marks: true, edges: true, frame: true, transparent: false };
     this.hidden = new Set();
     this.#tabs();
     this.#toolbar();
@@ -126,9 +126,9 @@ class Viewer {
     const { shown, layers } = this;
     shown.parts.forEach((mesh, index) => {
       mesh.visible = layers.parts && !this.hidden.has(index);
-      mesh.material.transparent = layers.glass;
-      mesh.material.opacity = layers.glass ? 0.28 : 1;
-      mesh.material.depthWrite = !layers.glass;
+      mesh.material.transparent = layers.transparent;
+      mesh.material.opacity = layers.transparent ? 0.28 : 1;
+      mesh.material.depthWrite = !layers.transparent;
     });
     for (const mesh of shown.supports) mesh.visible = layers.supports;
     for (const mesh of shown.marks) if (mesh) mesh.visible = layers.marks;
@@ -147,15 +147,15 @@ class Viewer {
   }
 
   #toolbar() {
-    const names = { parts: "Parts", supports: "Supports", marks: "Unsupported", edges: "Outlines", frame: "Build volume", glass: "See-through" };
+    const names = { parts: "Parts", supports: "Supports", marks: "Unsupported regions", edges: "Outlines", frame: "Build volume", transparent: "Transparent parts" };
     const boxes = Object.entries(names).map(([key, words]) => {
-      const box = make("input", { type: "checkbox", id: `layer-${key}` });
-      box.checked = this.layers[key];
-      box.addEventListener("change", () => {
-        this.layers[key] = box.checked;
+      const checkbox = make("input", { type: "checkbox", id: `layer-${key}` });
+      checkbox.checked = this.layers[key];
+      checkbox.addEventListener("change", () => {
+        this.layers[key] = checkbox.checked;
         this.#apply();
       });
-      return make("label", {}, box, words);
+      return make("label", {}, checkbox, words);
     });
     element("layers").replaceChildren(...boxes);
     const views = Object.keys(VIEWS).map((name) => make("button", { type: "button", onclick: () => this.view(name) }, name));
@@ -172,21 +172,21 @@ class Viewer {
 
   #lists() {
     const rows = this.build.parts.map((part, index) => {
-      const box = make("input", { type: "checkbox", "aria-label": `show ${part.name}` });
-      box.checked = true;
-      box.addEventListener("change", () => {
-        this.hidden[box.checked ? "delete" : "add"](index);
+      const checkbox = make("input", { type: "checkbox", "aria-label": `show ${part.name}` });
+      checkbox.checked = true;
+      checkbox.addEventListener("change", () => {
+        this.hidden[checkbox.checked ? "delete" : "add"](index);
         this.#apply();
       });
-      return make("li", { "data-key": `part-${index}` }, box, this.#rowButton("part", index, part.name, swatch(part.colour)));
+      return make("li", { "data-key": `part-${index}` }, checkbox, this.#rowButton("part", index, part.name, swatch(part.colour)));
     });
-    const missing = this.build.unsupported.map((region, index) => make(
+    const unsupported = this.build.unsupported.map((region, index) => make(
       "li", { "data-key": `unsupported-${index}` },
       this.#rowButton("unsupported", index, region.name, swatch("#e5202b"), make("small", {}, region.reason)),
     ));
-    const heads = [this.#section("Parts", rows, true)];
-    if (missing.length) heads.unshift(this.#section("Unsupported", missing, missing.length <= 8));
-    element("lists").replaceChildren(...heads);
+    const sections = [this.#section("Parts", rows, true)];
+    if (unsupported.length) sections.unshift(this.#section("Unsupported regions", unsupported, unsupported.length <= 8));
+    element("lists").replaceChildren(...sections);
   }
 
   #section(words, rows, open) {
@@ -233,7 +233,7 @@ async function start() {
     element("viewer").hidden = true;
     return;
   }
-  if (typeof DecompressionStream === "undefined") throw new Error("this browser cannot inflate the geometry; use a newer one");
+  if (typeof DecompressionStream === "undefined") throw new Error("this browser cannot decompress the geometry; use a newer browser");
   const bytes = await inflate(element("geometry").textContent);
   new Viewer(model, bytes);
   element("wait").hidden = true;
@@ -241,5 +241,5 @@ async function start() {
 
 start().catch((error) => {
   element("viewer").classList.add("broken");
-  element("wait").textContent = `The 3D view did not start (${error.message}). The tables below are complete.`;
+  element("wait").textContent = `The 3D view could not start: ${error.message}. The tables below are complete.`;
 });

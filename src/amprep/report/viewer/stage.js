@@ -1,4 +1,4 @@
-// The 3D stage: camera, lights, plate, build volume; draws when something changed and not otherwise.
+// The 3D scene: camera, lights, build plate and build volume; it is drawn only when something has changed.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
@@ -49,7 +49,7 @@ export class Stage {
     });
   }
 
-  // Look at a ball from a direction; direction is the viewer's place as seen from the ball.
+  // Shows a sphere from a direction, which points from the sphere to the viewer.
   look(centre, radius, direction) {
     const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
@@ -71,7 +71,7 @@ export class Stage {
   }
 }
 
-// Plate with a grid each 10 mm, stronger each 50 mm, and the wireframe of the build volume.
+// Makes the build plate with lines every 10 and 50 mm, the wireframe of the build volume and the forbidden zones.
 export function surroundings(space, colours) {
   const group = new THREE.Group();
   const [x, y, z] = space.size;

@@ -19,7 +19,7 @@ from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.page.html import html_text, write_html
-from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedRecord, UnplacedRecord
+from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedSquare, UnplacedRecord
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&<!--"
 
@@ -45,9 +45,14 @@ class Tags(HTMLParser):
 
 
 def run_of(build: Build, name: str = "job") -> RunRecord:
-    lost = UnconnectedRecord(name, name, name, (1, 1, 1), (0.0, 0.0, 0.0))
+    lost = UnconnectedSquare(name, name, name, (1, 1, 1), (0.0, 0.0, 0.0))
     entry = BuildRecord(
-        build, name, name, unconnected=(lost,), verification=(Violation(name, name, name),), shared=(name,)
+        build,
+        name,
+        name,
+        unconnected=(lost,),
+        verification=(Violation(name, name, name),),
+        shared_supports=(name,),
     )
     return RunRecord(
         name,

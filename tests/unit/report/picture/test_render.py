@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from amprep.kernels.raster import draw
+from amprep.kernels.raster import DepthBuffer, draw
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody, Unsupported
 from amprep.report.picture import build_picture, draw_mesh, write_picture
 from amprep.report.picture.camera import box_corners, fitted, view_axes
@@ -67,7 +67,7 @@ def test_the_depth_buffer_agrees_with_brute_force(seed):
     points = rng.uniform([-10, -10, 0], [50, 40, 9], (60, 3))
     triangles = np.arange(60, dtype=np.int32).reshape(20, 3)
     depth, ids = np.full((30, 40), np.inf, np.float32), np.full((30, 40), -1, np.int32)
-    draw(points, triangles, 0, depth, ids)
+    draw(points, triangles, DepthBuffer(depth, ids))
     expected_depth, expected_ids, edge_near = nearest_by_brute_force(points, triangles, (30, 40))
     assert (ids == expected_ids)[~edge_near].all()
     np.testing.assert_allclose(depth[~edge_near], expected_depth[~edge_near], rtol=1e-5, atol=1e-4)
@@ -76,7 +76,7 @@ def test_the_depth_buffer_agrees_with_brute_force(seed):
 def test_triangles_without_area_and_outside_the_picture_draw_nothing():
     points = np.array([[0, 0, 1], [5, 5, 1], [9, 9, 1], [-9, -9, 1], [-5, -9, 1], [-9, -5, 1]], np.float64)
     depth, ids = np.full((10, 10), np.inf, np.float32), np.full((10, 10), -1, np.int32)
-    draw(points, np.array([[0, 1, 2], [3, 4, 5]], np.int32), 0, depth, ids)
+    draw(points, np.array([[0, 1, 2], [3, 4, 5]], np.int32), DepthBuffer(depth, ids))
     assert (ids == -1).all()
 
 
