@@ -1,4 +1,4 @@
-"""Cells given as files: found, judged, used by name and by path, thicker with the load."""
+"""The cells in files keep their promises, can be used by name and by path, and grow with the load."""
 
 from pathlib import Path
 
@@ -6,51 +6,45 @@ import amprep_honeycomb
 import numpy as np
 import pytest
 
-from amprep.cells import read_cell
-from amprep.cells.emission import emit_declared
-from amprep.host import Host
+import amprep
 from amprep.model import CellRequest, Grid, SupportEdges
-from amprep.pipeline.check_cell import check_cell
-from amprep.pipeline.resolve import cell_named
-from amprep.testing.conformance import try_offer
+from amprep.testing import check_cell, load_offer, try_offer
 
 FOLDER = Path(amprep_honeycomb.__file__).parent
 NAMES = ["honeycomb", "honeycomb-frame"]
 
 
-@pytest.fixture(scope="module")
-def host():
-    return Host.load(modules=["amprep_honeycomb"], env={"AMPREP_LOAD_PLUGINS": ""})
+def load(name):
+    return load_offer("cell", name, plugin="amprep_honeycomb")
 
 
-def test_each_file_is_one_offer_with_its_own_kind(host):
-    offers = {name: host.choose("cell", name) for name in NAMES}
-    kinds = {name: host.declared(each, 2.0, 2.0, each.offer.params()).kinds for name, each in offers.items()}
-    assert kinds == {"honeycomb": ("mesh",), "honeycomb-frame": ("graph",)}
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_promise_holds_on_the_sample_problems(host, name):
-    assert try_offer(host, host.choose("cell", name)).violations == ()
+def test_each_file_is_one_offer_with_its_own_kind():
+    assert {name: load(name).kinds for name in NAMES} == {
+        "honeycomb": ("mesh",),
+        "honeycomb-frame": ("graph",),
+    }
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_can_be_printed_and_emptied(host, name):
-    assert check_cell(cell_named(host, name)).violations == ()
+def test_every_promise_holds_on_the_sample_problems(name):
+    assert try_offer(load(name)).violations == ()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_can_be_printed_and_emptied(name):
+    assert check_cell(name, plugin="amprep_honeycomb").violations == ()
 
 
 @pytest.mark.parametrize("file", ["honeycomb.stl", "honeycomb.toml", "honeycomb-frame.toml"])
 def test_the_files_are_cells_without_the_package(file):
-    bare = Host.load(plugins_enabled=False)
-    cell = cell_named(bare, str(FOLDER / file))
+    cell = load_offer("cell", FOLDER / file)
     assert cell.name == file.partition(".")[0]
     assert all(0.0 < volume < 8.0 for volume in cell.material(2.0, 2.0))
 
 
 def test_the_honeycomb_has_the_area_of_its_walls_in_plan():
     # above the windows: half a unit of walls along y, four slanted ones, less a little for the corners where three meet
-    cell = read_cell(FOLDER / "honeycomb.toml", mesh_of).cell
-    mesh = cell.variants[0].shape.mesh
+    mesh = amprep.load(FOLDER / "honeycomb.stl").parts[0].mesh
     corners = mesh.vertices[mesh.triangles]
     top = corners[(corners[:, :, 2] == 1.0).all(axis=1)]
     sides = top[:, 1:, :2] - top[:, :1, :2]
@@ -59,20 +53,13 @@ def test_the_honeycomb_has_the_area_of_its_walls_in_plan():
     assert area == pytest.approx(0.12 * length, rel=0.1)
 
 
-def mesh_of(path):
-    host = Host.load(plugins_enabled=False)
-    (part,) = host.call(host.reader_for(path), path, params=host.params(host.reader_for(path), {}))
-    return part.mesh
-
-
 def test_pins_grow_with_the_load():
-    cell = read_cell(FOLDER / "honeycomb-frame.toml", mesh_of).cell
     frame = Grid(np.zeros(3), 2.0, 2.0, (4, 9, 9))
     zero, load = np.zeros(3, np.int32), [1, 6, 40]
     request = CellRequest(
         frame, SupportEdges(zero + 1, zero + 1, [1, 3, 5], zero, load, load, group=zero), zero
     )
-    cells = emit_declared(cell, request)
+    cells = load_offer("cell", FOLDER / "honeycomb-frame.toml").run(request)
     by_edge = dict(zip(cells.edge.tolist(), cells.template.tolist(), strict=True))
     volumes = [cells.templates[by_edge[edge]].mesh.signed_volume for edge in range(3)]
     assert volumes[2] / volumes[0] == pytest.approx(1.3**2, rel=1e-6)

@@ -12,7 +12,7 @@ from amprep import cli
 if TYPE_CHECKING:
     from amprep.hookspecs import Offer
     from amprep.host import Host, Listed
-    from amprep.testing.conformance import Trial
+    from amprep.testing.conformance import OfferReport
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Modules = Annotated[
@@ -145,7 +145,7 @@ def _print_offers(host: "Host") -> None:
     Console().print(table)
 
 
-def _print_trials(trials: "tuple[Trial, ...]") -> None:
+def _print_trials(trials: "tuple[OfferReport, ...]") -> None:
     from rich.console import Console
     from rich.markup import escape
     from rich.table import Table

@@ -1,4 +1,4 @@
-"""One problem for one offer."""
+"""One sample problem for one offer."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,21 +7,21 @@ from typing import Any
 from amprep.checks.violation import Violation
 from amprep.model import Stop
 
-SEED = 20
-
 
 @dataclass(frozen=True)
 class Case:
-    """One tiny problem for one offer.
+    """One sample problem for one offer.
 
     Attributes
     ----------
+    problem
+        Title of the problem.
     run
-        Calls the offer, given when to stop, and returns its answer.
+        Calls the offer with a stop and returns its answer.
     judge
         Returns the promises that the answer breaks.
     timed
-        Whether it is also run with no time left, which must not break a promise either.
+        Whether the offer is also run with no time left, and must then keep its promises too.
     """
 
     problem: str

@@ -1,4 +1,4 @@
-"""The tiny problems on which offers are tried: a few for each kind, only what the offer says it accepts."""
+"""Sample problems for each kind of offer; a packer gets only the problems that it accepts."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -12,104 +12,105 @@ from amprep.checks.supports.plan import check_plan
 from amprep.checks.violation import Violation
 from amprep.checks.volumes import check_volume
 from amprep.errors import InputError
-from amprep.hookspecs import CellEmitter, MeshReader, Packer, SupportRouter, VolumeMaker
-from amprep.host import Host, Listed
+from amprep.host import Kind
 from amprep.host.mismatch import fits, volume_word
-from amprep.model import PackingProblem, Part, Stop, SupportProblem, silent
+from amprep.model import PackingProblem, Part, Stop, SupportProblem
 from amprep.pipeline.reading import repair_part
-from amprep.testing.case import SEED, Case
+from amprep.testing.case import Case
+from amprep.testing.offers import SEED, LoadedOffer
 from amprep.testing.problems import packing_problems, sample_parts, support_problems, written_samples
 
 
-def cases_for(host: Host, listed: Listed[Any], files: Sequence[Path], folder: Path) -> list[Case]:
-    """Return the cases of one offer; mesh readers get `files`, and `folder` for more of them."""
-    offer = listed.offer
-    if isinstance(offer, Packer):
-        return list(_packer_cases(host, listed))
-    if isinstance(offer, SupportRouter):
-        return list(_router_cases(host, listed))
-    if isinstance(offer, VolumeMaker):
-        return list(_volume_cases(host, listed))
-    if isinstance(offer, CellEmitter):
-        from amprep.testing.cell_cases import cell_cases
+def cases_for(offer: LoadedOffer, files: Sequence[Path], folder: Path) -> list[Case]:
+    """Return the sample problems for one offer.
 
-        return list(cell_cases(host, listed))
-    return list(_reader_cases(host, listed, files, folder))
+    Parameters
+    ----------
+    offer
+        Offer to run.
+    files
+        Files for a mesh reader to read.
+    folder
+        Folder for the files that the sample problems of a mesh reader need.
+    """
+    from amprep.testing.cell_cases import cell_cases
 
-
-def runner(host: Host, listed: Listed[Any], argument: Any, keywords: str) -> Callable[[Stop], Any]:
-    """Return a function that calls an offer with its default parameters and the `keywords` of its hook."""
-    params = host.params(listed, {})
-
-    def run(stop: Stop) -> Any:
-        given = {"params": params, "rng": np.random.default_rng(SEED), "stop": stop, "progress": silent}
-        return host.call(listed, argument, **{name: given[name] for name in keywords.split()})
-
-    return run
+    makers: dict[Kind, Callable[[], Iterator[Case]]] = {
+        "packer": lambda: _packer_cases(offer),
+        "router": lambda: _router_cases(offer),
+        "volume": lambda: _volume_cases(offer),
+        "cell": lambda: cell_cases(offer),
+        "reader": lambda: _reader_cases(offer, files, folder),
+    }
+    return list(makers[offer.listed.kind]())
 
 
-def _packer_cases(host: Host, listed: Listed[Packer]) -> Iterator[Case]:
+def _runner(offer: LoadedOffer, subject: Any) -> Callable[[Stop], Any]:
+    return lambda stop: offer.run(subject, stop=stop)
+
+
+def _packer_cases(offer: LoadedOffer) -> Iterator[Case]:
     def judge(problem: PackingProblem) -> Callable[[Any], Sequence[Violation]]:
         return lambda packing: check_packing(problem, packing)
 
-    for name, problem in packing_problems():
-        if not fits(listed.offer.accepts, problem):
-            yield Case(name, runner(host, listed, problem, "params rng stop progress"), judge(problem))
+    for title, problem in packing_problems():
+        if not fits(offer.listed.offer.accepts, problem):
+            yield Case(title, _runner(offer, problem), judge(problem))
 
 
-def _router_cases(host: Host, listed: Listed[SupportRouter]) -> Iterator[Case]:
+def _router_cases(offer: LoadedOffer) -> Iterator[Case]:
     def judge(problem: SupportProblem) -> Callable[[Any], Sequence[Violation]]:
         return lambda plan: check_plan(problem, plan)
 
-    for name, problem in support_problems():
-        yield Case(name, runner(host, listed, problem, "params rng stop progress"), judge(problem))
+    for title, problem in support_problems():
+        yield Case(title, _runner(offer, problem), judge(problem))
 
 
-def _volume_cases(host: Host, listed: Listed[VolumeMaker]) -> Iterator[Case]:
-    makes = listed.offer.makes
+def _volume_cases(offer: LoadedOffer) -> Iterator[Case]:
+    makes = offer.listed.offer.makes
 
     def judge(part: Part) -> Callable[[Any], Sequence[Violation]]:
         def judged(volume: Any) -> list[Violation]:
             made = volume_word(volume)
-            stated = made == makes or (made, makes) == ("box", "boxes")
-            wrong = Violation("kind of volume", part.name, f"the offer says it makes {makes!r}, got {made!r}")
-            return [*check_volume(part, volume), *([] if stated else [wrong])]
+            as_stated = made == makes or (made, makes) == ("box", "boxes")
+            wrong = Violation("kind of volume", part.name, f"the offer states makes={makes!r}, got {made!r}")
+            return [*check_volume(part, volume), *([] if as_stated else [wrong])]
 
         return judged
 
     for part in sample_parts():
-        yield Case(part.name, runner(host, listed, part, "params rng stop"), judge(part))
+        yield Case(part.name, _runner(offer, part), judge(part))
 
 
-def _reader_cases(
-    host: Host, listed: Listed[MeshReader], files: Sequence[Path], folder: Path
-) -> Iterator[Case]:
-    known = listed.offer.suffixes
+def _reader_cases(offer: LoadedOffer, files: Sequence[Path], folder: Path) -> Iterator[Case]:
+    known = offer.listed.offer.suffixes
     own = [path for path in files if path.suffix.lower() in known]
     for path in [*own, *written_samples(folder, set(known))]:
-        yield Case(path.name, runner(host, listed, path, "params"), _judge_parts, timed=False)
+        yield Case(path.name, _runner(offer, path), _judge_parts, timed=False)
     noise = np.random.default_rng(SEED).bytes(1000)
     for suffix in known:
         for name, content in (("empty", b""), ("noise", noise), ("missing", None)):
             path = folder / f"{name}{suffix}"
             if content is not None:
                 path.write_bytes(content)
-            read = _refusal(runner(host, listed, path, "params"))
-            yield Case(f"a file that is {name} ({suffix})", read, _judge_refusal, timed=False)
+            yield Case(
+                f"a file that is {name} ({suffix})", _refusal(offer, path), _judge_refusal, timed=False
+            )
 
 
 def _judge_parts(parts: list[Part]) -> list[Violation]:
     if not parts:
         return [Violation("reads parts", "file", "expected at least one part, got none")]
-    settled = [repair_part(part, allow_surface=False) for part in parts]
-    return [violation for part in settled for violation in check_part(part)]
+    repaired = [repair_part(part, allow_surface=False) for part in parts]
+    return [violation for part in repaired for violation in check_part(part)]
 
 
-def _refusal(read: Callable[[Stop], Any]) -> Callable[[Stop], str]:
-    # what is no mesh is refused by InputError and nothing else
+def _refusal(offer: LoadedOffer, path: Path) -> Callable[[Stop], str]:
+    """Return a function that is empty text when the reader raises `InputError`, and says what came otherwise."""
+
     def run(stop: Stop) -> str:
         try:
-            return f"{len(read(stop))} parts"
+            return f"{len(offer.run(path, stop=stop))} parts"
         except InputError:
             return ""
 

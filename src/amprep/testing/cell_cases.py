@@ -1,4 +1,4 @@
-"""Tries a lattice cell: a table top in the air is supported by it, from the grid to the finished solids."""
+"""Sample problems for a lattice cell: support a table top with it, from the support grid to closed solids."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -9,8 +9,7 @@ from amprep.checks.cells.templates import check_cells
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
 from amprep.checks.violation import Violation
-from amprep.hookspecs import CellEmitter
-from amprep.host import Host, Listed
+from amprep.host import Host
 from amprep.model import (
     Build,
     BuildSettings,
@@ -29,40 +28,36 @@ from amprep.model.contacts import ConnectorRules
 from amprep.model.control import Progress
 from amprep.supports.plan import PlanningRules, SupportLayout, plan_supports
 from amprep.supports.solids.build import build_supports
-from amprep.testing.case import SEED, Case
+from amprep.testing.case import Case
+from amprep.testing.offers import LoadedOffer
 from amprep.testing.problems import box_mesh
 
 PITCH = 2.0
+"""Pitch of the support grid (mm)."""
 
 
-def cell_cases(host: Host, listed: Listed[CellEmitter]) -> Iterator[Case]:
-    """Yield the cases of one cell: supports for two shapes, in each of the two ways they may end."""
-    emit = _emitter(host, listed)
-    for name, part in (("a table top", _slab(10.0, 12.0)), ("two storeys", _two_slabs())):
-        layout = _layout(host, part)
+def cell_cases(offer: LoadedOffer) -> Iterator[Case]:
+    """Yield the sample problems for a cell: supports of two shapes, with connectors and with extended cells."""
+    for title, part in (("a table top", _slab(10.0, 12.0)), ("two storeys", _two_slabs())):
+        layout = _layout(offer.host, part)
         for connector in (ConnectorRules("full"), ConnectorRules("extend")):
-            run, judge = _building(layout, part, emit, connector)
-            yield Case(f"{name}, connectors {connector.connector}", run, judge, timed=False)
-
-
-def _emitter(host: Host, listed: Listed[CellEmitter]) -> Callable[[CellRequest, Stop], Cells]:
-    params = host.params(listed, {})
-    return lambda request, stop: host.call(listed, request, params=params, stop=stop, progress=silent)
+            run, judge = _building(layout, part, offer, connector)
+            yield Case(f"{title}, connectors {connector.connector}", run, judge, timed=False)
 
 
 def _building(
     layout: SupportLayout,
     part: PlacedPart,
-    emit: Callable[[CellRequest, Stop], Cells],
+    offer: LoadedOffer,
     connector: ConnectorRules,
 ) -> tuple[Callable[[Stop], Any], Callable[[Any], Sequence[Violation]]]:
-    """Return how to build the supports of `part`, and how to judge what was emitted and what was built."""
+    """Return a function that builds the supports of a part, and one that checks the cells and the bodies."""
 
     def run(stop: Stop) -> tuple[list[tuple[CellRequest, Cells]], Any]:
         emitted: list[tuple[CellRequest, Cells]] = []
 
         def recorded(request: CellRequest) -> Cells:
-            cells = emit(request, stop)
+            cells: Cells = offer.run(request, stop=stop)
             emitted.append((request, cells))
             return cells
 
@@ -94,12 +89,11 @@ _SPACE = BuildVolume(np.array([30.0, 30.0, 30.0]))
 
 
 def _layout(host: Host, part: PlacedPart) -> SupportLayout:
-    router = host.choose("router", "shortest-paths")
-    params = host.params(router, {})
+    router = LoadedOffer.of(host, host.choose("router", "shortest-paths"), {})
 
     def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
-        rng = np.random.default_rng(SEED)
-        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
+        plan: SupportPlan = router.run(problem, stop=stop, progress=progress)
+        return plan
 
     return plan_supports(
         (part,), _SPACE, PlanningRules(pitch_mm=PITCH), route=route, stop=Stop(), progress=silent
@@ -111,7 +105,7 @@ def _slab(side: float, height: float) -> PlacedPart:
 
 
 def _two_slabs() -> PlacedPart:
-    """Return a slab above a smaller one: the supports of the upper one have to go around the lower one."""
+    """Return a slab above a smaller slab, around which the supports of the upper one must lead."""
     lower = box_mesh(np.array([12.0, 12, 4]), np.array([16.0, 16, 6]))
     upper = box_mesh(np.array([10.0, 10, 16]), np.array([18.0, 18, 18]))
     vertices = np.concatenate([lower.vertices, upper.vertices])

@@ -1,4 +1,4 @@
-"""Tries a plugin's offers on tiny problems and judges the promises, as `amprep plugins check` shows them."""
+"""Run the offers of a plugin on sample problems and check their promises, as `amprep plugins check` does."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -10,22 +10,26 @@ import numpy as np
 
 from amprep.checks.violation import Violation
 from amprep.errors import AmprepError
-from amprep.hookspecs import Offer
-from amprep.host import KINDS, Host, Kind, Listed
+from amprep.host import KINDS, Host, Kind
 from amprep.model import Stop
 from amprep.testing.case import Case
+from amprep.testing.offers import LoadedOffer
 
 
 @dataclass(frozen=True)
-class Trial:
-    """How one offer did.
+class OfferReport:
+    """Result of the sample problems for one offer.
 
     Attributes
     ----------
+    kind, name
+        Kind and name of the offer.
+    title
+        Name of the offer with the plugin that provides it.
     problems
-        What it was tried on.
+        Titles of the sample problems that the offer accepts.
     violations
-        The promises it broke; the subject says on which problem.
+        Promises that it breaks; the subject names the problem.
     """
 
     kind: Kind
@@ -40,8 +44,8 @@ class Trial:
         return not self.violations
 
 
-def try_plugin(package: str, *, samples: Sequence[Path] = ()) -> tuple[Trial, ...]:
-    """Load a plugin and try each of its offers.
+def try_plugin(package: str, *, samples: Sequence[Path] = ()) -> tuple[OfferReport, ...]:
+    """Load a plugin and run each of its offers on the sample problems.
 
     Parameters
     ----------
@@ -53,31 +57,47 @@ def try_plugin(package: str, *, samples: Sequence[Path] = ()) -> tuple[Trial, ..
     Raises
     ------
     PluginError
-        When the plugin cannot be loaded, or one of its names clashes with another's.
+        When the plugin cannot be loaded, or one of its offers has the name of another offer.
+
+    Examples
+    --------
+    >>> from amprep.testing import try_plugin
+    >>> [report.violations for report in try_plugin("amprep_shelves")]
+    [()]
     """
     host = Host.load_one(package)
     listed = [each for kind in KINDS for each in host.offers(kind).values() if not each.builtin]
-    return tuple(try_offer(host, each, samples=samples) for each in listed)
+    return tuple(try_offer(LoadedOffer.of(host, each, {}), samples=samples) for each in listed)
 
 
-def try_offer(host: Host, listed: Listed[Offer], *, samples: Sequence[Path] = ()) -> Trial:
-    """Try one offer on every problem that it accepts; nothing it does raises."""
+def try_offer(offer: LoadedOffer, *, samples: Sequence[Path] = ()) -> OfferReport:
+    """Run one offer on every sample problem that it accepts; an exception of the offer is a violation.
+
+    Parameters
+    ----------
+    offer
+        Offer from `load_offer`.
+    samples
+        Files for a mesh reader to read.
+    """
     from amprep.testing.cases import cases_for
 
     with TemporaryDirectory() as folder:
-        cases = cases_for(host, listed, samples, Path(folder))
+        cases = cases_for(offer, samples, Path(folder))
         violations = [violation for case in cases for violation in _judged(case)]
     problems = tuple(case.problem for case in cases)
-    return Trial(listed.kind, listed.offer.name, listed.title, problems, tuple(violations))
+    return OfferReport(offer.listed.kind, offer.name, offer.listed.title, problems, tuple(violations))
 
 
 def _judged(case: Case) -> list[Violation]:
-    """Run a case as it is, again (the answers must agree), and with no time left."""
+    """Run a case twice, which must give equal answers, and once with no time left."""
     try:
         first = case.run(Stop())
         found = [_about(case.problem, violation) for violation in case.judge(first)]
         if fingerprint(first) != fingerprint(case.run(Stop())):
-            found.append(Violation("reproducible", case.problem, "one problem and seed gave two answers"))
+            found.append(
+                Violation("reproducible", case.problem, "the same problem and seed gave different answers")
+            )
         late = case.judge(case.run(Stop.after(0.0))) if case.timed else ()
     except AmprepError as error:
         return [Violation("runs", case.problem, str(error))]
@@ -89,7 +109,7 @@ def _about(problem: str, violation: Violation) -> Violation:
 
 
 def fingerprint(value: Any) -> Any:
-    """Return nested tuples that are equal exactly when two answers are."""
+    """Convert an answer to nested tuples, which are equal exactly when the answers are equal."""
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if is_dataclass(value):

@@ -1,4 +1,4 @@
-"""Tiny problems with every feature a packer, router, volume maker or mesh reader may meet."""
+"""Small sample problems with every feature that a packer, router, volume maker or mesh reader may meet."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -33,13 +33,13 @@ _FACES = (
 
 
 def box_mesh(lo: Floats, hi: Floats) -> Mesh:
-    """Return a box as twelve triangles."""
+    """Return a box with the corners `lo` and `hi`, ``(3,)`` mm each, as twelve triangles."""
     corners = [[x, y, z] for z in (lo[2], hi[2]) for y in (lo[1], hi[1]) for x in (lo[0], hi[0])]
     return Mesh(np.array(corners), np.array(_FACES))
 
 
 def packing_problems() -> Iterator[tuple[str, PackingProblem]]:
-    """Yield named packing problems; each asks for one thing more than the plainest."""
+    """Yield packing problems with their titles; each differs from the simplest problem in one respect."""
     plain = PackingProblem(_items("box"), BuildVolume(np.full(3, 100.0)), clearance=1.0, lift=2.0)
     tilted = Orientations("list", _turned_about_z(np.radians([30.0, 75.0])))
     for objective in ("builds", "fill", "height"):
@@ -69,7 +69,7 @@ def packing_problems() -> Iterator[tuple[str, PackingProblem]]:
 
 
 def support_problems() -> Iterator[tuple[str, SupportProblem]]:
-    """Yield named support problems on a grid of 6 x 9 x 9 voxels: a plate in the air, an obstacle below it."""
+    """Yield support problems with their titles: a plate above an obstacle, on a grid of 6 x 9 x 9 voxels."""
     voxels = np.full((6, 9, 9), Voxel.FREE)
     voxels[5, 1:8, 1:8] = Voxel.OCCUPIED
     voxels[2, 3:6, 3:6] = Voxel.OCCUPIED
@@ -90,7 +90,7 @@ def support_problems() -> Iterator[tuple[str, SupportProblem]]:
 
 
 def sample_parts() -> list[Part]:
-    """Return a box, a tetrahedron away from the origin, two boxes apart; each with a box given by hand."""
+    """Return a box, a tetrahedron away from the origin, and two separate boxes, each with a bounding box."""
     box = box_mesh(np.zeros(3), np.array([10.0, 20, 30]))
     corner = Mesh(np.array([[5.0, 5, 5], [15, 5, 5], [5, 15, 5], [5, 5, 15]]), np.array(_TETRAHEDRON))
     far = box_mesh(np.array([40.0, 0, 0]), np.array([50.0, 5, 5]))
@@ -105,7 +105,7 @@ _TETRAHEDRON = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
 
 
 def written_samples(folder: Path, suffixes: set[str]) -> list[Path]:
-    """Write the tetrahedron in each of the usual formats among `suffixes`."""
+    """Write the tetrahedron in every common format among `suffixes` and return the paths."""
     import trimesh
 
     mesh = sample_parts()[1].mesh
@@ -118,7 +118,7 @@ def written_samples(folder: Path, suffixes: set[str]) -> list[Path]:
 
 
 def _items(word: str) -> tuple[Item, ...]:
-    """Return one item of each size, two copies of the first, and one that is too large for any build."""
+    """Return two copies of the first size, one item of each other size, and one that is too large for a build."""
     sizes = [*_SIZES, (150, 20, 20)]
     volumes = [_volume(word, np.array(size, np.float64)) for size in sizes]
     parts = [Item(part, 0, volume, float(np.prod(sizes[part]))) for part, volume in enumerate(volumes)]
@@ -126,7 +126,7 @@ def _items(word: str) -> tuple[Item, ...]:
 
 
 def _volume(word: str, size: Floats) -> BoundingVolume:
-    """Return a bounding volume with its least corner away from the origin; of several boxes, an L."""
+    """Return a bounding volume away from the origin; several boxes or convex pieces form an L."""
     lo = np.array([-5.0, 3.0, 1.0])
     hi = lo + size
     knee = np.array([hi[0], hi[1], lo[2] + size[2] / 2]), np.array([lo[0] + size[0] / 2, hi[1], hi[2]])
@@ -145,9 +145,9 @@ def _turned_about_z(angles: Floats) -> Floats:
 
 
 def _support_problem(voxels: np.ndarray) -> SupportProblem:
-    """Return the problem with a red square under every occupied voxel that stands on a white one."""
-    black, white = voxels == Voxel.OCCUPIED, voxels == Voxel.FREE
-    red = np.argwhere(black[1:] & white[:-1]) + np.array([1, 0, 0])
+    """Return the problem with a red square under every occupied voxel above a free one."""
+    occupied, free = voxels == Voxel.OCCUPIED, voxels == Voxel.FREE
+    red = np.argwhere(occupied[1:] & free[:-1]) + np.array([1, 0, 0])
     zeros = np.zeros(len(red), np.int32)
     frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
-    return SupportProblem(frame, voxels, red, zeros, zeros, white[0])
+    return SupportProblem(frame, voxels, red, zeros, zeros, free[0])

@@ -11,7 +11,7 @@ from amprep.cli.plugins import app
 from amprep.errors import PluginError
 from amprep.host import KINDS, Host
 from amprep.host.scaffold import make_plugin
-from amprep.testing.conformance import try_offer, try_plugin
+from amprep.testing import LoadedOffer, try_offer, try_plugin
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
@@ -133,6 +133,6 @@ BUILT_IN = Host.load(plugins_enabled=False)
     ids=lambda listed: f"{listed.kind}-{listed.offer.name}",
 )
 def test_a_built_in_offer_keeps_every_promise_on_the_trial_problems(listed):
-    trial = try_offer(BUILT_IN, listed)
+    trial = try_offer(LoadedOffer.of(BUILT_IN, listed, {}))
     assert trial.problems
     assert trial.violations == ()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.cells import cell_offer
-from amprep.hookspecs import CellEmitter, hookimpl
+from amprep.hookspecs import CellEmitter, hookimpl, require_bounds
 from amprep.model import ImplicitCell
 
 amprep_api = 1
@@ -32,12 +32,9 @@ class GyroidParams:
     resolution: int | None = None
 
     def __post_init__(self) -> None:
-        if not 0.1 <= self.density <= 0.9:
-            raise ValueError(f"density is between 0.1 and 0.9, got {self.density}")
-        if not self.wall_mm > 0:
-            raise ValueError(f"wall_mm is above 0, got {self.wall_mm}")
-        if self.resolution is not None and not 6 <= self.resolution <= 60:
-            raise ValueError(f"resolution is between 6 and 60, got {self.resolution}")
+        require_bounds(self, "density", at_least=0.1, at_most=0.9)
+        require_bounds(self, "wall_mm", above=0)
+        require_bounds(self, "resolution", at_least=6, at_most=60)
 
 
 @hookimpl

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from amprep.errors import JobError
-from amprep.hookspecs import CellEmitter, hookimpl
+from amprep.hookspecs import CellEmitter, hookimpl, require_bounds
 from amprep.model import CellRequest, Cells, Mesh, Progress, Stop, Template
 
 amprep_api = 1
@@ -15,13 +15,18 @@ SIDES = 8
 
 @dataclass(frozen=True)
 class PillarParams:
-    """How thick the pillar is: the diameter of the circle around its octagon."""
+    """Parameters of the pillar.
+
+    Attributes
+    ----------
+    diameter_mm
+        Diameter of the circle around the octagon.
+    """
 
     diameter_mm: float = 0.6
 
     def __post_init__(self) -> None:
-        if not self.diameter_mm > 0:
-            raise ValueError(f"diameter_mm is above 0, got {self.diameter_mm}")
+        require_bounds(self, "diameter_mm", above=0)
 
 
 @hookimpl
@@ -37,21 +42,21 @@ def amprep_cell_emitters() -> Iterator[CellEmitter]:
 
 
 def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, progress: Progress) -> Cells:
-    """Put the pillar under the map of every edge.
+    """Place one pillar along every edge.
 
-    Pillars that stand on one another share their octagon, also where the way bends: the maps shear the unit
-    cube sideways and leave its horizontal faces as they are.
+    Consecutive pillars have the same octagon where they meet, on oblique edges too: the matrices shear the unit cube
+    sideways and leave its horizontal faces as they are.
     """
     pitch, count = request.frame.pitch, len(request.edges)
     if params.diameter_mm > pitch:
         raise JobError(
-            f"pillar: diameter_mm = {params.diameter_mm:g} is wider than the pitch, {pitch:.4g} mm"
+            f"pillar: diameter_mm must be at most the pitch of {pitch:.4g} mm, got {params.diameter_mm:g}"
         )
     return Cells((pillar(params.diameter_mm / pitch),), np.zeros(count), np.arange(count), request.matrices)
 
 
 def pillar(diameter: float) -> Template:
-    """Return the pillar in the unit cube; bottom and top are cut into the same triangles."""
+    """Return the pillar in the unit cube; its bottom and top have the same triangles."""
     angles = (np.arange(SIDES) + 0.5) * 2 * np.pi / SIDES
     ring = 0.5 + diameter / 2 * np.column_stack([np.cos(angles), np.sin(angles)])
     vertices = np.vstack([np.column_stack([ring, np.full(SIDES, z)]) for z in (0.0, 1.0)])
@@ -63,6 +68,6 @@ def pillar(diameter: float) -> Template:
 
 
 def pillar_material(pitch: float, step: float, params: PillarParams) -> tuple[float, float]:
-    """Return the mm3 of a vertical and of an oblique edge: octagon times step, shearing keeps the volume."""
+    """Return the volume (mm3) of a vertical and of an oblique edge: octagon times step, as shearing keeps volume."""
     volume = 2 * np.sqrt(2) * (params.diameter_mm / 2) ** 2 * step
     return volume, volume

@@ -1,4 +1,4 @@
-"""A packer that puts parts in rows on shelves."""
+"""A shelf packer: it places parts in rows, and rows in layers."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,7 +12,13 @@ amprep_api = 1
 
 @dataclass(frozen=True)
 class ShelvesParams:
-    """Which parts come first."""
+    """Parameters of the shelf packer.
+
+    Attributes
+    ----------
+    order
+        Measure by which parts are sorted; the largest is placed first.
+    """
 
     order: Literal["height", "depth", "volume"] = "height"
 
@@ -22,7 +28,7 @@ def amprep_packers() -> Iterator[Packer]:
     """Yield the shelf packer."""
     yield Packer(
         "shelves",
-        "Parts in rows, rows in layers; simple, fast, with straight channels between the rows.",
+        "Places parts in rows and rows in layers; fast, with straight channels between the rows.",
         run=pack_shelves,
         accepts=PackerAccepts(
             volumes=frozenset({"box", "boxes", "convex", "solid"}),

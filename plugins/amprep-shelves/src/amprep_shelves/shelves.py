@@ -1,4 +1,4 @@
-"""Shelf packing: the first row with room, else a new row, a new layer, a new build."""
+"""Shelf packing: place each part in the first row with room, else in a new row, layer or build."""
 
 from dataclasses import dataclass, field
 from itertools import product
@@ -21,7 +21,7 @@ from amprep.model import (
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """An item's enclosing box in the orientation chosen for it; corners in mm, before any translation."""
+    """Enclosing box of an item in its chosen orientation; `lo` and `size` in mm, before the translation."""
 
     item: int
     rotation: np.ndarray
@@ -32,7 +32,7 @@ class Box:
 
 @dataclass(eq=False)
 class Row:
-    """A row along x: where it starts in y, how deep it is, how far it is filled."""
+    """Row along x: its start in y, its depth in y, and the end of its last box in x, all in mm."""
 
     y: float
     depth: float
@@ -41,7 +41,7 @@ class Row:
 
 @dataclass(eq=False)
 class Layer:
-    """Rows beside each other at one height."""
+    """Adjacent rows at the same height."""
 
     z: float
     height: float
@@ -51,9 +51,9 @@ class Layer:
 def pack_shelves(
     problem: PackingProblem, *, params: Any, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
-    """Place the boxes one after the other, each where the first row has room (DOI 10.1137/0209062).
+    """Place each box in the first row that has room for it (DOI 10.1137/0209062), in time ``O(items * rows)``.
 
-    Every box keeps the clearance from the next one, the walls and the lid. Runs in time ``O(items * rows)``.
+    Every box keeps the clearance from other boxes and from the walls and lid of the build volume.
     """
     boxes = sorted(
         (_box(problem, number, item) for number, item in enumerate(problem.items)),
@@ -85,7 +85,7 @@ def pack_shelves(
 def _first_place(
     problem: PackingProblem, builds: list[list[Layer]], box: Box
 ) -> tuple[int, np.ndarray] | None:
-    """Return the build and the least corner of the first place with room; a fill problem has one build."""
+    """Return the first build with room and the least corner of the box in it; a fill problem has one build."""
     for number, layers in enumerate(builds):
         corner = _place_in(problem, layers, box)
         if corner is not None:
@@ -98,7 +98,7 @@ def _first_place(
 
 
 def _place_in(problem: PackingProblem, layers: list[Layer], box: Box) -> np.ndarray | None:
-    """Return the least corner of the first place in one build, and reserve it; None when there is none."""
+    """Reserve the first position with room in one build and return its least corner; None if there is no room."""
     gap, room = problem.clearance, _room(problem)
     for layer in layers:
         if box.size[2] <= layer.height:
@@ -109,7 +109,7 @@ def _place_in(problem: PackingProblem, layers: list[Layer], box: Box) -> np.ndar
     allowed = problem.stacking or not layers
     if not allowed or z + box.size[2] > room[2]:
         return None
-    # parts beside each other share one layer: it is as high as the build volume
+    # without stacking there is one layer, as high as the build volume
     layers.append(Layer(z, box.size[2] if problem.stacking else room[2] - z))
     return _place_in_layer(gap, room, layers[-1], box)
 
@@ -132,7 +132,7 @@ def _reserve(row: Row, gap: float, z: float, box: Box) -> np.ndarray:
 
 
 def _room(problem: PackingProblem) -> np.ndarray:
-    """Return how far boxes may reach; what is too large by no more than the tolerance fits."""
+    """Return the greatest coordinates that boxes may have; boxes fit if they exceed the room by the tolerance."""
     return problem.space.size - problem.clearance + CONTACT_TOLERANCE
 
 
@@ -142,7 +142,7 @@ def _fits_alone(problem: PackingProblem, size: np.ndarray) -> bool:
 
 
 def _box(problem: PackingProblem, number: int, item: Item) -> Box:
-    """Return the item's box in the lowest orientation that fits; of equals, the one preferred by the part."""
+    """Return the box of the item in the lowest orientation that fits; the first orientation wins a tie."""
     boxes = []
     for rotation in item.orientations.matrices:
         points = _corners(item) @ rotation.T
@@ -152,14 +152,14 @@ def _box(problem: PackingProblem, number: int, item: Item) -> Box:
 
 
 def _corners(item: Item) -> np.ndarray:
-    """Return the corners of the item's boxes, or of the box around its volume, ``(n, 3)``."""
+    """Return the corners of the boxes of the item, or of the enclosing box of its volume, ``(n, 3)``."""
     volume = item.volume
     boxes = zip(volume.lo, volume.hi, strict=True) if isinstance(volume, Boxes) else [volume.enclosing()]
     return np.array([corner for lo, hi in boxes for corner in product(*zip(lo, hi, strict=True))])
 
 
 def _order(problem: PackingProblem, params: Any) -> Any:
-    """Return the key by which boxes are sorted; the item's number breaks ties."""
+    """Return the key by which boxes are sorted; the number of the item breaks ties."""
     measures = {
         "height": lambda box: (box.size[2], box.size[1]),
         "depth": lambda box: (box.size[1], box.size[2]),
