@@ -10,12 +10,12 @@ from amprep.errors import AmprepError
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Give a temporary name beside `path` to write to; rename it at the end, or leave nothing behind.
+    """Yield a temporary path beside `path`; rename it to `path` at the end, or delete it after an exception.
 
     Raises
     ------
     AmprepError
-        If the folder or file cannot be written.
+        If the folder or the file cannot be written.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

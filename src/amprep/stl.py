@@ -1,4 +1,4 @@
-"""Binary STL, for machine software that reads nothing else."""
+"""Write binary STL files, for machine software that reads no other format."""
 
 from pathlib import Path
 
@@ -12,9 +12,9 @@ _HEADER = b"amprep, binary STL, mm".ljust(80)
 
 
 def write_stl(mesh: Mesh, path: Path) -> None:
-    """Write the mesh; equal meshes give equal bytes, and the file appears whole or not at all.
+    """Write a mesh as binary STL; the file appears complete, or not at all, and equal meshes give equal bytes.
 
-    A triangle without area gets the normal 0, 0, 0, as STL asks.
+    The normal of a triangle without area is 0, 0, 0, as the format requires.
 
     Raises
     ------

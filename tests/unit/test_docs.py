@@ -14,7 +14,7 @@ from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.model.supports import REASONS
-from amprep.printers.catalogue import Profile
+from amprep.printers.catalogue import PrinterProfile
 
 ROOT = Path(__file__).parents[2]
 SECTIONS = {
@@ -23,7 +23,7 @@ SECTIONS = {
     "`[cells]`": CellSettings,
     "`[reading]`": ReadingSettings,
     "`[[part]]`": PartSettings,
-    "Printers": Profile,
+    "Printers": PrinterProfile,
 }
 BY_OTHER_KEYS = {"stacking", "enabled", "strut_angle_deg", "volume_params"}
 

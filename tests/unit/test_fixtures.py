@@ -1,4 +1,4 @@
-"""The fixtures are what fixtures/README.md says; the facts come from formulas, not from amprep."""
+"""The fixtures have the properties in fixtures/README.md, which follow from formulas, not from amprep."""
 
 import io
 import re
@@ -21,7 +21,7 @@ COMMITTED = sorted(
 
 @pytest.fixture(scope="module")
 def scripts():
-    """Import the scripts of the folder, which are no package."""
+    """Import the scripts of the folder, which is not a package."""
     sys.path.insert(0, str(FOLDER))
     try:
         import demo_parts
@@ -61,10 +61,10 @@ def test_the_wheel_has_its_web_marked_as_a_modifier():
 
     (wheel,) = read_parts(FOLDER / "wheel.3mf")
     (web,) = wheel.regions
-    share = 96 / (2 * pi) * np.sin(2 * pi / 96)
+    ratio = 96 / (2 * pi) * np.sin(2 * pi / 96)
     assert (wheel.name, web.kind, web.name) == ("wheel", "lattice", "web")
-    assert wheel.mesh.signed_volume == pytest.approx(pi * (20**2 - 4**2) * 12 * share)
-    assert web.mesh.signed_volume == pytest.approx(pi * (16**2 - 7**2) * 14 * share)
+    assert wheel.mesh.signed_volume == pytest.approx(pi * (20**2 - 4**2) * 12 * ratio)
+    assert web.mesh.signed_volume == pytest.approx(pi * (16**2 - 7**2) * 14 * ratio)
 
 
 def test_the_ball_has_the_volume_and_the_cap_of_a_ball_of_radius_10():

@@ -1,4 +1,4 @@
-"""``amprep printers``: the printers that a job may name, and where their sizes come from."""
+"""``amprep printers``: list the printers that a job can name, with the sources of their sizes."""
 
 import json
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,19 +10,19 @@ if TYPE_CHECKING:
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
-app = typer.Typer(help="Printers that a job may name: built in, of this project, or of the user.")
+app = typer.Typer(help="List the printers that a job can name: built-in, of this project, of the user.")
 
 
 @app.callback(invoke_without_command=True)
 def _main(context: typer.Context) -> None:
-    """List the printers unless a command is named."""
+    """List the printers if no command is given."""
     if context.invoked_subcommand is None:
         list_all()
 
 
 @app.command("list")
 def list_all(as_json: AsJson = False) -> None:
-    """List all printers with their build volumes and the source of their sizes."""
+    """List all printers with their build volumes and the sources of their sizes."""
     from amprep.printers.catalogue import list_printers
 
     printers, warnings = list_printers()
@@ -36,10 +36,10 @@ def list_all(as_json: AsJson = False) -> None:
 
 @app.command("show")
 def show(
-    name: Annotated[str, typer.Argument(help="Name of a printer, or a profile's file.")],
+    name: Annotated[str, typer.Argument(help="Name of a printer, or path of a profile (.toml).")],
     as_json: AsJson = False,
 ) -> None:
-    """Show one printer; its lines are a profile that can be saved and changed."""
+    """Show one printer as a profile that can be saved to a file and changed."""
     from amprep.printers.catalogue import find_printer
 
     printer = find_printer(name)
@@ -71,11 +71,11 @@ def _print_table(printers: "list[Printer]") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from amprep.printers.catalogue import DEFAULT_PRINTER, plain
+    from amprep.printers.catalogue import DEFAULT_PRINTER, normalised
 
     table = Table("name", "build volume (mm)", "technology", "source", box=None)
     for printer in printers:
-        default = " [dim](default)" if plain(printer.name) == plain(DEFAULT_PRINTER) else ""
+        default = " [dim](default)" if normalised(printer.name) == normalised(DEFAULT_PRINTER) else ""
         origin = "" if printer.origin == "built-in" else f"[dim]{printer.origin}[/] "
         source = origin + escape(printer.source)
         table.add_row(escape(printer.name) + default, _size(printer), printer.technology, source)

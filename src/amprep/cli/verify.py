@@ -1,4 +1,4 @@
-"""``amprep verify``: re-check a written build from the file alone."""
+"""``amprep verify``: verify a build from its file alone."""
 
 import json
 from pathlib import Path
@@ -13,23 +13,25 @@ if TYPE_CHECKING:
 
 
 def verify(
-    file: Annotated[Path, typer.Argument(help="A build job that amprep wrote (.3mf, any target).")],
+    file: Annotated[Path, typer.Argument(help="Build file that amprep wrote (.3mf, any target).")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; use the exit code.")] = False,
     debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
-    """Re-check a written build from the file alone.
+    """Verify a build from its file alone.
 
-    Judges that parts lie in the build volume, keep their clearance and are unchanged, that supports are closed,
-    stand on the plate and do not cut into parts, and that every overhang is held or listed with a reason.
-    Exit code 0: every promise holds; 1: some do not; 2: not a build of amprep's.
+    Checks that parts are inside the build volume, keep their clearance and are unchanged; that supports are closed,
+    stand on the plate and do not penetrate parts; and that every overhang is supported or listed with a reason.
+    Exit codes: 0 if all promises hold, 1 if some are broken, 2 if the file is not a build that amprep wrote.
     """
     from amprep.pipeline.verify import verify_file
 
     violations = verify_file(file)
     if as_json:
-        rows = [{"promise": v.promise, "subject": v.subject, "message": v.message} for v in violations]
-        typer.echo(json.dumps({"file": str(file), "ok": not violations, "violations": rows}, indent=2))
+        from amprep.report.json_values import violations_json
+
+        result = {"file": str(file), "ok": not violations, "violations": violations_json(violations)}
+        typer.echo(json.dumps(result, indent=2))
     elif not quiet:
         _show(file, violations)
     raise typer.Exit(cli.INCOMPLETE if violations else cli.DONE)
@@ -43,7 +45,7 @@ def _show(file: Path, violations: "tuple[Violation, ...]") -> None:
     from amprep.pipeline.verify import PROMISES
 
     broken = {violation.promise for violation in violations}
-    table = Table("promise", "", "subject", "found", title=escape(file.name), title_justify="left")
+    table = Table("promise", "", "subject", "finding", title=escape(file.name), title_justify="left")
     for promise in PROMISES:
         if promise not in broken:
             table.add_row(promise, "[green]holds")

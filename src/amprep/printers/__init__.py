@@ -1,1 +1,1 @@
-"""The printer catalogue."""
+"""Printers: the catalogue of profiles."""

@@ -1,4 +1,4 @@
-"""Printers: the profiles shipped, those of the project or the user, and finding one by name."""
+"""Find and read printer profiles: built-in ones, those of the project, and those of the user."""
 
 import os
 import re
@@ -25,17 +25,17 @@ SHIPPED = Path(__file__).parent / "profiles"
 
 
 @dataclass(frozen=True)
-class Profile:
+class PrinterProfile:
     """The keys of a printer profile.
 
     Attributes
     ----------
     size_mm
-        x, y, z of a box, or diameter and height of a cylinder.
+        Size of the build volume: x, y, z of a box, or diameter and height of a cylinder.
     zones
-        Forbidden boxes, each x0, y0, z0, x1, y1, z1 in build coordinates.
+        Forbidden zones, each x0, y0, z0, x1, y1, z1 in build coordinates.
     source
-        Where the sizes come from, e.g. the manufacturer's data sheet.
+        Source of the sizes, e.g. the manufacturer's data sheet.
     """
 
     size_mm: tuple[float, float, float] | tuple[float, float]
@@ -46,26 +46,30 @@ class Profile:
     source: str = ""
 
     def __post_init__(self) -> None:
-        require(min(self.size_mm) > 0, "size_mm needs sizes above 0", list(self.size_mm))
-        require(max(self.size_mm) <= 10_000, "size_mm may be at most 10000 mm each", list(self.size_mm))
+        require(min(self.size_mm) > 0, "size_mm must be above 0", list(self.size_mm))
+        require(max(self.size_mm) <= 10_000, "size_mm must be at most 10000", list(self.size_mm))
         expected = "diameter and height" if self.shape == "cylinder" else "x, y and z"
         count = 2 if self.shape == "cylinder" else 3
-        require(len(self.size_mm) == count, f"size_mm of a {self.shape} is {expected}", list(self.size_mm))
+        require(
+            len(self.size_mm) == count, f"size_mm of a {self.shape} must be {expected}", list(self.size_mm)
+        )
         for zone in self.zones:
             ordered = all(lo < hi for lo, hi in zip(zone[:3], zone[3:], strict=True))
-            require(ordered, "zones are x0, y0, z0, x1, y1, z1 with each 0 below its 1", list(zone))
+            require(
+                ordered, "zones must be x0, y0, z0, x1, y1, z1 with x0 < x1, y0 < y1, z0 < z1", list(zone)
+            )
 
 
 @dataclass(frozen=True, eq=False)
 class Printer:
-    """A printer as a job uses it.
+    """A printer that a job can use.
 
     Attributes
     ----------
     source
-        Where its sizes come from.
+        Source of its sizes.
     origin
-        Whether the profile is built in, or of the project, the user or the job.
+        Whether the profile is built in, or belongs to the project, the user or the job.
     """
 
     name: str
@@ -76,38 +80,41 @@ class Printer:
 
     @property
     def stacks(self) -> bool:
-        """Whether parts may lie above one another unless the job says otherwise."""
+        """Default of stacking: whether parts may be above one another."""
         return self.technology == "polymer-powder-bed"  # loose powder holds the parts
 
     @property
     def needs_supports(self) -> bool:
-        """Whether overhangs need supports unless the job says otherwise."""
+        """Default of supports: whether overhangs need them."""
         return self.technology != "polymer-powder-bed"
 
 
 def find_printer(name: str, folder: Path | None = None, env: Mapping[str, str] = os.environ) -> Printer:
-    """Return the printer called `name`, whatever its case, spaces and dashes; or that of a profile's path.
+    """Return the printer called `name`; case, spaces and punctuation do not matter.
 
     Parameters
     ----------
+    name
+        Name of a printer, or path of a profile (.toml).
     folder
-        The project's folder: relative paths start there, and its ``printers`` folder is looked at first.
+        The project's folder: the base of relative paths, and the parent of its ``printers`` folder, which is
+        searched first.
     env
-        Says where the user's configuration folder is.
+        Environment variables that determine the user's configuration folder.
 
     Raises
     ------
     JobError
-        When there is no such printer (with the nearest name), or its profile is wrong.
+        If there is no such printer (with the most similar name), or its profile is invalid.
     """
     if name.lower().endswith(".toml"):
         return read_printer((folder or Path()) / name, "job")
     for path, origin in _profile_files(folder, env):
-        if plain(path.stem) == plain(name) or _states_name(path, origin, name):
+        if normalised(path.stem) == normalised(name) or _states_name(path, origin, name):
             return read_printer(path, origin)
     printers, warnings = list_printers(folder, env)
-    known = {plain(printer.name): printer.name for printer in printers}
-    close = get_close_matches(plain(name), known, n=1)
+    known = {normalised(printer.name): printer.name for printer in printers}
+    close = get_close_matches(normalised(name), known, n=1)
     hint = f" (did you mean {known[close[0]]!r}?)" if close else "; 'amprep printers' lists them"
     raise JobError("; ".join([f"no printer is called {name!r}{hint}", *warnings]))
 
@@ -115,9 +122,9 @@ def find_printer(name: str, folder: Path | None = None, env: Mapping[str, str] =
 def list_printers(
     folder: Path | None = None, env: Mapping[str, str] = os.environ
 ) -> tuple[list[Printer], list[str]]:
-    """Return all printers, the project's first, then the user's, then the built-in ones; and warnings.
+    """Return all printers and warnings: those of the project, of the user, and built-in ones, in this order.
 
-    A profile that is wrong is a warning; a name met before hides later ones.
+    The first printer of a name hides later ones. An invalid profile gives a warning.
     """
     found: dict[str, Printer] = {}
     warnings: list[str] = []
@@ -127,26 +134,43 @@ def list_printers(
         except JobError as error:
             warnings.append(str(error))
         else:
-            found.setdefault(plain(printer.name), printer)
+            found.setdefault(normalised(printer.name), printer)
     return list(found.values()), warnings
 
 
 def read_printer(path: Path, origin: Origin) -> Printer:
-    """Read one profile.
+    """Read a profile.
 
     Raises
     ------
     JobError
-        When the file is not a printer profile.
+        If the file is not a printer profile.
     """
     return _shipped(path) if origin == "built-in" else _read(path, origin)
 
 
 def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: Origin = "job") -> Printer:
-    """Return the printer a table of plain values describes; `name` serves one that has none."""
+    """Return the printer that a table describes.
+
+    Parameters
+    ----------
+    table
+        The keys of `PrinterProfile`.
+    where
+        File or section, for messages.
+    name
+        Used if the table has no name.
+    origin
+        Where the table comes from.
+
+    Raises
+    ------
+    JobError
+        If a key is unknown or a value is invalid.
+    """
     if "size_mm" not in table:
         raise JobError(f"{where}: expected size_mm = [x, y, z], found none")
-    profile = make(Profile, table, where)
+    profile = make(PrinterProfile, table, where)
     size = profile.size_mm if len(profile.size_mm) == 3 else (profile.size_mm[0], *profile.size_mm)
     zones = np.array(profile.zones).reshape(-1, 6)
     space = BuildVolume(np.array(size), profile.shape, zones[:, :3], zones[:, 3:])
@@ -154,7 +178,7 @@ def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: 
 
 
 def user_folder(env: Mapping[str, str], platform: str = sys.platform) -> Path:
-    """Return the folder of the user's own printers, by the custom of the platform."""
+    """Return the folder of the user's printers, according to the conventions of the platform."""
     home = Path(env.get("HOME") or env.get("USERPROFILE") or Path.home())
     if platform == "darwin":
         base = home / "Library" / "Application Support"
@@ -165,24 +189,24 @@ def user_folder(env: Mapping[str, str], platform: str = sys.platform) -> Path:
     return base / "amprep" / "printers"
 
 
-def plain(name: str) -> str:
-    """Return a printer's name without case, spaces and punctuation."""
+def normalised(name: str) -> str:
+    """Return a printer's name in lower case, without spaces and punctuation."""
     return re.sub(r"[\W_]+", "", name.casefold())
 
 
 def _profile_files(folder: Path | None, env: Mapping[str, str]) -> list[tuple[Path, Origin]]:
-    places: list[tuple[Path, Origin]] = [
+    folders: list[tuple[Path, Origin]] = [
         ((folder or Path()) / "printers", "project"),
         (user_folder(env), "user"),
         (SHIPPED, "built-in"),
     ]
-    return [(path, origin) for place, origin in places for path in sorted(place.glob("*.toml"))]
+    return [(path, origin) for each, origin in folders for path in sorted(each.glob("*.toml"))]
 
 
 def _states_name(path: Path, origin: Origin, name: str) -> bool:
-    """Whether the profile is one, and says that this is its name."""
+    """Return whether the profile is valid and states this name."""
     try:
-        return plain(read_printer(path, origin).name) == plain(name)
+        return normalised(read_printer(path, origin).name) == normalised(name)
     except JobError:
         return False
 
@@ -193,5 +217,5 @@ def _read(path: Path, origin: Origin) -> Printer:
 
 @cache
 def _shipped(path: Path) -> Printer:
-    """Profiles shipped with amprep do not change while it runs."""
+    """Read a built-in profile; the result is cached, because the file does not change."""
     return _read(path, "built-in")

@@ -1,4 +1,4 @@
-"""Printers: the shipped profiles, own ones, and finding them by name."""
+"""Printers are found by name among the built-in profiles and those of the project and the user."""
 
 import json
 
@@ -82,14 +82,14 @@ def test_a_profile_is_found_by_path_and_zones_are_kept(places):
     ("text", "message"),
     [
         ("", r"expected size_mm = \[x, y, z\], found none"),
-        ("size_mm = [1, 2]", "size_mm of a box is x, y and z"),
-        ('size_mm = [1, 1, 2]\nshape = "cylinder"', "size_mm of a cylinder is diameter and height"),
-        ("size_mm = [1, 2, 0]", "size_mm needs sizes above 0"),
-        ("size_mm = [1, 2, 1e9]", "size_mm may be at most 10000 mm each"),
+        ("size_mm = [1, 2]", "size_mm of a box must be x, y and z"),
+        ('size_mm = [1, 1, 2]\nshape = "cylinder"', "size_mm of a cylinder must be diameter and height"),
+        ("size_mm = [1, 2, 0]", "size_mm must be above 0"),
+        ("size_mm = [1, 2, 1e9]", "size_mm must be at most 10000"),
         ("size_mm = [1, 2, nan]", "size_mm: expected a list of a number"),
         ("size = [1, 2, 3]\nsize_mm = [1, 2, 3]", r"unknown key 'size' \(did you mean 'size_mm'\?\)"),
         (PROFILE + 'technology = "metal"', "technology: expected one of 'metal-powder-bed'"),
-        (PROFILE + "zones = [[5, 0, 0, 1, 1, 1]]", "zones are x0, y0, z0, x1, y1, z1"),
+        (PROFILE + "zones = [[5, 0, 0, 1, 1, 1]]", "zones must be x0, y0, z0, x1, y1, z1"),
         ("size_mm = [", "not a TOML file"),
     ],
 )
