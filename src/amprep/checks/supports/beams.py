@@ -82,4 +82,4 @@ def hanging_pieces(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
         solids.triangles.astype(np.int64),
         rests,
     )
-    return stands.hanging
+    return stands.floating

@@ -1,34 +1,30 @@
-"""Connectors: from red squares straight up to the true surface that they hold, and a little into it."""
+"""Clip the surfaces of parts to the columns above red squares."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.kernels.meshes import clip_columns as kernels
-
-if TYPE_CHECKING:
-    pass
+from amprep.kernels.meshes.clip_columns import ColumnIndex, PatchBuffers
+from amprep.kernels.meshes.clip_columns import clip_to_columns as clip_kernel
+from amprep.kernels.meshes.patches import Patches
 
 RUN_SLACK = 1e-6
-"""mm; faces this little outside a column's run of cubes still count as in it."""
-
-LOWEST = 1e-4
-"""mm; walls are not cut closer than this to their upper ends."""
+"""Faces up to this far (mm) above or below the run of voxels of a column count as inside it."""
 
 
 class ConnectorColumns(NamedTuple):
-    """The spaces above red squares that connectors may pass.
+    """Spaces above red squares that connectors may fill.
 
     Attributes
     ----------
     lo, hi
-        ``(m, 3)`` mm, from the red square up to the top of its run of cubes.
+        ``(m, 3)`` mm, corners: from the red square up to the top of its run of voxels.
     square
-        ``(m, 2)`` int64, y and x.
+        ``(m, 2)`` int64, indices y and x of the square.
     grid
-        ``(3,)`` origin x, origin y, pitch.
+        ``(3,)`` origin x, origin y and pitch, mm.
     shape
         Numbers of squares (ny, nx).
     """
@@ -40,79 +36,42 @@ class ConnectorColumns(NamedTuple):
     shape: tuple[int, int]
 
 
-class Patches(NamedTuple):
-    """Pieces of triangles that lie in columns, sorted by column.
-
-    Attributes
-    ----------
-    points
-        ``(p, 3)`` mm, corners, counter-clockwise seen from above.
-    start
-        ``(n + 1,)`` where each patch's corners start.
-    owner
-        ``(n, 2)`` column, and triangle as the caller numbers them.
-    of_column
-        ``(m + 1,)`` where each column's patches start.
-    """
-
-    points: Floats
-    start: Int64s
-    owner: Int64s
-    of_column: Int64s
-
-    def chosen(self, keep: Bools) -> "Patches":
-        """Return only the patches that `keep` ``(n,)`` names."""
-        sizes = np.diff(self.start)
-        start = np.concatenate([[0], np.cumsum(sizes[keep])])
-        owner = self.owner[keep]
-        of_column = np.searchsorted(owner[:, 0], np.arange(len(self.of_column)))
-        return Patches(self.points[np.repeat(keep, sizes)], start, owner, of_column)
-
-    def in_column(self, column: int) -> tuple[Floats, Int64s]:
-        """Return the corners of the patches in a column, and where each patch's start among them."""
-        first, last = self.of_column[column : column + 2]
-        start = self.start[first : last + 1]
-        return self.points[start[0] : start[-1]], start - start[0]
-
-
 def clip_to_columns(columns: ConnectorColumns, corners: Floats, number: Int64s, allowed: Bools) -> Patches:
-    """Cut triangles that look down to the columns they reach into.
+    """Clip triangles that face down to the columns above which they are.
 
     Parameters
     ----------
+    columns
+        All columns.
     corners
-        ``(t, 3, 3)`` mm.
+        ``(t, 3, 3)`` triangles, mm.
     number
-        ``(t,)`` what each triangle is called in `Patches.owner`.
+        ``(t,)`` number of each triangle in `Patches.owner`.
     allowed
-        ``(m,)`` which columns to fill.
+        ``(m,)`` whether triangles are clipped to the column.
     """
     ny, nx = columns.shape
     chosen = np.flatnonzero(allowed)
     flat = columns.square[chosen, 0] * nx + columns.square[chosen, 1]
     order = np.argsort(flat, kind="stable")
     square_start = np.searchsorted(flat[order], np.arange(ny * nx + 1))
+    index = ColumnIndex(columns.grid, columns.shape, square_start, chosen[order], columns.lo, columns.hi)
     room = 4 * len(corners) + 64
     while True:
-        points, start, owner = (
-            np.empty((8 * room, 3)),
-            np.empty(room + 1, np.int64),
-            np.empty((room, 2), np.int64),
+        out = PatchBuffers(
+            np.empty((8 * room, 3)), np.empty(room + 1, np.int64), np.empty((room, 2), np.int64)
         )
-        count = kernels.clip_to_columns(
-            corners, columns.grid, columns.shape, square_start, chosen[order], columns.lo, columns.hi,
-            RUN_SLACK, points, start, owner,
-        )  # fmt: skip
+        count = clip_kernel(corners, index, RUN_SLACK, out)
         if count >= 0:
             break
         room *= 4
-    owner = owner[:count]
+    owner = out.owner[:count]
     owner[:, 1] = number[owner[:, 1]]
-    return _sorted(points, start[: count + 1], owner, len(columns.lo))
+    return _sorted(out.points, out.start[: count + 1], owner, len(columns.lo))
 
 
 def _sorted(points: Floats, start: Int64s, owner: Int64s, columns: int) -> Patches:
-    """Sort patches by column."""
+    """Return the patches sorted by column."""
     order = np.argsort(owner[:, 0], kind="stable")
     sizes = np.diff(start)[order]
     ends = np.cumsum(sizes)
@@ -123,24 +82,28 @@ def _sorted(points: Floats, start: Int64s, owner: Int64s, columns: int) -> Patch
 
 
 def join_patches(families: Sequence[Patches], columns: int) -> Patches:
-    """Return the patches of several families as one."""
+    """Return the patches of several families in one record, sorted by column."""
     points = np.concatenate([np.empty((0, 3)), *(each.points for each in families)])
     sizes = np.concatenate([np.empty(0, np.int64), *(np.diff(each.start) for each in families)])
     owner = np.concatenate([np.empty((0, 2), np.int64), *(each.owner for each in families)])
     return _sorted(points, np.concatenate([[0], np.cumsum(sizes)]), owner, columns)
 
 
-def held_corners(
+def supported_triangles(
     vertices: Floats, triangles: Int64s, faces: Int64s, edges: Int64s, tips: Int64s, *, width: float
 ) -> Floats:
-    """Return what is to be held as triangles that look down, ``(t, 3, 3)`` mm.
+    """Return the overhangs of a mesh as triangles that face down, ``(t, 3, 3)`` mm.
 
-    A face is itself; a knife edge is a level band of `width` mm along it, a tip a level square of that width.
+    A knife edge becomes a level band along it, a tip a level square.
 
     Parameters
     ----------
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
     faces, edges, tips
-        Triangles, ``(e, 2)`` and ``(t,)`` vertices.
+        Indices of triangles, ``(e, 2)`` and ``(t,)`` indices of vertices.
+    width
+        Width of bands and squares, mm.
     """
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     along = end - start
@@ -149,13 +112,13 @@ def held_corners(
     across *= (0.5 * width / np.maximum(length, 1e-12))[:, None]
     x, y = np.eye(3)[:2] * width
     middle = vertices[tips]
-    bands = _quads(np.concatenate([start - across, middle - 0.5 * (x + y)]),
-                   np.concatenate([start + across, middle + 0.5 * (y - x)]),
-                   np.concatenate([end + across, middle + 0.5 * (x + y)]),
-                   np.concatenate([end - across, middle + 0.5 * (x - y)]))  # fmt: skip
+    bands = _split_quads(np.concatenate([start - across, middle - 0.5 * (x + y)]),
+                         np.concatenate([start + across, middle + 0.5 * (y - x)]),
+                         np.concatenate([end + across, middle + 0.5 * (x + y)]),
+                         np.concatenate([end - across, middle + 0.5 * (x - y)]))  # fmt: skip
     return np.concatenate([vertices[triangles[faces]], bands])
 
 
-def _quads(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
-    """Two triangles for each quadrangle given by its corners ``(n, 3)``."""
+def _split_quads(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
+    """Return two triangles for each quadrangle with corners a, b, c, d, each ``(n, 3)``."""
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])

@@ -1,88 +1,96 @@
-"""Closed meshes of connectors from patches of the parts' surfaces."""
+"""Build the closed meshes of connectors below the overhangs in their columns."""
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
-from amprep.geometry.connectors.columns import Patches
-from amprep.geometry.connectors.prisms import prisms_below, prisms_between
+from amprep.geometry.connectors.prisms import prisms_below, solids_between
 from amprep.geometry.merging.nonmanifold_edges import split_nonmanifold_edges
 from amprep.geometry.merging.union import arrays_of, union
 from amprep.geometry.meshes.welding import label_equal_rows, round_as_stored
-from amprep.kernels.meshes import patches as patch_kernels
+from amprep.kernels.meshes import patches as kernels
+from amprep.kernels.meshes.patches import Patches, RaisedPatches
 
 MAX_PATCHES_UNCULLED = 64
-"""In columns with more patches than this below others, those that are hidden are left out."""
+"""In columns with more obstructing patches than this, hidden patches are culled first."""
 
 _SAMPLES = 64
-"""Points per side of a column's content: a patch seen from below only between them counts as hidden."""
+"""Sample points along each side of a column; a patch visible from below only between them counts as hidden."""
+
+# Strategy. A connector fills its column from the base up to the lowest face that points down, if that face is
+# supported, and enters it by the overlap.
+# 1. Columns in which no other face is below a supported one (nearly all of them) need no Boolean: the prisms below
+#    the patches are one closed mesh per connected surface (`prisms_below`). Surfaces that only touch in plan stay
+#    apart, because manifold3d simplifies badly where walls of two prisms coincide.
+# 2. In the other columns manifold3d subtracts the space above the obstructing patches from the space below the
+#    supported ones. The top of that space is higher than every connector.
+# 3. A column with very many patches, above a finely tessellated part, would take that Boolean too long; patches that
+#    are not visible from below change nothing and are culled first.
 
 
-def find_covered(held: Patches, surface: Patches) -> Bools:
-    """Tell in which columns something held has another face of the parts below it, ``(m,)``."""
-    covered = np.zeros(len(held.of_column) - 1, np.bool_)
-    covered[surface.owner[find_below(held, surface), 0]] = True
+def find_covered(supported: Patches, surface: Patches) -> Bools:
+    """Tell in which columns another face of the parts is below a supported one, ``(m,)``."""
+    covered = np.zeros(len(supported.of_column) - 1, np.bool_)
+    covered[surface.owner[find_below(supported, surface), 0]] = True
     return covered
 
 
-def find_below(held: Patches, surface: Patches) -> Bools:
-    """Tell which patches of `surface` lie below, at least in part, another that is held, ``(n,)``."""
+def find_below(supported: Patches, surface: Patches) -> Bools:
+    """Tell which patches of `surface` are, at least in part, below another patch that is supported, ``(n,)``."""
     below = np.zeros(len(surface.owner), np.bool_)
-    patch_kernels.find_below(
-        held.points, held.start, held.owner, held.of_column,
-        surface.points, surface.start, surface.owner, surface.of_column, below,
-    )  # fmt: skip
+    kernels.find_below(supported, surface, below)
     return below
 
 
 def connect(
-    held: Patches, surface: Patches, *, base: Floats, lid: Floats, overlap: float, own: Bools
+    supported: Patches, surface: Patches, *, base: Floats, top: Floats, overlap: float, own: Bools
 ) -> list[MeshArrays]:
-    """Fill columns from the red squares up to the held faces, `overlap` mm into them.
-
-    Where another face lies below a held one it comes first: nothing passes it.
+    """Fill columns from their base up to the supported faces; where another face is below one, up to that face.
 
     Parameters
     ----------
-    held, surface
-        Pieces in the columns; `surface` is all that looks down, of any part, held or not.
-    base, lid
-        ``(m,)`` mm, where the connectors of each column begin, and a height that none of them reaches.
+    supported
+        Overhangs in the columns.
+    surface
+        All faces of all parts in the columns that point down, supported or not.
+    base, top
+        ``(m,)`` mm, height at which the connector of each column begins, and a height above all connectors.
     overlap
-        mm, more than `RUN_SLACK`.
+        Depth (mm) to which connectors enter the supported part, more than `RUN_SLACK`.
     own
-        ``(n,)`` whether each patch of `surface` belongs to the part that its column holds; other parts are
-        not touched.
+        ``(n,)`` whether each patch of `surface` belongs to the part that its column supports. Connectors stop
+        `overlap` below faces of other parts.
 
     Returns
     -------
     meshes
-        Closed ones that may touch one another: of all columns where nothing is in the way one for each surface
-        that hangs together, and one for each other column. Surfaces that only touch in plan stay apart: the
-        walls between them lie in each other, and manifold3d joins them without fault, but tidies them badly.
+        Closed meshes that may touch: one per connected surface over unobstructed columns, and one per obstructed
+        column.
     """
     rise = np.where(own, overlap, -overlap)
-    held, below = _cull_hidden(held, surface, find_below(held, surface), overlap, rise)
-    cutting, rise = surface.chosen(below), rise[below]
-    covered = np.diff(cutting.of_column) > 0
-    free = held.chosen(~covered[held.owner[:, 0]])
+    supported, below = _cull_hidden(supported, surface, find_below(supported, surface), overlap, rise)
+    obstructing, rise = surface.chosen(below), rise[below]
+    covered = np.diff(obstructing.of_column) > 0
+    free = supported.chosen(~covered[supported.owner[:, 0]])
     meshes = []
     surface_of = _label_surfaces(free)
-    for each in range(int(surface_of.max(initial=-1)) + 1):
-        whole = free.chosen(surface_of == each)
-        meshes.append(split_nonmanifold_edges(*prisms_below(whole, base[whole.owner[:, 0]], overlap)))
+    for label in range(int(surface_of.max(initial=-1)) + 1):
+        connected = free.chosen(surface_of == label)
+        meshes.append(split_nonmanifold_edges(*prisms_below(connected, base[connected.owner[:, 0]], overlap)))
     for column in np.flatnonzero(covered).tolist():
-        way = union(list(prisms_between(*held.in_column(column), overlap, base[column])))
-        first, last = cutting.of_column[column : column + 2]
-        way -= union(
-            list(prisms_between(*cutting.in_column(column), rise[first:last], lid[column], hang=True))
+        space = union(list(solids_between(*supported.in_column(column), overlap, base[column])))
+        first, last = obstructing.of_column[column : column + 2]
+        space -= union(
+            list(
+                solids_between(*obstructing.in_column(column), rise[first:last], top[column], from_above=True)
+            )
         )
-        if not way.is_empty():
-            meshes.append(arrays_of(way))
+        if not space.is_empty():
+            meshes.append(arrays_of(space))
     return meshes
 
 
 def _label_surfaces(patches: Patches) -> Int64s:
-    """Number the surfaces that patches form where they share whole edges, ``(n,)``."""
+    """Number the connected surfaces of patches that share whole edges, ``(n,)``."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -99,24 +107,24 @@ def _label_surfaces(patches: Patches) -> Int64s:
 
 
 def _cull_hidden(
-    held: Patches, surface: Patches, below: Bools, overlap: float, rise: Floats
+    supported: Patches, surface: Patches, below: Bools, overlap: float, rise: Floats
 ) -> tuple[Patches, Bools]:
-    """Leave out what is hidden by other patches below it, where a column has many.
+    """In columns with many obstructing patches, remove the patches that lower ones hide.
 
     Returns
     -------
-    held, below
-        What stays of both.
+    supported, below
+        Supported patches that remain, and which patches of `surface` remain obstructing.
     """
-    keep, below = np.ones(len(held.owner), np.bool_), below.copy()
-    many = np.bincount(surface.owner[below, 0], minlength=len(held.of_column) - 1) > MAX_PATCHES_UNCULLED
+    keep, below = np.ones(len(supported.owner), np.bool_), below.copy()
+    many = np.bincount(surface.owner[below, 0], minlength=len(supported.of_column) - 1) > MAX_PATCHES_UNCULLED
     for column in np.flatnonzero(many).tolist():
-        ours, theirs = (slice(*each.of_column[column : column + 2]) for each in (held, surface))
-        around = *surface.in_column(column), rise[theirs]
-        lift = np.full(ours.stop - ours.start, overlap)
-        spacing = float(np.ptp(around[0][:, :2], axis=0).max()) / _SAMPLES
-        patch_kernels.find_visible(*held.in_column(column), lift, *around, spacing, keep[ours])
-        seen = np.zeros(theirs.stop - theirs.start, np.bool_)
-        patch_kernels.find_visible(*around, *around, spacing, seen)
-        below[theirs] &= seen
-    return held.chosen(keep), below
+        ours, theirs = (slice(*each.of_column[column : column + 2]) for each in (supported, surface))
+        around = RaisedPatches(*surface.in_column(column), rise[theirs])
+        raised = RaisedPatches(*supported.in_column(column), np.full(ours.stop - ours.start, overlap))
+        spacing = float(np.ptp(around.points[:, :2], axis=0).max()) / _SAMPLES
+        kernels.find_visible(raised, around, spacing, keep[ours])
+        visible = np.zeros(theirs.stop - theirs.start, np.bool_)
+        kernels.find_visible(around, around, spacing, visible)
+        below[theirs] &= visible
+    return supported.chosen(keep), below

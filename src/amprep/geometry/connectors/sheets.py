@@ -1,40 +1,43 @@
-"""Sheets without thickness: where they run up from red squares to the faces they hold."""
+"""Raise walls without thickness from red squares to the overhangs above them."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from amprep.arrays import Floats, Int64s, MeshArrays
-from amprep.geometry.connectors.columns import ConnectorColumns, Patches
+from amprep.geometry.connectors.columns import ConnectorColumns
 from amprep.geometry.connectors.connect import find_covered
 from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import merge_vertices
+from amprep.kernels.meshes.patches import Patches
 
 _SHORTEST = 1e-4
-"""mm; pieces of sheet shorter than that are left out."""
+"""Length (mm) in plan below which pieces of a wall are left out."""
 
 
 def raise_sheets(
     columns: ConnectorColumns,
     column: Int64s,
     segments: Floats,
-    held: Patches,
+    supported: Patches,
     surface: Patches,
     *,
     overlap: float,
 ) -> MeshArrays:
-    """Return upright sheets over segments in plan, from the red square up to the held faces and into them.
+    """Return vertical walls over segments in plan, from the red square up to the supported faces and into them.
 
     Parameters
     ----------
+    columns
+        All columns.
     column, segments
-        ``(k,)`` and ``(k, 2, 2)`` mm: which column each segment belongs to, and its ends.
-    held, surface, overlap
+        ``(k,)`` column of each segment, and ``(k, 2, 2)`` its ends in plan, mm.
+    supported, surface, overlap
         As for `amprep.geometry.connectors.connect.connect`.
     """
-    covered = find_covered(held, surface)[column]
-    pieces = [_pieces(segments, column, held, np.flatnonzero(~covered))]
-    wanted = _pieces(segments, column, held, np.flatnonzero(covered))
+    covered = find_covered(supported, surface)[column]
+    pieces = [_pieces(segments, column, supported, np.flatnonzero(~covered))]
+    wanted = _pieces(segments, column, supported, np.flatnonzero(covered))
     blocking = _pieces(segments, column, surface, np.flatnonzero(covered))
     for index in np.flatnonzero(covered):
         pieces.append(_lowest(wanted[wanted[:, 0] == index], blocking[blocking[:, 0] == index]))
@@ -42,12 +45,12 @@ def raise_sheets(
 
 
 def _pieces(segments: Floats, column: Int64s, patches: Patches, chosen: Int64s) -> Floats:
-    """Cut segments by the outlines of the patches in their columns.
+    """Clip segments to the outlines of the patches in their columns (Cyrus and Beck 1978).
 
     Returns
     -------
     pieces
-        ``(n, 5)`` segment, where the piece begins and ends on it (0 to 1), and the patch's height there, mm.
+        ``(n, 5)`` segment, parameters (0 to 1) at which the piece begins and ends, and heights of the patch there, mm.
     """
     counts = np.diff(patches.of_column)[column[chosen]]
     segment = np.repeat(chosen, counts)
@@ -83,7 +86,7 @@ def _pieces(segments: Floats, column: Int64s, patches: Patches, chosen: Int64s) 
 
 
 def _lowest(wanted: Floats, blocking: Floats) -> Floats:
-    """Keep of the wanted pieces of one segment what lies below everything else over it."""
+    """Return the parts of the wanted pieces of one segment that nothing is below."""
     bounds = np.unique(np.concatenate([wanted[:, 1:3].ravel(), blocking[:, 1:3].ravel()]))
     found = []
     for begin, end in zip(bounds[:-1], bounds[1:], strict=True):
@@ -98,19 +101,19 @@ def _lowest(wanted: Floats, blocking: Floats) -> Floats:
 
 
 def _heights(pieces: Floats, place: float) -> Floats:
-    """Heights of the pieces at a place on the segment, ``inf`` of those that do not reach there."""
+    """Return the heights of pieces at a parameter of the segment, infinity for pieces that do not contain it."""
     reaches = (pieces[:, 1] <= place) & (place <= pieces[:, 2])
     heights = np.array([_height_at(piece, place) for piece in pieces])
     return np.where(reaches, heights, np.inf) if len(pieces) else heights
 
 
 def _height_at(piece: Floats, place: float) -> float:
-    share = (place - piece[1]) / (piece[2] - piece[1])
-    return float(piece[3] + share * (piece[4] - piece[3]))
+    fraction = (place - piece[1]) / (piece[2] - piece[1])
+    return float(piece[3] + fraction * (piece[4] - piece[3]))
 
 
 def _sheets(pieces: Floats, base: Floats, segments: Floats, overlap: float) -> MeshArrays:
-    """Return two triangles for each piece."""
+    """Return the walls below pieces, two triangles each."""
     index = pieces[:, 0].astype(np.int64)
     start, along = segments[index, 0], segments[index, 1] - segments[index, 0]
     corners = []
@@ -124,7 +127,7 @@ def _sheets(pieces: Floats, base: Floats, segments: Floats, overlap: float) -> M
 
 
 def plan_segments(points: Floats, triangles: Int64s) -> Floats:
-    """Return the sides of a template's triangles that lie in its lower square, in plan, ``(k, 2, 2)``."""
+    """Return the edges of a template in the bottom of the unit cube, in plan, ``(k, 2, 2)``."""
     level = np.abs(points[:, 2]) < 1e-9
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides = np.unique(np.sort(sides[level[sides].all(axis=1)], axis=1), axis=0)
@@ -132,7 +135,7 @@ def plan_segments(points: Floats, triangles: Int64s) -> Floats:
 
 
 def join_sheets(sheets: Sequence[MeshArrays]) -> MeshArrays:
-    """Put sheets together: vertices at the same place become one, triangles that are there twice are once."""
+    """Join walls: merge equal vertices, drop degenerate triangles, and keep one of equal triangles."""
     counts = np.cumsum([0] + [len(points) for points, _ in sheets])
     points = np.vstack([points for points, _ in sheets])
     triangles = np.vstack([each + first for (_, each), first in zip(sheets, counts[:-1], strict=True)])

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.connectors.columns import ConnectorColumns, Patches, clip_to_columns
+from amprep.geometry.connectors.columns import ConnectorColumns, clip_to_columns
+from amprep.kernels.meshes.patches import Patches
 
 _LEAST = 1e-3
 """Least fraction of a cell that contact must cover; smaller contact counts only if its column has none larger."""

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.topology import drop_unused_vertices
-from amprep.kernels.meshes import clip_columns as kernels
+from amprep.kernels.meshes.welding import label_rows
 
 WELD_LATTICE = 1e-4
 """mm; cells that conform agree to about 1e-12 mm, a build file to 3e-5 mm, the finest wall is far thicker."""
@@ -20,7 +20,7 @@ def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Int64s, int]:
     """Number equal rows of `rows` ``(n, 3)`` in order of first appearance: labels ``(n,)`` and their count."""
     table = np.full(1 << (2 * len(rows) + 1).bit_length(), -1, np.int64)
     label = np.empty(len(rows), np.int64)
-    count = kernels.label_rows(np.ascontiguousarray(rows, np.int64), table, label)
+    count = label_rows(np.ascontiguousarray(rows, np.int64), table, label)
     return label, int(count)
 
 

@@ -1,4 +1,4 @@
-"""Round beams with balls at their ends as arrays: points on them, what carries what, and where they may not be."""
+"""Round beams with spherical ends as arrays: balls along them, penetration into meshes, connection to the plate."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -13,11 +13,11 @@ _AXES = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3, indexing="ij"), axis=-1).r
 DIRECTIONS: Floats = _AXES[np.abs(_AXES).any(axis=1)] / np.linalg.norm(
     _AXES[np.abs(_AXES).any(axis=1)], axis=1, keepdims=True
 )
-"""``(26, 3)`` unit vectors; no direction is more than 28 degrees from one of them."""
+"""``(26, 3)`` unit vectors; every direction is within 28 degrees of one of them."""
 
 
 def sphere(count: int) -> Floats:
-    """Return points spread evenly over the unit sphere, ``(count, 3)``, by the golden angle."""
+    """Return points distributed evenly on the unit sphere, ``(count, 3)``, by the golden angle."""
     z = 1.0 - 2.0 * (np.arange(count) + 0.5) / count
     angle = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
     flat = np.sqrt(1.0 - z * z)
@@ -25,53 +25,54 @@ def sphere(count: int) -> Floats:
 
 
 _SHELLS = (0.25, 0.5, 0.95)
-"""Shares of a ball's radius at which points are tried: what it touches may be a plate thinner than the ball."""
-
+"""Radii of the test points inside a ball, as fractions of its radius: it may touch a plate thinner than itself."""
 
 _GRID, _MOST_CELLS = 128, 4_000_000
-"""Cells along the longest side of the grid that tells what is near a surface; how many are marked at once."""
+"""Cells along the longest side of the grid that marks what is near a surface, and the most marked at once."""
 
 
 class BeamSamples(NamedTuple):
-    """Places along beams, end to end, at most `step` radii apart.
+    """Balls along beams, from end to end.
 
     Attributes
     ----------
     centres, radii
-        ``(k, 3)`` and ``(k,)`` mm; the balls there make up the beam.
-    strut, share
-        ``(k,)`` of which strut; how far along it, 0 to 1.
+        ``(k, 3)`` and ``(k,)`` mm.
+    strut
+        ``(k,)`` strut of each ball.
+    fraction
+        ``(k,)`` position along the strut, 0 to 1.
     """
 
     centres: Floats
     radii: Floats
     strut: Ints
-    share: Floats
+    fraction: Floats
 
 
 def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> BeamSamples:
-    """Return places along beams, sorted by strut and share.
+    """Return balls along beams, sorted by strut and position.
 
     Parameters
     ----------
     nodes, struts, radii
-        ``(n, 3)`` mm, ``(m, 2)``, ``(m, 2)`` mm.
+        ``(n, 3)`` mm, ``(m, 2)`` indices of nodes, ``(m, 2)`` mm at both ends.
     step
-        Greatest distance of two places, in radii of the thinner end.
+        Largest distance between two balls, in radii of the thinner end.
     """
     start, end = nodes[struts[:, 0]], nodes[struts[:, 1]]
     length = np.linalg.norm(end - start, axis=1)
     count = np.ceil(length / (step * radii.min(axis=1, initial=np.inf))).astype(np.int64) + 1
     strut = np.repeat(np.arange(len(struts)), count)
     place = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
-    share = place / np.maximum(count - 1, 1)[strut]
-    centres = start[strut] + share[:, None] * (end - start)[strut]
-    radius = radii[strut, 0] + share * (radii[strut, 1] - radii[strut, 0])
-    return BeamSamples(centres, radius, strut, share)
+    fraction = place / np.maximum(count - 1, 1)[strut]
+    centres = start[strut] + fraction[:, None] * (end - start)[strut]
+    radius = radii[strut, 0] + fraction * (radii[strut, 1] - radii[strut, 0])
+    return BeamSamples(centres, radius, strut, fraction)
 
 
 def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) -> Bools:
-    """Tell which points lie in a closed mesh with the point `depth` mm below them in it too."""
+    """Tell which points are in a closed mesh together with the point `depth` mm below them."""
     found = inside(points, vertices, triangles)
     within = np.flatnonzero(found)
     found[within] = inside(points[within] - (0.0, 0.0, depth), vertices, triangles)
@@ -81,7 +82,19 @@ def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) ->
 def balls_too_deep(
     centres: Floats, reach: Floats, vertices: Floats, triangles: Ints, depth: float, directions: Floats
 ) -> Bools:
-    """Tell which balls have their centre, or a point at distance `reach` ``(k,)`` of it, `too_deep`."""
+    """Tell which balls have their centre, or a point at distance `reach` from it, too deep in a closed mesh.
+
+    Parameters
+    ----------
+    centres, reach
+        ``(k, 3)`` and ``(k,)`` mm.
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
+    depth
+        Permitted depth, mm, measured vertically as in `too_deep`.
+    directions
+        ``(d, 3)`` unit vectors from the centre to the tested points.
+    """
     found = too_deep(centres, vertices, triangles, depth)
     near = np.flatnonzero(near_surface(centres, float(reach.max(initial=0.0)), vertices, triangles) & ~found)
     for direction in directions:
@@ -92,7 +105,7 @@ def balls_too_deep(
 
 
 def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints) -> Bools:
-    """Tell which points may have a triangle within `reach` mm; of the others it is certain that they have none."""
+    """Tell which points may have a triangle within `reach` mm; all other points have none."""
     near = np.zeros(len(points), np.bool_)
     if not len(triangles) or not len(points):
         return near
@@ -118,11 +131,11 @@ def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints
 
 
 class GroundedBeams(NamedTuple):
-    """What stands: ``(m,)`` struts, ``(t,)`` triangles of the solids; and how many pieces hang in the air."""
+    """Which struts ``(m,)`` and triangles of solids ``(t,)`` are connected to the plate; number of floating pieces."""
 
     struts: Bools
     triangles: Bools
-    hanging: int
+    floating: int
 
 
 def find_grounded(
@@ -133,14 +146,18 @@ def find_grounded(
     triangles: Ints,
     rests: Callable[[Floats], Bools],
 ) -> GroundedBeams:
-    """Tell which beams and solids stand on the plate, or on one another down to it.
+    """Find the beams and solids that are connected to the plate, directly or through one another.
+
+    The connected components of a graph with a vertex for every node, every piece of the solids, and the plate.
 
     Parameters
     ----------
+    nodes, struts, radii
+        Beams: ``(n, 3)`` mm, ``(m, 2)`` indices of nodes, ``(m, 2)`` mm at both ends.
     points, triangles
-        Closed solids that beams may carry and stand on, ``(p, 3)`` mm and ``(t, 3)``; any number of pieces.
+        Closed solids of any number of pieces, ``(p, 3)`` mm and ``(t, 3)``.
     rests
-        Tells which of the vertices of the solids rest on something, ``(p,)``; the plate for one.
+        Function that tells which vertices of the solids rest on the plate or on a part, ``(p,)``.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -158,20 +175,20 @@ def find_grounded(
     second = np.concatenate([struts[:, 1], np.full(len(low) + len(standing), plate), len(nodes) + numbers])
     graph = coo_array((np.ones(len(first), np.int8), (first, second)), shape=(plate + 1, plate + 1))
     label = connected_components(graph, directed=False)[1]
-    stands = label == label[plate]
-    loose = np.concatenate([used, len(nodes) + np.arange(pieces)])
-    hanging = len(np.unique(label[loose[~stands[loose]]]))
-    return GroundedBeams(stands[struts[:, 0]], stands[len(nodes) + piece], hanging)
+    grounded = label == label[plate]
+    every = np.concatenate([used, len(nodes) + np.arange(pieces)])
+    floating = len(np.unique(label[every[~grounded[every]]]))
+    return GroundedBeams(grounded[struts[:, 0]], grounded[len(nodes) + piece], floating)
 
 
 def _touches(nodes: Floats, radius: Floats, used: Ints, points: Floats, triangles: Ints) -> Ints:
-    """Return the nodes whose balls reach into a piece."""
+    """Return the nodes whose balls enter a piece of the solids."""
     local, corners = np.unique(triangles, return_inverse=True)
     own, reach = points[local], radius[used, None]
     near = used[
         ((nodes[used] + reach > own.min(axis=0)) & (nodes[used] - reach < own.max(axis=0))).all(axis=1)
     ]
-    rings = np.vstack([np.zeros((1, 3)), *(share * DIRECTIONS for share in _SHELLS)])
+    rings = np.vstack([np.zeros((1, 3)), *(fraction * DIRECTIONS for fraction in _SHELLS)])
     tried = nodes[near, None] + radius[near, None, None] * rings
     found = inside(tried.reshape(-1, 3), own, corners.reshape(-1, 3).astype(np.int64)).reshape(
         len(near), len(rings)

@@ -1,4 +1,4 @@
-"""Measures where supports touch a part: the part's surface inside them."""
+"""Measure the contact of supports with a part: the surface of the part inside them."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,30 +14,30 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 
-class Contact(NamedTuple):
-    """Area of a part's surface inside supports, mm2, and into how many patches it falls."""
+class ContactArea(NamedTuple):
+    """Area of the surface of a part inside supports, mm2, and the number of its connected patches."""
 
     area: float
     patches: int
 
 
-def measure_contact(support: MeshArrays, part: MeshArrays) -> Contact:
+def measure_contact(support: MeshArrays, part: MeshArrays) -> ContactArea:
     """Return the contact of a closed support with a closed part.
 
-    manifold3d says of each triangle of the intersection which of the two it comes from, so the area is exact.
+    manifold3d records for each triangle of the intersection from which solid it comes, so the area is exact.
     Supports that touch a part without entering it have no contact.
     """
     corners = contact_corners(*(as_manifold(*mesh) for mesh in (support, part)))
     if not len(corners):
-        return Contact(0.0, 0)
+        return ContactArea(0.0, 0)
     points, own = merge_equal_vertices(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
     sides = points[own[:, 1:]] - points[own[:, :1]]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2.0
-    return Contact(float(area), label_shells(own, len(points))[0])
+    return ContactArea(float(area), label_shells(own, len(points))[0])
 
 
 def contact_corners(support: "Manifold", part: "Manifold") -> NDArray[np.float64]:
-    """Return the triangles ``(t, 3, 3)`` mm of the part's surface inside a support, turned as in the part."""
+    """Return the triangles ``(t, 3, 3)`` mm of the surface of a part inside a support, oriented as in the part."""
     two = part.as_original()
     mesh = (support.as_original() ^ two).to_mesh64()
     triangles = np.asarray(mesh.tri_verts, np.int64)

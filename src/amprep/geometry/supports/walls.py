@@ -1,4 +1,4 @@
-"""Walls of parts, all that supports do not hold, and the space sideways of them that supports leave free."""
+"""Walls of parts (faces that supports neither hold nor stand on), and the space beside them that stays free."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,47 +13,52 @@ if TYPE_CHECKING:
 
 
 _LEVEL = 1e-6
-"""Horizontal share of a unit normal below which a face counts as level: it has no side."""
+"""Horizontal component of a unit normal below which a face counts as level."""
 
 _UP = 1e-3
+"""Vertical component of a unit normal above which a face points up."""
 
 _CORNERS = 9
-"""Of the polygon around the half disc that a wall is swept by: at most 2 % farther out than its radius."""
+"""Corners of the polygon around the half disc by which a wall is swept; it exceeds the radius by at most 2 %."""
 
 _MOST_CELLS, _LONGEST, _FINEST = 2_000_000, 2000, 0.5
-"""Cells of a grid over all and along its longest side; mm of a cell."""
+"""Largest number of cells of a grid, in total and along its longest side; least size of a cell, mm."""
 
 
 class PartWalls(NamedTuple):
-    """Faces that look sideways.
+    """Walls of a part.
 
     Attributes
     ----------
     corners
         ``(n, 3, 3)`` mm.
     outward
-        ``(n, 2)`` unit vectors, x and y, out of the part.
+        ``(n, 2)`` unit vectors, horizontal direction out of the part.
     """
 
     corners: Floats
     outward: Floats
 
     def chosen(self, keep: Bools) -> "PartWalls":
-        """Return only the walls that `keep` ``(n,)`` names."""
+        """Return the walls for which `keep` ``(n,)`` is true."""
         return PartWalls(self.corners[keep], self.outward[keep])
 
 
 def walls_of(
     vertices: Floats, triangles: Ints, held: Overhangs, overlap: float, *, stood_on: bool = False
 ) -> PartWalls:
-    """Return all faces of a mesh that are not level, but for what supports run up to.
+    """Return all faces of a mesh that are neither level nor overhangs.
 
     Parameters
     ----------
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
     held
-        Faces of these are no walls; above their edges and tips walls begin `overlap` mm higher.
+        Overhangs; their faces are no walls, and above their edges and tips walls begin `overlap` higher.
+    overlap
+        Depth (mm) to which supports enter the part.
     stood_on
-        Whether supports may stand on the part: then no face that looks up is a wall.
+        Whether supports may stand on the part; then faces that point up are no walls.
     """
     first, second, third = (vertices[triangles[:, i]] for i in range(3))
     normal = np.cross(second - first, third - first)
@@ -74,9 +79,10 @@ def walls_of(
 
 
 def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDArray[np.int64]]:
-    """Cut triangles ``(n, 3, 3)`` off below `overlap` mm above their sharp corners; return them with their owner.
+    """Remove the part of triangles ``(n, 3, 3)`` within `overlap` mm above their sharp corners.
 
-    In between heights are those above the line through both, or the one, sharp corners.
+    Heights are measured from the sharp corner, or from the mean height of two. Returns the remaining
+    triangles and the index of the triangle from which each comes.
     """
     z = corners[:, :, 2]
     base = np.where(sharp, z, 0.0).sum(axis=1) / sharp.sum(axis=1)
@@ -90,8 +96,8 @@ def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDA
             if above[i] >= 0.0:
                 outline.append(triangle[i])
             if above[i] * above[j] < 0.0:
-                share = above[i] / (above[i] - above[j])
-                outline.append(triangle[i] + share * (triangle[j] - triangle[i]))
+                fraction = above[i] / (above[i] - above[j])
+                outline.append(triangle[i] + fraction * (triangle[j] - triangle[i]))
         for i in range(1, len(outline) - 1):
             found.append(np.array([outline[0], outline[i], outline[i + 1]]))
             owner.append(index)
@@ -99,14 +105,14 @@ def _clipped(corners: Floats, sharp: Bools, overlap: float) -> tuple[Floats, NDA
 
 
 class OccupancyGrid(NamedTuple):
-    """The cells of a grid that boxes lie in.
+    """Grid that counts the cells which boxes occupy (three-dimensional summed-area table).
 
     Attributes
     ----------
     origin, side
-        Corner ``(3,)`` of the grid and size of a cell, mm.
+        Least corner ``(3,)`` of the grid and size of a cell, mm.
     before
-        ``(nx + 1, ny + 1, nz + 1)`` how many cells that are taken lie before each corner of the grid, on all axes.
+        ``(nx + 1, ny + 1, nz + 1)`` number of occupied cells below each corner of the grid along all axes.
     """
 
     origin: Floats
@@ -114,9 +120,9 @@ class OccupancyGrid(NamedTuple):
     before: NDArray[np.int64]
 
     def near(self, corners: Floats, distance: float) -> Bools:
-        """Tell which triangles ``(n, 3, 3)`` may have one of the boxes within `distance` mm sideways.
+        """Tell which triangles ``(n, 3, 3)`` may have one of the boxes within `distance` mm horizontally.
 
-        Of the others it is certain that they have none.
+        All other triangles have none.
         """
         aside = np.array([distance, distance, 0.0])
         shape = np.array(self.before.shape) - 1
@@ -131,7 +137,7 @@ class OccupancyGrid(NamedTuple):
 
 
 def occupancy_of(lo: Floats, hi: Floats) -> OccupancyGrid:
-    """Lay a grid over boxes from `lo` to `hi` ``(k, 3)`` mm, and mark the cells that they lie in."""
+    """Return a grid over boxes from `lo` to `hi` ``(k, 3)`` mm with the cells that they occupy."""
     if not len(lo):
         return OccupancyGrid(np.zeros(3), 1.0, np.zeros((2, 2, 2), np.int64))
     origin = lo.min(axis=0)
@@ -152,31 +158,45 @@ def occupancy_of(lo: Floats, hi: Floats) -> OccupancyGrid:
 
 
 def spaces_beside(walls: PartWalls, gap: float) -> list["Manifold"]:
-    """Return the space nearer than `gap` mm to walls on their outer side, measured sideways; one solid for each."""
+    """Return for each wall the space on its outer side within the horizontal distance `gap` mm.
+
+    The sweep of a triangle by a half disc is the convex hull of its corners plus those of the disc.
+    """
     from manifold3d import Manifold
 
     angle = np.linspace(-np.pi / 2, np.pi / 2, _CORNERS)
     radius = gap / np.cos(np.pi / (2 * (_CORNERS - 1)))
-    fan = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    half_disc = radius * np.column_stack([np.cos(angle), np.sin(angle)])
     along = np.column_stack([-walls.outward[:, 1], walls.outward[:, 0]])
-    moves = walls.outward[:, None] * fan[:, :1] + along[:, None] * fan[:, 1:]
-    points = np.repeat(walls.corners[:, None], len(fan), axis=1)
+    moves = walls.outward[:, None] * half_disc[:, :1] + along[:, None] * half_disc[:, 1:]
+    points = np.repeat(walls.corners[:, None], len(half_disc), axis=1)
     points[..., :2] += moves[:, :, None]
     return [Manifold.hull_points(np.ascontiguousarray(each.reshape(-1, 3))) for each in points]
 
 
 def wall_distance(points: Floats, walls: PartWalls, reach: float, slack: float) -> tuple[Floats, Floats]:
-    """Return how far each point ``(n, 3)`` is from the nearest wall on whose outer side it lies, sideways.
+    """Return the horizontal distance of each point to the nearest wall on whose outer side it is.
 
-    Points less than `slack` mm out of a wall's plane are on neither side of it, and walls end `slack` before their
-    lowest and highest corner: what holds the face below may be flush with the wall.
+    A support below a face may be flush with the wall next to it. Therefore points within `slack` of the plane of a wall
+    are on neither side of it, and walls end `slack` above their lowest and below their highest corner.
+
+    Parameters
+    ----------
+    points
+        ``(n, 3)`` mm.
+    walls
+        The walls.
+    reach
+        Largest distance that is searched, mm.
+    slack
+        Tolerance, mm.
 
     Returns
     -------
     away, foot
-        ``(n,)`` mm, infinite where there is none within `reach`; the nearest place on that wall ``(n, 3)``.
+        ``(n,)`` distance, mm, infinite where no wall is within reach; ``(n, 3)`` nearest point on the wall.
     """
-    from amprep.kernels.meshes.walls import nearest_walls
+    from amprep.kernels.meshes.walls import PointGrid, nearest_walls
 
     away, foot = np.full(len(points), np.inf), points.copy()
     if not len(points) or not len(walls.corners):
@@ -191,10 +211,8 @@ def wall_distance(points: Floats, walls: PartWalls, reach: float, slack: float) 
     first = np.searchsorted(square[order], np.arange(nx * ny + 1))
     shift = np.append(corner, 0.0)
     found, place = away.copy(), np.zeros((len(points), 2))
-    corners = walls.corners - shift
-    nearest_walls(
-        points[order] - shift, first, side, (ny, nx), corners, walls.outward, reach, slack, found, place
-    )
+    grid = PointGrid(points[order] - shift, first, side, (ny, nx))
+    nearest_walls(grid, walls.corners - shift, walls.outward, reach, slack, found, place)
     away[order] = found
     foot[order, :2] = place + corner
     return away, foot

@@ -1,60 +1,56 @@
-"""Welds rows of integers and clips triangles to the columns above red squares."""
+"""Clip triangles that face down to the columns above red squares."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from amprep.arrays import Floats, Int64s
+
 MOST_CORNERS = 16
-"""A triangle clipped by six planes has at most nine corners."""
+"""Size of the work arrays; a triangle clipped by six planes has at most nine corners."""
+
+# Strategy. Each triangle is clipped to each column below whose square it may be (Sutherland and Hodgman 1974,
+# doi 10.1145/360767.360802): against the four sides, the bottom and the top of the column. A point on an edge is
+# computed from the ends of the edge in a fixed order, so two triangles that share the edge get the same point to the
+# last bit, and the patches of a closed surface fit together without gaps. The time is proportional to the number of
+# squares that the boxes of the triangles cover.
 
 
-@njit(cache=True)
-def label_rows(rows, table, label):
-    """Number equal rows in order of first appearance, in time linear in their number.
+class ColumnIndex(NamedTuple):
+    """Columns and where they are.
 
-    Parameters
+    Attributes
     ----------
-    rows
-        ``(n, 3)`` int64.
-    table
-        Work array of -1, int64; its length is a power of two above 2 n.
-    label
-        ``(n,)`` int64, written in place.
-
-    Returns
-    -------
-    count
-        How many different rows there are.
+    grid
+        ``(3,)`` origin x, origin y and pitch, mm.
+    shape
+        Numbers of squares (ny, nx).
+    square_start, columns
+        Compressed rows: the columns above square ``y * nx + x`` are ``columns[square_start[s] : square_start[s + 1]]``.
+    lo, hi
+        ``(m, 3)`` corners of the columns, mm.
     """
-    mask = np.int64(len(table) - 1)
-    count = 0
-    for i in range(len(rows)):
-        a, b, c = rows[i, 0], rows[i, 1], rows[i, 2]
-        # folded to 32 bits each, so that no product overflows
-        mixed = ((a ^ (a >> 32)) & 0xFFFFFFFF) * 73856093
-        mixed ^= ((b ^ (b >> 32)) & 0xFFFFFFFF) * 19349663
-        mixed ^= ((c ^ (c >> 32)) & 0xFFFFFFFF) * 83492791
-        slot = (mixed ^ (mixed >> 29) ^ (mixed >> 13)) & mask
-        while True:
-            j = table[slot]
-            if j < 0:
-                table[slot] = i
-                label[i] = count
-                count += 1
-                break
-            if rows[j, 0] == a and rows[j, 1] == b and rows[j, 2] == c:
-                label[i] = label[j]
-                break
-            slot = (slot + 1) & mask
-    return count
+
+    grid: Floats
+    shape: tuple[int, int]
+    square_start: Int64s
+    columns: Int64s
+    lo: Floats
+    hi: Floats
+
+
+class PatchBuffers(NamedTuple):
+    """Output arrays: `points` ``(p, 3)``, `start` ``(n + 1,)`` and `owner` ``(n, 2)`` as in `Patches`."""
+
+    points: Floats
+    start: Int64s
+    owner: Int64s
 
 
 @njit(cache=True)
-def _clip(points, count, axis, bound, above, out):
-    """Keep the part of a polygon where its coordinate on `axis` is at least (or at most) `bound`.
-
-    The point on an edge is computed from its ends in a fixed order, so that both triangles of an edge get
-    the same one, bit for bit.
-    """
+def _clip(points: Floats, count: int, axis: int, bound: float, above: bool, out: Floats) -> int:
+    """Write the part of a polygon on one side of the plane ``axis = bound`` to `out`; return its number of corners."""
     kept = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
@@ -66,35 +62,38 @@ def _clip(points, count, axis, bound, above, out):
             kept += 1
         if a_in != b_in:
             low, high = (i, j) if a < b else (j, i)
-            share = (bound - points[low, axis]) / (points[high, axis] - points[low, axis])
+            fraction = (bound - points[low, axis]) / (points[high, axis] - points[low, axis])
             for k in range(3):
-                out[kept, k] = points[low, k] + share * (points[high, k] - points[low, k])
+                out[kept, k] = points[low, k] + fraction * (points[high, k] - points[low, k])
             out[kept, axis] = bound
             kept += 1
     return kept
 
 
 @njit(cache=True)
-def clip_to_columns(corners, grid, shape, square_start, square_column, lo, hi, slack, points, start, owner):
-    """Cut triangles that look down into the convex patches that lie in columns.
+def _twice_area(points: Floats, count: int) -> float:
+    """Return twice the signed area of a polygon in plan."""
+    area = 0.0
+    for i in range(1, count - 1):
+        area += (points[i, 0] - points[0, 0]) * (points[i + 1, 1] - points[0, 1])
+        area -= (points[i, 1] - points[0, 1]) * (points[i + 1, 0] - points[0, 0])
+    return area
+
+
+@njit(cache=True)
+def clip_to_columns(corners: Floats, index: ColumnIndex, slack: float, out: PatchBuffers) -> int:
+    """Clip triangles that face down to the columns of an index.
 
     Parameters
     ----------
     corners
-        ``(t, 3, 3)`` float64 mm; triangles that do not look down are skipped.
-    grid
-        origin x, origin y, pitch.
-    shape
-        Numbers of squares (ny, nx).
-    square_start, square_column
-        Columns over each square, as compressed rows: square ``y * nx + x``.
-    lo, hi
-        ``(m, 3)`` corners of the columns.
+        ``(t, 3, 3)`` mm; triangles that do not face down are skipped.
+    index
+        The columns.
     slack
-        mm by which columns reach further up and down.
-    points, start, owner
-        ``(p, 3)``, ``(n + 1,)`` and ``(n, 2)``: corners of the patches, counter-clockwise seen from above; where
-        each patch's corners start; its column and its triangle. Written in place.
+        Length (mm) by which columns are extended upwards and downwards.
+    out
+        Patches, written in place; patches without area are left out.
 
     Returns
     -------
@@ -102,9 +101,10 @@ def clip_to_columns(corners, grid, shape, square_start, square_column, lo, hi, s
         Number of patches, or -1 when the arrays are too short.
     """
     a, b = np.empty((MOST_CORNERS, 3)), np.empty((MOST_CORNERS, 3))
-    ny, nx = shape
+    grid, lo, hi = index.grid, index.lo, index.hi
+    ny, nx = index.shape
     count, used = 0, 0
-    start[0] = 0
+    out.start[0] = 0
     for t in range(len(corners)):
         triangle = corners[t]
         turn = (triangle[1, 0] - triangle[0, 0]) * (triangle[2, 1] - triangle[0, 1]) - (
@@ -115,11 +115,11 @@ def clip_to_columns(corners, grid, shape, square_start, square_column, lo, hi, s
         left, right = np.min(triangle[:, 0]) - grid[0], np.max(triangle[:, 0]) - grid[0]
         front, back = np.min(triangle[:, 1]) - grid[1], np.max(triangle[:, 1]) - grid[1]
         bottom, top = np.min(triangle[:, 2]), np.max(triangle[:, 2])
-        # one square more on each side, for what rounding puts on the other side of a line
+        # one more square on each side, because rounding may move a corner across a grid line
         for y in range(max(0, int(front / grid[2]) - 1), min(ny - 1, int(back / grid[2]) + 1) + 1):
             for x in range(max(0, int(left / grid[2]) - 1), min(nx - 1, int(right / grid[2]) + 1) + 1):
-                for entry in range(square_start[y * nx + x], square_start[y * nx + x + 1]):
-                    column = square_column[entry]
+                for entry in range(index.square_start[y * nx + x], index.square_start[y * nx + x + 1]):
+                    column = index.columns[entry]
                     low, high = lo[column, 2] - slack, hi[column, 2] + slack
                     if bottom > high or top < low:
                         continue
@@ -129,19 +129,15 @@ def clip_to_columns(corners, grid, shape, square_start, square_column, lo, hi, s
                     n = _clip(a, n, 1, hi[column, 1], False, b)
                     n = _clip(b, n, 2, low, True, a)
                     n = _clip(a, n, 2, high, False, b)
-                    area = 0.0
-                    for i in range(1, n - 1):
-                        area += (b[i, 0] - b[0, 0]) * (b[i + 1, 1] - b[0, 1])
-                        area -= (b[i, 1] - b[0, 1]) * (b[i + 1, 0] - b[0, 0])
-                    if n < 3 or area > -1e-10:
+                    if n < 3 or _twice_area(b, n) > -1e-10:
                         continue
-                    if used + n > len(points) or count >= len(owner):
+                    if used + n > len(out.points) or count >= len(out.owner):
                         return -1
                     for i in range(n):
                         for k in range(3):
-                            points[used + n - 1 - i, k] = b[i, k]
+                            out.points[used + n - 1 - i, k] = b[i, k]
                     used += n
-                    owner[count, 0], owner[count, 1] = column, t
+                    out.owner[count, 0], out.owner[count, 1] = column, t
                     count += 1
-                    start[count] = used
+                    out.start[count] = used
     return count

@@ -1,33 +1,78 @@
-"""How far points are from walls sideways: in the horizontal plane through each point."""
+"""Horizontal distance of points to the walls of parts."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
 
+# Strategy. Points are sorted by the squares of a grid in plan, so each wall visits only the points near its box. The
+# horizontal plane through a point intersects a triangle in a segment, and the distance in that plane is the distance
+# of the point to the segment.
+
+
+class PointGrid(NamedTuple):
+    """Points sorted by the squares of a grid in plan that begins at 0.
+
+    Attributes
+    ----------
+    points
+        ``(n, 3)`` mm.
+    first
+        ``(ny * nx + 1,)``: the points of square ``s = y * nx + x`` are ``points[first[s] : first[s + 1]]``.
+    side
+        Side of a square, mm.
+    shape
+        Numbers of squares (ny, nx).
+    """
+
+    points: Floats
+    first: Int64s
+    side: float
+    shape: tuple[int, int]
+
+
+@njit(cache=True)
+def _section(triangle: Floats, z: float) -> tuple[int, float, float, float, float]:
+    """Return the number of edges that cross the height `z`, and the ends of the section: ax, ay, bx, by."""
+    found, ax, ay, bx, by = 0, 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        j = (i + 1) % 3
+        low, high = triangle[i, 2], triangle[j, 2]
+        if (low <= z < high) or (high <= z < low):
+            fraction = (z - low) / (high - low)
+            bx, by = ax, ay
+            ax = triangle[i, 0] + fraction * (triangle[j, 0] - triangle[i, 0])
+            ay = triangle[i, 1] + fraction * (triangle[j, 1] - triangle[i, 1])
+            found += 1
+    return found, ax, ay, bx, by
+
 
 @njit(cache=True)
 def nearest_walls(
-    points: Floats,
-    first: Int64s,
-    side: float,
-    shape: tuple[int, int],
-    corners: Floats,
-    outward: Floats,
-    reach: float,
-    slack: float,
-    away: Floats,
-    foot: Floats,
+    grid: PointGrid, corners: Floats, outward: Floats, reach: float, slack: float, away: Floats, foot: Floats
 ) -> None:
-    """Find for each point the nearest wall within `reach` on whose outer side it lies, in its horizontal plane.
+    """Find for each point the nearest wall on whose outer side it is, in the horizontal plane of the point.
 
-    Points less than `slack` out of a wall's plane are on neither side, within `slack` of its ends above or below it.
+    Points within `slack` of the plane of a wall are on neither side of it; points above or below a wall, or within
+    `slack` of its lowest or highest corner in height, do not see it.
 
-    Points ``(n, 3)`` are sorted by square ``y * nx + x`` of a grid of `side` mm from 0; `first` says where those
-    of each square begin. `away` ``(n,)`` comes in as infinity and holds the distance afterwards, `foot` ``(n, 2)``
-    the nearest place on the wall. Walls are triangles ``(m, 3, 3)`` with an outward direction ``(m, 2)`` each.
+    Parameters
+    ----------
+    grid
+        The points.
+    corners, outward
+        ``(m, 3, 3)`` mm and ``(m, 2)`` unit vectors, triangles of the walls and their horizontal direction outwards.
+    reach
+        Largest distance that is searched, mm.
+    slack
+        Tolerance, mm.
+    away, foot
+        ``(n,)`` distance, infinity on entry, and ``(n, 2)`` nearest point on the wall; written in place.
     """
-    ny, nx = shape
+    ny, nx = grid.shape
+    side = grid.side
     for t in range(corners.shape[0]):
         x_low, x_high = corners[t, :, 0].min() - reach, corners[t, :, 0].max() + reach
         y_low, y_high = corners[t, :, 1].min() - reach, corners[t, :, 1].max() + reach
@@ -36,20 +81,11 @@ def nearest_walls(
             for ix in range(
                 max(int(np.floor(x_low / side)), 0), min(int(np.floor(x_high / side)), nx - 1) + 1
             ):
-                for p in range(first[iy * nx + ix], first[iy * nx + ix + 1]):
-                    x, y, z = points[p]
+                for p in range(grid.first[iy * nx + ix], grid.first[iy * nx + ix + 1]):
+                    x, y, z = grid.points[p]
                     if z < z_low or z > z_high or x < x_low or x > x_high or y < y_low or y > y_high:
                         continue
-                    found, ax, ay, bx, by = 0, 0.0, 0.0, 0.0, 0.0
-                    for i in range(3):
-                        j = (i + 1) % 3
-                        low, high = corners[t, i, 2], corners[t, j, 2]
-                        if (low <= z < high) or (high <= z < low):
-                            share = (z - low) / (high - low)
-                            bx, by = ax, ay
-                            ax = corners[t, i, 0] + share * (corners[t, j, 0] - corners[t, i, 0])
-                            ay = corners[t, i, 1] + share * (corners[t, j, 1] - corners[t, i, 1])
-                            found += 1
+                    found, ax, ay, bx, by = _section(corners[t], z)
                     if found < 2:
                         continue
                     ux, uy = bx - ax, by - ay

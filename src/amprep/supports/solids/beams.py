@@ -1,10 +1,11 @@
-"""Beams of one support group: kept out of parts, pruned to what stands, with a mesh for readers that know none."""
+"""Clip the beams of a support group at parts and drop what floats; add a mesh for readers without beams."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats
+from amprep.arrays import Bools, Floats, Int64s, Ints, MeshArrays
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import as_manifold
@@ -30,21 +31,21 @@ from amprep.model import (
     Template,
 )
 
-_WIDER = 1.15
-"""Points are tried this much farther out than a beam reaches: it may bulge between two of them."""
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
-_ROUND = 1.06
-"""The same for many points."""
+_FACTOR_26, _FACTOR_200 = 1.15, 1.06
+"""Factors on the radius of a ball that is tested at 26 or 200 points: it may extend farther between two points."""
 
-_PLACES = 0.25
-"""Radii between two balls at which beams are tried."""
+_STEP = 0.25
+"""Distance between the balls at which beams are tested, in radii."""
 
-_FINE = sphere(200)
+_DIRECTIONS_200 = sphere(200)
 
 _SLIVER = 1e-3
-"""mm3; a hanging crumb of a connector smaller than that is left out without a word."""
+"""Volume (mm3) below which a floating piece of a connector is dropped without a message."""
 
-_SIDEWAYS = DIRECTIONS[np.abs(DIRECTIONS[:, 2]) < 1e-9]
+_HORIZONTAL = DIRECTIONS[np.abs(DIRECTIONS[:, 2]) < 1e-9]
 
 
 def clip_beams(
@@ -56,37 +57,45 @@ def clip_beams(
     overlap: float,
     gap: float,
 ) -> Beams:
-    """Shorten beams that reach into parts, too near to their walls, or out of bounds; drop those that vanish.
+    """Shorten beams that enter parts, come too near to their walls, or leave the build volume.
 
-    As for connectors, depth is measured upwards. Of each beam the longest clear stretch stays; beams of one
-    group are given.
+    Of each beam the longest clear stretch is kept; a beam without one is dropped. As for connectors, depth is measured
+    vertically.
 
     Parameters
     ----------
+    beams
+        Beams of one group.
+    parts
+        Placed parts of the build.
     held
-        Parts that may be entered by `overlap` mm; the others not at all.
+        Parts that may be entered by the overlap; other parts must not be entered.
+    space
+        Build volume with forbidden zones.
+    overlap
+        Permitted depth, mm.
     gap
-        mm sideways.
+        XY distance, mm.
     """
     if not len(beams.struts):
         return beams
-    places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii, _PLACES)
+    places = sample(beams.nodes, beams.struts.astype(np.int64), beams.radii, _STEP)
     blocked = _out_of_bounds(places, space)
     for index, placed in enumerate(parts):
         if not placed.part.is_solid:
             continue
         mesh, depth = placed.mesh, overlap if index in held else CONTACT_TOLERANCE
         arrays = mesh.arrays
-        blocked |= balls_too_deep(places.centres, _WIDER * places.radii, *arrays, depth, DIRECTIONS)
-        # edges and fins of a part may come between those few points
-        blocked |= balls_too_deep(places.centres, _ROUND * places.radii, *arrays, depth, _FINE)
+        blocked |= balls_too_deep(places.centres, _FACTOR_26 * places.radii, *arrays, depth, DIRECTIONS)
+        # edges and thin walls of a part may fit between 26 points
+        blocked |= balls_too_deep(places.centres, _FACTOR_200 * places.radii, *arrays, depth, _DIRECTIONS_200)
         if gap > 0.0:
-            blocked |= balls_too_deep(places.centres, places.radii + gap, *arrays, depth + gap, _SIDEWAYS)
-    return _clear_stretches(beams, places.strut, places.share, blocked)
+            blocked |= balls_too_deep(places.centres, places.radii + gap, *arrays, depth + gap, _HORIZONTAL)
+    return _clear_stretches(beams, places.strut, places.fraction, blocked)
 
 
 def _out_of_bounds(places: BeamSamples, space: BuildVolume) -> Bools:
-    """Tell which balls reach into a forbidden zone or out of a round build volume; a box cuts them off."""
+    """Tell which balls enter a forbidden zone or leave a cylindrical build volume; readers clip beams at a box."""
     centres, radii = places.centres, places.radii
     found = np.zeros(len(centres), np.bool_)
     if space.shape == "cylinder":
@@ -98,8 +107,8 @@ def _out_of_bounds(places: BeamSamples, space: BuildVolume) -> Bools:
     return found
 
 
-def _clear_stretches(beams: Beams, strut: np.ndarray, share: Floats, blocked: Bools) -> Beams:
-    """Return beams from the first to the last place of their longest run of clear places."""
+def _clear_stretches(beams: Beams, strut: Ints, fraction: Floats, blocked: Bools) -> Beams:
+    """Return each beam from the first to the last ball of its longest run of clear balls."""
     cut = np.unique(strut[blocked])
     whole = np.ones(len(beams.struts), np.bool_)
     whole[cut] = False
@@ -111,7 +120,7 @@ def _clear_stretches(beams: Beams, strut: np.ndarray, share: Floats, blocked: Bo
         run = _longest_run(~blocked[first:last])
         if run is None:
             continue
-        begin, end = share[first + run[0]], share[first + run[1]]
+        begin, end = fraction[first + run[0]], fraction[first + run[1]]
         start, tip = beams.nodes[beams.struts[each]]
         ends = np.array([begin, end])[:, None]
         added = np.array([count, count + 1])
@@ -130,7 +139,7 @@ def _clear_stretches(beams: Beams, strut: np.ndarray, share: Floats, blocked: Bo
 
 
 def _longest_run(clear: Bools) -> tuple[int, int] | None:
-    """Return the first and last place of the longest run of two or more, or None."""
+    """Return the first and last index of the longest run of at least two, or None."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int8)))
     runs = edges.reshape(-1, 2)
     if not len(runs):
@@ -147,16 +156,22 @@ def lattice_of(
     boxes: tuple[Floats, Floats],
     space: BuildVolume,
 ) -> Lattice | None:
-    """Return what stands of beams and of the solids that they carry; None when they do not carry enough.
+    """Return the beams and solids that are connected to the plate; None when solids of the whole body would be lost.
 
     Parameters
     ----------
+    beams
+        Clipped beams of one group.
+    solids
+        Connectors and bases of the group.
     whole
-        The same body as a solid: what it has of the solids must not get lost.
+        The same support with struts as solids.
     coarse
-        Stands in for `whole` in the file, if given.
+        Mesh that replaces `whole` in the file, for readers without beams; None to keep `whole`.
     boxes
-        Least and greatest corners of the boxes in which feet on parts end.
+        Least and greatest corners ``(k, 3)`` mm of the boxes in which feet on parts end.
+    space
+        Build volume, which clips the beams.
     """
     points, triangles = _arrays(solids)
     struts = beams.struts.astype(np.int64)
@@ -167,27 +182,27 @@ def lattice_of(
             found |= ((vertices >= low) & (vertices <= high)).all(axis=1)
         return np.asarray(found)
 
-    stands = find_grounded(beams.nodes, struts, beams.radii, points, triangles, rests)
-    if not stands.struts.any() or _loses(stands, points, triangles, whole):
+    grounded = find_grounded(beams.nodes, struts, beams.radii, points, triangles, rests)
+    if not grounded.struts.any() or _loses(grounded, points, triangles, whole):
         return None
-    kept = struts[stands.struts]
+    kept = struts[grounded.struts]
     used, local = np.unique(kept, return_inverse=True)
     return Lattice(
         np.round(beams.nodes[used], 6),
         local.reshape(-1, 2).astype(np.int32),
-        np.round(beams.radii[stands.struts], 6),
-        Mesh(*drop_unused_vertices(points, triangles[stands.triangles])),
+        np.round(beams.radii[grounded.struts], 6),
+        Mesh(*drop_unused_vertices(points, triangles[grounded.triangles])),
         whole if coarse is None else coarse,
         np.array([np.zeros(3), space.size]),
     )
 
 
-def _loses(stands: GroundedBeams, points: Floats, triangles: np.ndarray, whole: Mesh) -> bool:
-    """Tell whether solids hang on nothing that the whole body has: as one solid, something carries them there."""
-    hanging = triangles[~stands.triangles]
-    if not len(hanging):
+def _loses(grounded: GroundedBeams, points: Floats, triangles: Int64s, whole: Mesh) -> bool:
+    """Tell whether solids float beside beams that are part of the whole body, where struts are solids."""
+    floating = triangles[~grounded.triangles]
+    if not len(floating):
         return False
-    lost = as_manifold(*drop_unused_vertices(points, hanging))
+    lost = as_manifold(*drop_unused_vertices(points, floating))
     return any(
         piece.volume() > _SLIVER
         and bool(inside(_middles(piece), whole.vertices, whole.triangles.astype(np.int64)).any())
@@ -195,23 +210,23 @@ def _loses(stands: GroundedBeams, points: Floats, triangles: np.ndarray, whole: 
     )
 
 
-def _middles(piece: object) -> Floats:
-    """Return points a little inside the faces of a solid."""
-    mesh = piece.to_mesh64()  # type: ignore[attr-defined]
+def _middles(piece: "Manifold") -> Floats:
+    """Return points slightly inside the faces of a solid."""
+    mesh = piece.to_mesh64()
     corners = np.array(mesh.vert_properties[:, :3], np.float64)[np.array(mesh.tri_verts, np.int64)]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]
     return np.asarray(corners.mean(axis=1) - CONTACT_TOLERANCE * normal)
 
 
-def _arrays(mesh: Mesh | None) -> tuple[Floats, np.ndarray]:
+def _arrays(mesh: Mesh | None) -> MeshArrays:
     if mesh is None:
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
     return mesh.arrays
 
 
-def of_group(cells: Cells, group: int) -> Beams:
-    """Return the beams of one group, with the nodes they use."""
+def beams_of_group(cells: Cells, group: int) -> Beams:
+    """Return the beams of one group with the nodes that they use."""
     beams = cells.beams or Beams(
         np.empty((0, 3)), np.empty((0, 2), np.int32), np.empty((0, 2)), np.empty(0, np.int32)
     )
@@ -221,8 +236,8 @@ def of_group(cells: Cells, group: int) -> Beams:
     return Beams(beams.nodes[used], struts, beams.radii[mine], beams.group[mine])
 
 
-def prisms(request: CellRequest) -> Cells:
-    """Return every edge as its whole prism: what stands in for a lattice of very many beams."""
+def whole_prisms(request: CellRequest) -> Cells:
+    """Return a whole prism for every edge, as a coarse mesh of a lattice with very many beams."""
     from manifold3d import Manifold
 
     count = len(request.edges)

@@ -1,4 +1,4 @@
-"""From a support layout to finished bodies: cells for the edges, connectors up to the faces, all united."""
+"""Build the support bodies of a layout: cells for its edges, connectors up to the parts, bases, all united."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,18 +12,18 @@ from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.bases import make_bases, with_base
-from amprep.supports.solids.beams import clip_beams, lattice_of, of_group, prisms
-from amprep.supports.solids.connectors import ColumnSurfaces, find_column_surfaces, foot_boxes
+from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
+from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
 from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.request import make_request
-from amprep.supports.solids.unite_group import sheet_of, solid_of
+from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 DIRECT = BaseRules()
-"""Supports stand on the plate as they are."""
+"""No bases."""
 
 
 def build_supports(
@@ -41,36 +41,42 @@ def build_supports(
     gap: float = 0.0,
     space: BuildVolume | None = None,
 ) -> tuple[SupportBody, ...]:
-    """Turn a layout into supports: one closed solid per support group, or its walls without thickness.
+    """Turn a layout into support bodies: one closed solid per support group, or its walls without thickness.
 
-    Cells replace the edges (thesis 3.5); connectors run straight up from the red squares, exactly to the faces,
-    knife edges and tips they hold and `overlap` mm into them, never past another face.
+    Cells replace the edges (thesis 3.5). Connectors run straight up from the red squares to the overhangs, enter them
+    by the overlap, and pass no other face.
 
     Parameters
     ----------
+    layout
+        Routed supports of the build.
+    parts
+        Placed parts of the build.
     emit
-        Asks the chosen lattice cell.
+        Calls the chosen lattice cell.
     overlap
-        mm; less than `amprep.model.CONTACT_TOLERANCE` counts as that.
+        Depth (mm) to which connectors enter parts; a value below `CONTACT_TOLERANCE` counts as that.
     connector
-        Its kind and measures; walls without thickness always extend.
+        Shape of the connectors; walls without thickness always extend up to the part.
     base
-        What supports stand on at the plate.
+        Shape of the bases on the build plate.
     allow_surface
         Whether the target reads walls without thickness.
     stop
-        Only asked between groups; what is not finished by then is left out.
+        Checked between groups; groups that are not finished by then are left out.
+    progress
+        Callback for progress.
     beams
-        Whether struts become beams: None as the cell's parameters say, False never.
+        Whether struts become beams: None leaves it to the parameters of the cell, False forbids it.
     gap
-        mm that supports keep from walls of parts, sideways; walls without thickness only keep to free voxels.
+        XY distance (mm) between supports and walls of parts; walls without thickness only stay in free voxels.
     space
-        What cuts beams off; without it all supports are meshes.
+        Build volume, which clips beams and bases; without it struts become meshes.
 
     Raises
     ------
     PluginError
-        When the cell's answer does not fit the request.
+        When the answer of the cell does not fit the request.
     JobError
         When the cell cannot be made in this grid.
     """
@@ -85,36 +91,26 @@ def build_supports(
         )
         return classify(request, checked(request, emit(request)))
 
-    instances, bare = _ask(ask, extend=connector.connector == "extend", beams=beams)
+    instances, as_beams = _ask(ask, extend=connector.connector == "extend", beams=beams)
     if instances.sheet.any():
         _require_no_feet(layout, base)
-    clearance = WallClearance(layout, gap, max(overlap, CONTACT_TOLERANCE)) if gap > 0.0 else None
-    surfaces, obstacles = find_column_surfaces(layout, layout.meshes), PartObstacles(parts, clearance)
-    work = _SupportBuilder(layout, parts, surfaces, obstacles, overlap, connector, gap)
+    depth = max(overlap, CONTACT_TOLERANCE)
+    obstacles = PartObstacles(parts, WallClearance(layout, gap, depth) if gap > 0.0 else None)
+    surfaces = find_column_surfaces(layout, layout.meshes)
+    builder = _SupportBuilder(
+        SupportContext(layout, surfaces, obstacles, connector, depth), parts, instances, as_beams, gap
+    )
     solids, names = [], []
     for group, held in enumerate(layout.group_parts):
         if stop.cancelled.is_set():
             break
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
-        solids.append(work.drained_solid(group, instances))
-    bodies: list[SupportBody] = []
+        solids.append(builder.drained_solid(group))
     bases = make_bases(solids, parts, base, space, gap)
-    for group, (name, solid, stand) in enumerate(zip(names, solids, bases, strict=True)):
-        held = layout.group_parts[group]
-        whole = with_base(solid, stand)
-        sheet = (
-            sheet_of(group, instances, layout, surfaces, overlap=overlap) if instances.sheet.any() else None
-        )
-        if whole is not None and len(whole.triangles):
-            lattice = None
-            if bare is not None and space is not None:
-                lattice = work.lattice(group, bare, whole, stand, space)
-            bodies.append(SupportBody(f"supports of {name}", whole, held, lattice=lattice))
-        if sheet is not None and len(sheet.triangles):
-            bodies.append(
-                SupportBody(f"{'walls' if solid else 'supports'} of {name}", sheet, held, surface=True)
-            )
+    bodies: list[SupportBody] = []
+    for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
+        bodies += builder.bodies(group, name, solid, own_base, space)
     progress(1.0, "supports finished")
     return tuple(bodies)
 
@@ -122,76 +118,92 @@ def build_supports(
 def _ask(
     ask: Callable[..., CellInstances], *, extend: bool, beams: bool | None
 ) -> tuple[CellInstances, CellInstances | None]:
-    """Return what the cell made without beams, and with beams if it makes any; walls run up to the part."""
-    instances, bare = ask(extend=extend, beams=beams), None
+    """Return the answer of the cell without beams, and that with beams if it makes any.
+
+    A cell with templates without thickness is asked again for cells that extend up to the part.
+    """
+    instances, as_beams = ask(extend=extend, beams=beams), None
     if instances.cells.beams is not None and len(instances.cells.beams.struts):
         if extend:
             raise JobError(
-                "beams end at connectors that are solids: set cells.connector = 'full', 'teeth' or 'point', "
+                "beams need connectors that are solids: set cells.connector = 'full', 'teeth' or 'point', "
                 "or cells.lattice = 'mesh'"
             )
-        bare, beams = instances, False
+        as_beams, beams = instances, False
         instances = ask(extend=False, beams=False)
     if not extend and any(template.surface for template in instances.cells.templates):
         instances = ask(extend=True, beams=beams)
-    return instances, bare
+    return instances, as_beams
 
 
 def _require_no_feet(layout: SupportLayout, base: BaseRules) -> None:
-    """Refuse what walls without thickness cannot have."""
+    """Refuse feet on parts and bases, which walls without thickness cannot have."""
     if len(layout.feet):
         raise JobError(
-            "supports.grounding = 'anywhere' needs a cell with thickness: walls without any have no feet"
+            "supports.grounding = 'anywhere' needs a cell with thickness; walls without thickness have no feet"
         )
     if base.base != "direct":
         raise JobError(
-            f"cells.base = {base.base!r} needs a cell with thickness: walls without any have no feet to widen"
+            f"cells.base = {base.base!r} needs a cell with thickness; walls without thickness have no feet"
         )
 
 
 class _SupportBuilder(NamedTuple):
-    """What every support group is made from."""
+    """Builds the bodies of support groups.
 
-    layout: SupportLayout
+    Attributes
+    ----------
+    context
+        Data that all groups share.
+    parts
+        Placed parts of the build.
+    instances, as_beams
+        Answers of the cell: all cells as meshes; and the answer with beams, if the cell makes any.
+    gap
+        XY distance, mm.
+    """
+
+    context: SupportContext
     parts: tuple[PlacedPart, ...]
-    surfaces: ColumnSurfaces
-    obstacles: PartObstacles
-    overlap: float
-    connector: ConnectorRules
+    instances: CellInstances
+    as_beams: CellInstances | None
     gap: float
 
-    def solid(self, group: int, instances: CellInstances, *, on_beams: bool = False) -> Mesh | None:
-        """Return the solid of a group, or with `on_beams` what of it beams carry."""
-        return solid_of(
-            group,
-            instances,
-            self.layout,
-            self.surfaces,
-            self.obstacles,
-            overlap=self.overlap,
-            connector=self.connector,
-            on_beams=on_beams,
-        )
-
-    def drained_solid(self, group: int, instances: CellInstances) -> Mesh | None:
-        """Return the solid of a group, with surfaces out for powder where the cell promises them."""
-        solid, hole = self.solid(group, instances), instances.cells.hole
-        if solid is None or hole == 0.0:
+    def drained_solid(self, group: int) -> Mesh | None:
+        """Return the solid of a group, with drain holes where the cell promises them."""
+        solid, diameter = solid_of(self.context, group, self.instances), self.instances.cells.hole
+        if solid is None or diameter == 0.0:
             return solid
-        held = [self.parts[part].mesh for part in self.layout.group_parts[group]]
-        return cut_drain_holes(
-            solid, held, hole, foot_boxes(self.layout, group, max(self.overlap, CONTACT_TOLERANCE))
-        )
+        held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
+        return cut_drain_holes(solid, held, diameter, self.context.foot_boxes(group))
 
-    def lattice(
-        self, group: int, bare: CellInstances, whole: Mesh, stand: "Manifold | None", space: BuildVolume
+    def bodies(
+        self, group: int, name: str, solid: Mesh | None, base: "Manifold | None", space: BuildVolume | None
+    ) -> list[SupportBody]:
+        """Return the bodies of a group: its solid with its base, and its walls without thickness."""
+        held = self.context.layout.group_parts[group]
+        whole, found = with_base(solid, base), []
+        sheet = sheet_of(self.context, group, self.instances) if self.instances.sheet.any() else None
+        if whole is not None and len(whole.triangles):
+            lattice = None
+            if self.as_beams is not None and space is not None:
+                lattice = self._lattice(group, self.as_beams, whole, base, space)
+            found.append(SupportBody(f"supports of {name}", whole, held, lattice=lattice))
+        if sheet is not None and len(sheet.triangles):
+            kind = "walls" if solid else "supports"
+            found.append(SupportBody(f"{kind} of {name}", sheet, held, surface=True))
+        return found
+
+    def _lattice(
+        self, group: int, as_beams: CellInstances, whole: Mesh, base: "Manifold | None", space: BuildVolume
     ) -> Lattice | None:
-        """Return a group's beams with their connectors, None where they do not carry all that the solid carries."""
-        overlap, held = max(self.overlap, CONTACT_TOLERANCE), self.layout.group_parts[group]
-        mine = of_group(bare.cells, group)
-        beams = clip_beams(mine, self.parts, held, space, overlap=overlap, gap=self.gap)
+        """Return the beams of a group with their connectors; None where they carry less than the solid does."""
+        context, held = self.context, self.context.layout.group_parts[group]
+        own = beams_of_group(as_beams.cells, group)
+        beams = clip_beams(own, self.parts, held, space, overlap=context.overlap, gap=self.gap)
         coarse = None
         if len(whole.triangles) > MAX_STAND_IN_TRIANGLES:
-            coarse = with_base(self.solid(group, classify(bare.request, prisms(bare.request))), stand)
-        solids = with_base(self.solid(group, bare, on_beams=True), stand)
-        return lattice_of(beams, solids, whole, coarse, foot_boxes(self.layout, group, overlap), space)
+            prisms = classify(as_beams.request, whole_prisms(as_beams.request))
+            coarse = with_base(solid_of(context, group, prisms), base)
+        solids = with_base(solid_of(context, group, as_beams, on_beams=True), base)
+        return lattice_of(beams, solids, whole, coarse, context.foot_boxes(group), space)

@@ -1,4 +1,4 @@
-"""Cuts ways out of finished supports where they would lock powder in, for cells that promise to let it out."""
+"""Cut drain holes into finished supports that would trap powder, for cells that promise to release it."""
 
 from collections.abc import Sequence
 
@@ -10,21 +10,27 @@ from amprep.model import Mesh
 from amprep.supports.solids.keep_out import drop_floating
 
 _ROUNDS = 4
-"""A way may end in another pocket's way."""
+"""Largest number of rounds; a drain hole may end in another pocket, which the next round opens."""
 
 _CRUMB = 1e-3
-"""mm3; more than that must not come to hang in the air because of a way out."""
+"""Largest volume (mm3) of support that may lose its connection to the plate by a drain hole."""
 
 
-def cut_drain_holes(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tuple[Floats, Floats]) -> Mesh:
-    """Return a support with ways out for a ball of diameter `hole` mm, wherever short straight ones exist.
+def cut_drain_holes(
+    solid: Mesh, parts: Sequence[Mesh], diameter: float, boxes: tuple[Floats, Floats]
+) -> Mesh:
+    """Return a support with drain holes for a ball, wherever short straight holes exist.
 
     Parameters
     ----------
+    solid
+        The support.
     parts
-        Those that the support holds.
+        Parts that the support holds.
+    diameter
+        Diameter (mm) of the ball that must be able to escape.
     boxes
-        Least and greatest corners of the boxes in which feet on parts end.
+        Least and greatest corners ``(k, 3)`` of the boxes in which feet on parts end.
     """
     from manifold3d import Manifold, OpType
 
@@ -32,13 +38,13 @@ def cut_drain_holes(solid: Mesh, parts: Sequence[Mesh], hole: float, boxes: tupl
     whole = as_manifold(solid.vertices, solid.triangles)
     arrays, found = (solid.vertices, solid.triangles), False
     for _ in range(_ROUNDS):
-        drains = find_drains(arrays, around, hole)
-        if not drains:
+        holes = find_drains(arrays, around, diameter)
+        if not holes:
             break
-        cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in drains]
+        cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in holes]
         opened = evaluated(whole - Manifold.batch_boolean(cuts, OpType.Add))
-        stands = Mesh(*drop_floating(*arrays_of(opened), boxes))
-        if stands.signed_volume < opened.volume() - _CRUMB:
+        rest = Mesh(*drop_floating(*arrays_of(opened), boxes))
+        if rest.signed_volume < opened.volume() - _CRUMB:
             break
-        whole, arrays, found = opened, (stands.vertices, stands.triangles), True
+        whole, arrays, found = opened, (rest.vertices, rest.triangles), True
     return Mesh(*finish([as_manifold(*arrays)])) if found else solid

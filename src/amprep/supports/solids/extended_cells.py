@@ -1,4 +1,4 @@
-"""Cells that run on above red squares."""
+"""Extend cells from red squares up to the part, and number the squares of the support grid."""
 
 from collections.abc import Iterator
 
@@ -14,19 +14,31 @@ from amprep.supports.layout import SupportLayout
 def extended_cells(
     instances: CellInstances, chosen: Bools, seat: Floats, layout: SupportLayout
 ) -> Iterator[MeshArrays]:
-    """Yield closed meshes of cells that run on above red squares, and of one more below each."""
+    """Yield closed meshes of the cells above red squares, and of one more cell below each square.
+
+    Parameters
+    ----------
+    instances
+        Answer of the cell emitter, with connector edges above red squares.
+    chosen
+        ``(n,)`` instances to expand.
+    seat
+        ``(m,)`` mm, depth at which connectors begin below each red square; where it is 0 no cell is added below.
+    layout
+        The red squares.
+    """
     yield from expand_cells(instances, chosen)
     lowest = np.flatnonzero(chosen & on_red(instances, layout, seat > 0.0))
     cells, request = instances.cells, instances.request
     edge = cells.edge[lowest]
-    square = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 2)
-    square, first = np.unique(square, axis=0, return_index=True)
+    voxel = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 2)
+    voxel, first = np.unique(voxel, axis=0, return_index=True)
     template = cells.template[lowest][first].astype(np.int64)
-    yield from tile(instances.templates, _upright(template, square, request.frame))
+    yield from tile(instances.templates, _upright(template, voxel, request.frame))
 
 
 def _upright(template: Ints, voxel: Ints, frame: Grid) -> Tiles:
-    """Return templates upright in the voxels ``(n, 3)`` x, y, layer."""
+    """Return upright templates in the voxels ``(n, 3)`` x, y, layer."""
     size = np.array([frame.pitch, frame.pitch, frame.step])
     matrix = np.zeros((len(voxel), 3, 4))
     matrix[:, [0, 1, 2], [0, 1, 2]] = size
@@ -34,14 +46,14 @@ def _upright(template: Ints, voxel: Ints, frame: Grid) -> Tiles:
     return Tiles(template, voxel, matrix)
 
 
-def squares(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
-    """Return the numbers of grid squares."""
+def square_numbers(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
+    """Return one number for each grid square, ascending with plane, y and x."""
     _, ny, nx = layout.frame.shape
     return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 
 
 def on_red(instances: CellInstances, layout: SupportLayout, chosen: Bools) -> Bools:
-    """Which instances stand on one of the chosen red squares."""
+    """Tell which instances have one of the chosen red squares at their lower end."""
     request, edge = instances.request, instances.cells.edge
-    lower = squares(layout, *(request.edges.upper - (1, 0, 0)).T)[edge]
-    return np.isin(lower, squares(layout, *layout.red[chosen].T))
+    lower = square_numbers(layout, *(request.edges.upper - (1, 0, 0)).T)[edge]
+    return np.isin(lower, square_numbers(layout, *layout.red[chosen].T))

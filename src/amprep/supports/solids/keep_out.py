@@ -1,4 +1,4 @@
-"""Keeps supports out of parts: nothing of them stays deeper than the overlap, nor hangs in the air then."""
+"""Keep supports out of parts and away from their walls, and drop the pieces that float then."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 
 
 class WallClearance:
-    """The walls of all parts of a build, with the distance that supports keep from them.
+    """The walls of all parts of a build, and the XY distance that supports keep from them.
 
-    Routing closes what is nearer than the gap, except where connectors run up and right below them.
+    Routing closes the voxels within this distance, except in the columns of connectors and directly below them.
     """
 
     def __init__(self, layout: SupportLayout, gap: float, overlap: float) -> None:
         self._gap = gap
         stood_on = set(layout.feet[:, 3].tolist())
         self._walls = [
-            walls_of(mesh.vertices, mesh.triangles, needs, overlap, stood_on=part in stood_on)
-            for part, (mesh, needs) in enumerate(zip(layout.meshes, layout.overhangs, strict=True))
+            walls_of(mesh.vertices, mesh.triangles, overhangs, overlap, stood_on=part in stood_on)
+            for part, (mesh, overhangs) in enumerate(zip(layout.meshes, layout.overhangs, strict=True))
         ]
 
-    def offset(self, solid: "Manifold") -> "Manifold":
-        """Return what of a solid is as far from all walls as asked, measured sideways."""
+    def clip(self, solid: "Manifold") -> "Manifold":
+        """Return a solid without its points that are nearer to a wall than the XY distance."""
         from manifold3d import Manifold, OpType
 
         points, triangles = arrays_of(solid)
@@ -48,61 +48,76 @@ class WallClearance:
 
 
 class PartObstacles:
-    """The solid parts of a build, ready to be cut out of supports; each is made when first needed."""
+    """The solid parts of a build as obstacles to supports; their solids are made when first needed."""
 
     def __init__(self, parts: Sequence[PlacedPart], clearance: WallClearance | None = None) -> None:
-        self._parts = [(index, placed.mesh) for index, placed in enumerate(parts) if placed.part.is_solid]
+        self._meshes = {index: placed.mesh for index, placed in enumerate(parts) if placed.part.is_solid}
         self._clearance = clearance
-        self._solid = cache(lambda index: as_manifold(*self._arrays(index)))
-
-    def _arrays(self, index: int) -> tuple[Floats, Ints]:
-        mesh = dict(self._parts)[index]
-        return mesh.arrays
+        self._solid = cache(lambda index: as_manifold(*self._meshes[index].arrays))
 
     def subtract_from(
         self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False
     ) -> "Manifold":
-        """Return what of the connectors lies at most `overlap` mm deep in parts they hold, and in no other.
+        """Subtract the parts from connectors, down to the permitted depth in those that they hold.
 
-        Depth is measured upwards, or `down` for feet: a point is too deep when the point `overlap` before it
-        lies in the part too.
+        Depth is measured vertically: a point is too deep when the point `overlap` below it (above it for feet) is in
+        the part too. Subtracting the part shifted by the overlap removes exactly the points that are too deep.
+
+        Parameters
+        ----------
+        connectors
+            Connectors, or feet.
+        held
+            Parts that may be entered by the overlap; other parts must not be entered.
+        overlap
+            Permitted depth, mm.
+        down
+            True for feet, which enter parts from above.
         """
-        lo, hi = (np.array(corner) for corner in np.split(np.array(connectors.bounding_box()), 2))
-        for index, mesh in self._parts:
-            if (lo > mesh.bounds[1]).any() or (hi < mesh.bounds[0]).any():
-                continue
+        for index in self._meeting(connectors):
             depth = overlap if index in held else 0.0
-            # half the tolerance apart, so that faces which should just meet do not cut each other
+            # half the contact tolerance more, so that faces that should just touch do not intersect
             shift = depth + CONTACT_TOLERANCE / 2
             connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
         return connectors
 
     def clip(self, solids: list["Manifold"]) -> list["Manifold"]:
-        """Return finished solids, cut where they come nearer to walls of parts than the clearance."""
+        """Return solids without their points that are nearer to walls of parts than the XY distance."""
         if self._clearance is None or not solids:
             return solids
-        whole = union(solids)
-        return [self._clearance.offset(whole)]
+        return [self._clearance.clip(union(solids))]
 
     def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
-        """Return the triangles ``(t, 3, 3)`` mm of the parts held that lie in the connectors."""
-        lo, hi = (np.array(corner) for corner in np.split(np.array(connectors.bounding_box()), 2))
+        """Return the triangles ``(t, 3, 3)`` mm of the held parts inside the connectors."""
         found = [np.empty((0, 3, 3))]
-        for index, mesh in self._parts:
-            if index in held and (lo <= mesh.bounds[1]).all() and (hi >= mesh.bounds[0]).all():
-                found.append(contact_corners(connectors, self._solid(index)))
+        found += [
+            contact_corners(connectors, self._solid(index))
+            for index in self._meeting(connectors)
+            if index in held
+        ]
         return np.concatenate(found)
+
+    def _meeting(self, solid: "Manifold") -> list[int]:
+        """Return the parts whose bounding boxes meet that of a solid."""
+        lo, hi = (np.array(corner) for corner in np.split(np.array(solid.bounding_box()), 2))
+        return [
+            index
+            for index, mesh in self._meshes.items()
+            if (lo <= mesh.bounds[1]).all() and (hi >= mesh.bounds[0]).all()
+        ]
 
 
 def drop_floating(
     points: Floats, triangles: Ints, feet: tuple[Floats, Floats] | None = None
 ) -> tuple[Floats, Ints]:
-    """Return the pieces of a closed mesh that reach the plate or a foot, with the voids inside them.
+    """Return the disconnected components of a closed mesh that reach the plate or a foot, with their voids.
 
     Parameters
     ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
     feet
-        Least and greatest corners ``(k, 3)`` of boxes: a piece with a vertex in one of them stands there.
+        Least and greatest corners ``(k, 3)`` of boxes; a component with a vertex in one of them stands on a part.
     """
     count, shell = label_shells(triangles, len(points))
     corners = points[triangles]
@@ -119,7 +134,3 @@ def drop_floating(
         around = (volume > 0.0) & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
         stays[void] = (stays & around).any()
     return drop_unused_vertices(points, triangles[stays[shell]])
-
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold

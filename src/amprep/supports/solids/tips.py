@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Ints
+from amprep.arrays import Bools, Floats
 from amprep.errors import JobError
 from amprep.geometry.connectors.columns import ConnectorColumns
 from amprep.geometry.connectors.perforation import perforations
@@ -13,6 +13,7 @@ from amprep.geometry.connectors.tips import TipProfile, grid_prisms, make_tips
 from amprep.geometry.merging.union import union
 from amprep.model.contacts import ConnectorRules
 from amprep.supports.layout import SupportLayout
+from amprep.supports.solids.extended_cells import square_numbers
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -67,12 +68,9 @@ def sink_depths(layout: SupportLayout, rules: ConnectorRules, *, most: float) ->
     if profile is None:
         return np.zeros(len(layout.red))
     oblique = layout.edges.direction != 0
-    _, ny, nx = grid.shape
-
-    def index(plane: Ints, y: Ints, x: Ints) -> Ints:
-        return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
-
-    meets_oblique = np.isin(index(*layout.red.T), index(*layout.edges.upper[oblique].T))
+    meets_oblique = np.isin(
+        square_numbers(layout, *layout.red.T), square_numbers(layout, *layout.edges.upper[oblique].T)
+    )
     fraction = np.where(meets_oblique, SINK_SIDEWAYS, SINK_UPRIGHT)
     return np.where(
         layout.red[:, 0] > 0, np.minimum(fraction * grid.step, min(profile.height + PAD, most)), 0.0

@@ -1,10 +1,10 @@
-"""The cells, seats and connectors of one support group, united to one solid, or put together as sheets."""
+"""Unite the cells, seats, connectors and feet of one support group to a solid, or join them as open walls."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints, MeshArrays
+from amprep.arrays import Bools, Floats, Ints
 from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
@@ -15,7 +15,7 @@ from amprep.model import Mesh
 from amprep.model.contacts import ConnectorRules
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
-from amprep.supports.solids.extended_cells import extended_cells, on_red, squares
+from amprep.supports.solids.extended_cells import extended_cells, on_red, square_numbers
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
@@ -23,94 +23,126 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 SEAT = 0.2
-"""mm; connectors begin this far below their red square, inside what stands there (at most a quarter step)."""
+"""Depth (mm) at which connectors begin below their red square, inside the cell there (at most a quarter of a step)."""
+
+
+class SupportContext(NamedTuple):
+    """Data that the supports of all groups of a build share.
+
+    Attributes
+    ----------
+    layout
+        Red squares, edges and groups.
+    surfaces
+        Surfaces of the parts in the columns above red squares.
+    obstacles
+        Parts and walls that supports keep away from.
+    connector
+        Shape of the connectors.
+    overlap
+        Depth (mm) to which supports enter the parts that they hold, at least `CONTACT_TOLERANCE`.
+    """
+
+    layout: SupportLayout
+    surfaces: ColumnSurfaces
+    obstacles: PartObstacles
+    connector: ConnectorRules
+    overlap: float
+
+    def foot_boxes(self, group: int) -> tuple[Floats, Floats]:
+        """Return the boxes in which the feet of a group on parts end."""
+        return foot_boxes(self.layout, group, self.overlap)
+
+    @property
+    def seat(self) -> float:
+        """Depth of the seats of connectors, mm."""
+        return min(SEAT, self.layout.frame.step / 4)
 
 
 def solid_of(
-    group: int,
-    instances: CellInstances,
-    layout: SupportLayout,
-    surfaces: ColumnSurfaces,
-    obstacles: PartObstacles,
-    *,
-    overlap: float,
-    connector: ConnectorRules,
-    on_beams: bool = False,
+    context: SupportContext, group: int, instances: CellInstances, *, on_beams: bool = False
 ) -> Mesh | None:
-    """Return the closed solid of a support group: cells, seats and connectors; None when it has none.
+    """Return the closed solid of a support group, None when it has none.
 
-    With `on_beams` what hangs in the air stays: beams may carry it.
+    Parameters
+    ----------
+    context
+        Data of all groups.
+    group
+        Number of the group.
+    instances
+        Answer of the cell emitter.
+    on_beams
+        Whether beams carry the solid: then its floating pieces are kept, and connectors begin no deeper than `SEAT`.
     """
-    mine, extend = instances.of(group) & ~instances.sheet, connector.connector == "extend"
+    layout = context.layout
+    mine = instances.of(group) & ~instances.sheet
     if instances.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(instances, group)
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
-    seat = np.where(layout.red[:, 0] > 0, min(SEAT, layout.frame.step / 4), 0.0)
-    sink = sink_depths(layout, connector, most=SEAT if on_beams else np.inf)  # beams carry by their ends
-    connectors = _connectors(red, np.maximum(seat / 2, sink), layout, surfaces, overlap)
-    ups = [as_manifold(*mesh).simplify(FILE_STEP) for mesh in connectors]  # a tenth of the triangles
+    seat = np.where(layout.red[:, 0] > 0, context.seat, 0.0)
+    # beams carry connectors by their ends, so these must not begin deeper
+    sink = sink_depths(layout, context.connector, most=SEAT if on_beams else np.inf)
+    extend = context.connector.connector == "extend"
+    connectors = _plain_connectors(context, red, np.maximum(seat / 2, sink))
     if extend:
-        lids = [
-            as_manifold(*mesh) for mesh in extended_cells(instances, mine & instances.connector, seat, layout)
-        ]
-        ups = [union(ups) ^ union(lids)] if ups and lids else []
+        cells_above = extended_cells(instances, mine & instances.connector, seat, layout)
+        cells = [as_manifold(*mesh) for mesh in cells_above]
+        connectors = [union(connectors) ^ union(cells)] if connectors and cells else []
     notch = union([])
-    if ups:
-        up = obstacles.subtract_from(union(ups), layout.group_parts[group], max(overlap, CONTACT_TOLERANCE))
-        contact = obstacles.contact(up, layout.group_parts[group]) if connector.is_shaped else None
-        if contact is not None:
-            up, notch = _shaped(up, contact, red, seat / 2, sink, surfaces, connector, overlap)
-        ups = [up]
-    ups += _feet(layout, group, obstacles, max(overlap, CONTACT_TOLERANCE))
+    if connectors:
+        shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink)
+        connectors, notch = [shaped.connectors], shaped.notch
+    connectors += _feet(context, group)
     seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
-    stems = expand_cells(
+    below = expand_cells(
         instances, mine & ~instances.connector, layout.red[seats], float(seat.max(initial=0.0))
     )
-    cells = [*(as_manifold(*mesh) for mesh in stems), *_extras(instances, group)]
+    cells = [*(as_manifold(*mesh) for mesh in below), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
-    solids = obstacles.clip(cells + ups)
-    if on_beams:
-        return Mesh(*finish(solids)) if solids else None
-    boxes = foot_boxes(layout, group, max(overlap, CONTACT_TOLERANCE))
-    return Mesh(*drop_floating(*finish(solids), boxes)) if solids else None
+    solids = context.obstacles.clip(cells + connectors)
+    if not solids:
+        return None
+    whole = finish(solids)
+    return Mesh(*whole) if on_beams else Mesh(*drop_floating(*whole, context.foot_boxes(group)))
 
 
-def _feet(layout: SupportLayout, group: int, obstacles: PartObstacles, overlap: float) -> list["Manifold"]:
-    """Return the feet of a group that stands on parts, none where it does not."""
-    feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=min(SEAT, layout.frame.step / 4))
+def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> list["Manifold"]:
+    """Return connectors over whole red squares; they begin `depth` ``(m,)`` mm below their squares."""
+    surfaces = context.surfaces
+    supported = surfaces.supported.chosen(red[surfaces.supported.owner[:, 0]])
+    base = surfaces.columns.lo[:, 2] - depth
+    top = surfaces.columns.hi[:, 2] + context.layout.frame.step
+    meshes = connect(
+        supported, surfaces.surface, base=base, top=top, overlap=context.overlap, own=surfaces.own
+    )
+    return [as_manifold(*mesh).simplify(FILE_STEP) for mesh in meshes]  # removes nine tenths of the triangles
+
+
+def _subtract_and_shape(
+    context: SupportContext, group: int, connectors: "Manifold", red: Bools, depth: Floats, sink: Floats
+) -> ShapedConnectors:
+    """Subtract the parts from connectors, and shape what is left by the rules; `depth` and `sink` ``(m,)`` mm."""
+    obstacles, held = context.obstacles, context.layout.group_parts[group]
+    connectors = obstacles.subtract_from(connectors, held, context.overlap)
+    if not context.connector.is_shaped:
+        return ShapedConnectors(connectors, union([]))
+    contact = obstacles.contact(connectors, held)
+    columns = context.surfaces.columns
+    columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
+    base = columns.lo[:, 2] - depth[red]
+    return shape_connectors(connectors, contact, columns, base, sink[red], context.connector, context.overlap)
+
+
+def _feet(context: SupportContext, group: int) -> list["Manifold"]:
+    """Return the feet of a group on parts as one solid, none where it has no such feet."""
+    layout, overlap = context.layout, context.overlap
+    feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=context.seat)
     if not feet:
         return []
-    stood = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
-    return [obstacles.subtract_from(stood, layout.group_parts[group], overlap, down=True)]
-
-
-def _connectors(
-    red: Bools, below: Floats, layout: SupportLayout, surfaces: ColumnSurfaces, overlap: float
-) -> list[MeshArrays]:
-    """Return connectors over red squares; they begin so many mm below them."""
-    held = surfaces.held.chosen(red[surfaces.held.owner[:, 0]])
-    base = surfaces.columns.lo[:, 2] - below
-    lid = surfaces.columns.hi[:, 2] + layout.frame.step
-    overlap = max(overlap, CONTACT_TOLERANCE)
-    return connect(held, surfaces.surface, base=base, lid=lid, overlap=overlap, own=surfaces.own)
-
-
-def _shaped(
-    up: "Manifold",
-    contact: Floats,
-    red: Bools,
-    below: Floats,
-    sink: Floats,
-    surfaces: ColumnSurfaces,
-    connector: ConnectorRules,
-    overlap: float,
-) -> ShapedConnectors:
-    """Return connectors of the kind asked for, where that is another than whole squares."""
-    columns = surfaces.columns
-    columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
-    base = columns.lo[:, 2] - below[red]
-    return shape_connectors(up, contact, columns, base, sink[red], connector, max(overlap, CONTACT_TOLERANCE))
+    united = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
+    return [context.obstacles.subtract_from(united, layout.group_parts[group], overlap, down=True)]
 
 
 def _extras(instances: CellInstances, group: int) -> list["Manifold"]:
@@ -119,56 +151,55 @@ def _extras(instances: CellInstances, group: int) -> list["Manifold"]:
 
 
 def _stands_on_full_square(instances: CellInstances, layout: SupportLayout) -> Bools:
-    """Which red squares have a cell below them whose top is the whole square."""
+    """Tell which red squares are completely covered by the top of a cell below them."""
     whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in instances.templates], np.bool_)
     edge = instances.cells.edge[instances.tiles & whole[instances.cells.template]]
-    request = instances.request
-    full = squares(layout, *request.edges.upper[edge].T)
-    return np.isin(squares(layout, *layout.red.T), full)
+    full = square_numbers(layout, *instances.request.edges.upper[edge].T)
+    return np.isin(square_numbers(layout, *layout.red.T), full)
 
 
 def _top_area(points: Floats, triangles: Ints) -> float:
-    """Area of a template's top, as a share of the square."""
+    """Return the area of the top of a template, as a fraction of the square."""
     corners = points[triangles[(points[triangles, 2] > 1.0 - 1e-9).all(axis=1)]]
     sides = corners[:, 1:] - corners[:, :1]
     return float(np.cross(sides[:, 0], sides[:, 1])[:, 2].sum() / 2)
 
 
-def sheet_of(
-    group: int, instances: CellInstances, layout: SupportLayout, surfaces: ColumnSurfaces, *, overlap: float
-) -> Mesh | None:
-    """Return the walls without thickness of a support group, up to the faces they hold; None when it has none."""
+def sheet_of(context: SupportContext, group: int, instances: CellInstances) -> Mesh | None:
+    """Return the walls without thickness of a support group, up to the overhangs; None when it has none."""
     mine = instances.of(group) & instances.sheet
-    cells, request = instances.cells, instances.request
+    cells, surfaces = instances.cells, context.surfaces
     sheets = [extra.mesh.arrays for extra in cells.extra if extra.group == group and extra.surface]
-    trunk = mine & ~instances.connector
-    if trunk.any():
+    below = mine & ~instances.connector
+    if below.any():
         sheets.append(
-            expand(instances.templates, cells.template[trunk].astype(np.int64), cells.matrix[trunk])[:2]
+            expand(instances.templates, cells.template[below].astype(np.int64), cells.matrix[below])[:2]
         )
+    columns, segments = _wall_segments(context.layout, group, instances, mine & instances.connector)
+    if len(columns):
+        supported, surface = surfaces.supported, surfaces.surface
+        sheets.append(
+            raise_sheets(surfaces.columns, columns, segments, supported, surface, overlap=context.overlap)
+        )
+    return Mesh(*join_sheets(sheets)) if sheets else None
+
+
+def _wall_segments(
+    layout: SupportLayout, group: int, instances: CellInstances, chosen: Bools
+) -> tuple[Ints, Floats]:
+    """Return the walls of the chosen instances at red squares: column ``(k,)`` and ends in plan ``(k, 2, 2)``."""
+    cells, edges = instances.cells, instances.request.edges
     red = np.flatnonzero(layout.connected & (layout.red_group == group))
-    tops = np.flatnonzero(mine & instances.connector & on_red(instances, layout, layout.connected))
+    number = square_numbers(layout, *layout.red[red].T)
+    order = np.argsort(number, kind="stable")
     columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]
-    square = squares(layout, *layout.red[red].T)
-    order = np.argsort(square, kind="stable")
-    for index in tops:
+    for index in np.flatnonzero(chosen & on_red(instances, layout, layout.connected)):
         edge = cells.edge[index]
-        number = squares(layout, *request.edges.lower[edge : edge + 1].T)
+        own = square_numbers(layout, *edges.lower[edge : edge + 1].T)
         plan = plan_segments(*instances.templates[cells.template[index]])
         matrix = cells.matrix[index]
-        begin, end = (int(np.searchsorted(square[order], number, side=side)[0]) for side in ("left", "right"))
+        begin, end = (int(np.searchsorted(number[order], own, side=side)[0]) for side in ("left", "right"))
         for column in red[order[begin:end]]:
             columns.append(np.full(len(plan), column))
             segments.append(plan @ matrix[:2, :2].T + matrix[:2, 3])
-    if len(columns) > 1:
-        sheets.append(
-            raise_sheets(
-                surfaces.columns,
-                np.concatenate(columns),
-                np.concatenate(segments),
-                surfaces.held,
-                surfaces.surface,
-                overlap=max(overlap, CONTACT_TOLERANCE),
-            )
-        )
-    return Mesh(*join_sheets(sheets)) if sheets else None
+    return np.concatenate(columns), np.concatenate(segments)

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from tests.shared.examples import examples
 
 from amprep.geometry.connectors import connect as connectors
-from amprep.geometry.connectors.columns import ConnectorColumns, Patches, clip_to_columns
+from amprep.geometry.connectors.columns import ConnectorColumns, clip_to_columns
 from amprep.geometry.connectors.connect import connect, find_below
 from amprep.geometry.merging.union import union
 from amprep.geometry.meshes.manifold import as_manifold
+from amprep.kernels.meshes.patches import Patches
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +48,7 @@ def volume_of(layers: Sequence[Floats]) -> float:
     """Return the volume of connectors that hold all the layers; they overlap nowhere."""
     patches = patches_of(layers)
     own = np.ones(len(patches.owner), np.bool_)
-    meshes = connect(patches, patches, base=np.zeros(1), lid=np.array([11.0]), overlap=OVERLAP, own=own)
+    meshes = connect(patches, patches, base=np.zeros(1), top=np.array([11.0]), overlap=OVERLAP, own=own)
     solids = [as_manifold(*mesh) for mesh in meshes]
     assert sum(each.volume() for each in solids) == pytest.approx(union(solids).volume(), rel=1e-6)
     return float(union(solids).volume())

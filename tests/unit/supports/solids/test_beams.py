@@ -124,7 +124,7 @@ def test_supports_are_of_the_type_asked_for(tmp_path, wish, kind):
     ("change", "why"),
     [
         ({"radii": np.array([[0.5, 0.5], [0.5, -1.0]])}, "radius"),
-        ({"struts": np.array([[0, 1], [1, 7]])}, "not there"),
+        ({"struts": np.array([[0, 1], [1, 7]])}, "does not exist"),
         ({"nodes": np.zeros((3, 3))}, "shorter than"),
     ],
 )
