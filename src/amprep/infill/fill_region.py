@@ -1,4 +1,4 @@
-"""Fills a region of a part with lattice cells: the same emission as for supports, on a block of upright edges."""
+"""Replace regions of a part by lattice cells, which are emitted as for supports on a block of vertical edges."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,27 +21,28 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Filled:
-    """A part whose region is filled with cells.
+class FilledPart:
+    """A part whose regions are filled with cells.
 
     Attributes
     ----------
     mesh
-        The part: closed, outside the region as it was.
+        The filled part, closed and unchanged outside the regions.
     cells
-        What the cells are before they are trimmed, one closed mesh.
+        All cells before clipping, one closed mesh.
     region
-        The part's material that the cells have replaced.
+        The material of the part that the cells have replaced.
     count
-        How many cells there are, trimmed ones included.
+        Number of cells, clipped ones included.
     cells_mm3
-        Volume of the cells in the region, islands left out.
-    islands, islands_mm3
-        Pieces of cells that nothing held, and so were dropped.
+        Volume of the cells in the regions, without dropped components.
+    dropped_components, dropped_volume_mm3
+        Number and volume of the components of cells that nothing held and that were dropped.
     genus
-        How many handles the part's surfaces have.
+        Genus of the surfaces of the part.
     lattice
-        The part as solid and beams, where these are wanted; `room` is None, the part as it was cuts the beams.
+        The part as a solid and beams, if beams are wanted; its `room` is None, because the part before filling clips
+        the beams.
     """
 
     mesh: Mesh
@@ -49,14 +50,14 @@ class Filled:
     region: Mesh
     count: int
     cells_mm3: float
-    islands: int
-    islands_mm3: float
+    dropped_components: int
+    dropped_volume_mm3: float
     genus: int
     lattice: Lattice | None = None
 
     @property
     def density(self) -> float:
-        """Share of the region that the cells fill."""
+        """Fraction of the volume of the regions that the cells fill."""
         return self.cells_mm3 / max(abs(self.region.signed_volume), CRUMB)
 
 
@@ -70,67 +71,71 @@ def fill_region(
     overlap: float = 0.1,
     beams: bool | None = False,
     progress: Progress = silent,
-) -> Filled:
-    """Replace the part's material in the regions by cells: (part - regions) + (part ^ regions ^ cells).
+) -> FilledPart:
+    """Replace the material of a part in the regions by cells: (part - regions) + (part ^ regions ^ cells).
 
-    Cells reach at least `overlap` mm beyond the regions, so that they are one with the solid around; there they
-    add nothing. Computed as part - (regions - cells): two booleans for all cells, and no two faces that coincide.
+    Cells extend beyond the regions, so that they are united with the solid around them, to which they add nothing. The
+    result is computed as part - (regions - cells), which takes two Booleans and has no coincident faces.
 
     Parameters
     ----------
     part, regions
         Closed meshes in common coordinates, mm.
     emit
-        Asks the lattice cell.
+        Calls the lattice cell.
     size, height
-        mm, of a cell along x and y, and along z (None: as `size`).
+        Size of a cell along x and y, and along z (None: the same as `size`), mm.
+    overlap
+        Length (mm) by which cells extend beyond the regions at least.
     beams
-        Whether struts are wanted as beams, too; None leaves it to the cell's parameters.
+        Whether struts are also returned as beams; None leaves it to the parameters of the cell.
+    progress
+        Callback for progress.
 
     Raises
     ------
     MeshError
-        When a mesh is no solid.
+        When a mesh is not a solid.
     JobError
-        When the regions do not meet the part, or the cells do not suit.
+        When the regions do not meet the part, or the cell cannot fill them.
     PluginError
-        When the cell's answer does not fit the request.
+        When the answer of the cell does not fit the request.
     """
-    progress(0.0, "cutting the region out")
+    progress(0.0, "subtracting the region")
     solid, hole = _solid(part, "the part"), union([_solid(each, "a region") for each in regions])
     filled = evaluated(solid ^ hole)
     if filled.volume() <= CRUMB:
-        raise JobError("the region lies outside the part: nothing of it can be filled with cells")
+        raise JobError("the region is outside the part, so it cannot be filled with cells")
     region = Mesh(*arrays_of(filled))
     request = block_over(region, size=size, height=height or size, overlap=overlap, part=part)
     progress(0.1, f"emitting {len(request.edges)} cells")
-    bare = None if beams is False else beams_of(replace(request, beams=beams), emit)
-    cells, count = _welded(request, emit)
-    progress(0.4, "trimming the cells")
+    struts = None if beams is False else beams_of(replace(request, beams=beams), emit)
+    cells, count = _united_cells(request, emit)
+    progress(0.4, "clipping the cells")
     points, triangles = finish([evaluated(solid - evaluated(hole - cells))])
-    progress(0.8, "looking for loose pieces")
-    parted = drop_detached(points, triangles, arrays_of(hole), part.arrays)
-    mesh, islands = Mesh(*parted.kept), Mesh(*parted.islands)
-    loose = abs(islands.signed_volume) if len(islands.triangles) else 0.0
+    progress(0.8, "finding disconnected components")
+    split = drop_detached(points, triangles, arrays_of(hole), part.arrays)
+    mesh, dropped = Mesh(*split.kept), Mesh(*split.detached)
+    dropped_volume_mm3 = abs(dropped.signed_volume) if len(dropped.triangles) else 0.0
     around = evaluated(solid - hole)
     lattice = None
-    if bare is not None:
-        lattice = lattice_of(bare, part, islands, shell=Mesh(*arrays_of(around)), whole=mesh)
-    return Filled(
+    if struts is not None:
+        lattice = lattice_of(struts, part, dropped, shell=Mesh(*arrays_of(around)), whole=mesh)
+    return FilledPart(
         mesh,
         Mesh(*arrays_of(cells)),
         region,
         count,
         max(mesh.signed_volume - float(around.volume()), 0.0),
-        parted.number,
-        loose,
-        genus_of(*parted.kept),
+        split.components,
+        dropped_volume_mm3,
+        genus_of(*split.kept),
         lattice,
     )
 
 
 def meets(part: Mesh, region: Mesh) -> bool:
-    """Tell whether a region holds anything of a part; both are solids."""
+    """Tell whether a region and a part, both solids, have a volume in common."""
     (low, high), (part_low, part_high) = region.bounds, part.bounds
     if (low > part_high).any() or (high < part_low).any():
         return False
@@ -140,17 +145,17 @@ def meets(part: Mesh, region: Mesh) -> bool:
 def _solid(mesh: Mesh, name: str) -> "Manifold":
     solid = as_manifold(*mesh.arrays)
     if not accepted(solid) or solid.volume() <= 0.0:
-        raise MeshError(f"{name} is not a solid: expected a closed mesh, right side out")
+        raise MeshError(f"{name} is not a solid: expected a closed mesh with outward normals")
     return solid
 
 
-def _welded(request: CellRequest, emit: Emit) -> tuple["Manifold", int]:
-    """Return the cells as one solid, not yet trimmed, and how many edges have one."""
+def _united_cells(request: CellRequest, emit: Emit) -> tuple["Manifold", int]:
+    """Return the cells as one solid before clipping, and the number of edges with a cell."""
     instances = classify(request, checked(request, emit(request)))
     solids = [as_manifold(*mesh) for mesh in expand_cells(instances, ~instances.sheet)]
     extra = [each for each in instances.cells.extra if not each.surface]
     solids += [as_manifold(*each.mesh.arrays) for each in extra]
     cells = union(solids)
     if cells.volume() <= CRUMB:
-        raise JobError("the cell has no solid to fill a region with; walls without thickness cannot")
+        raise JobError("the cell has no solid; walls without thickness cannot fill a region")
     return cells, len(np.unique(instances.cells.edge[~instances.sheet])) + len(extra)

@@ -10,8 +10,8 @@ from amprep.checks.infill import check_filled
 from amprep.errors import JobError
 from amprep.geometry.meshes.offset import offset_inwards
 from amprep.host import Host
-from amprep.infill.block import usual_size
-from amprep.infill.fill_region import Filled, fill_region, meets
+from amprep.infill.block import default_size
+from amprep.infill.fill_region import FilledPart, fill_region, meets
 from amprep.infill.regions import KIND, chosen, positions, with_files, without
 from amprep.job import Job
 from amprep.measures.filled_part import mass, pockets_of
@@ -61,7 +61,7 @@ class _PartFill:
 
     part: Part
     regions: tuple[Region, ...]
-    filled: Filled | None = None
+    filled: FilledPart | None = None
 
     @property
     def result(self) -> Part:
@@ -98,7 +98,7 @@ def fill_lattice(
     with clock.stage("regions") as progress:
         work = _regions(parts, options, progress)
     marked = [region.mesh for each in work for region in each.regions if region.mesh]
-    size = options.size or usual_size(marked)
+    size = options.size or default_size(marked)
     height = options.height or size
     done = []
     for each in work:
@@ -196,13 +196,13 @@ def _beams(job: Job) -> bool | None:
     return True if job.cells.lattice == "beams" else None
 
 
-def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> FilledPartRecord:
+def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> FilledPartRecord:
     """Judge a filled part and measure it."""
     part, wishes = each.part, job.cells
     regions = [region.mesh for region in each.regions if region.mesh]
     with clock.stage("judge"):
         found = check_filled(
-            part.name, part.mesh, regions, filled.cells, filled.mesh, dropped=filled.islands_mm3
+            part.name, part.mesh, regions, filled.cells, filled.mesh, dropped=filled.dropped_volume_mm3
         )
     with clock.stage("powder"):
         pockets = pockets_of(filled.mesh, wishes.powder_hole_mm)
@@ -220,8 +220,8 @@ def _measured(each: _PartFill, filled: Filled, job: Job, clock: Clock) -> Filled
         cell_volume_mm3=filled.cells_mm3,
         mass_before_g=mass(part, part.volume_mm3, density),
         mass_after_g=mass(part, volume, density),
-        dropped_components=filled.islands,
-        dropped_volume_mm3=filled.islands_mm3,
+        dropped_components=filled.dropped_components,
+        dropped_volume_mm3=filled.dropped_volume_mm3,
         genus=filled.genus,
         pockets=pockets,
         pockets_before_mm3=sum(pocket.volume for pocket in before),

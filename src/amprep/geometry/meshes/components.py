@@ -1,4 +1,4 @@
-"""Pieces of a solid that lie wholly in a region, held by nothing outside it."""
+"""Disconnected components of a solid that are completely inside a region, and the genus of a mesh."""
 
 from typing import NamedTuple
 
@@ -10,84 +10,86 @@ from amprep.geometry.meshes.shells import Shells, measure_shells
 from amprep.geometry.meshes.topology import drop_unused_vertices
 
 CRUMB = 1e-4
-"""mm3; what booleans on rounded coordinates may leave behind, and nobody misses."""
+"""Volume (mm3) of the fragments that Booleans on rounded coordinates may leave; smaller ones are not counted."""
 
 _INWARD = 1e-3
-"""mm; how far below the surface a point stands for what is there."""
+"""Inward offset (mm) at which sample points are taken."""
 
 
 class DetachedSplit(NamedTuple):
-    """What stays of a solid, what is let go of it, and how many pieces that is, crumbs aside."""
+    """The part of a solid that is kept, the detached components, and their number without fragments."""
 
     kept: MeshArrays
-    islands: MeshArrays
-    number: int
+    detached: MeshArrays
+    components: int
 
 
 def drop_detached(points: Floats, triangles: Int64s, region: MeshArrays, whole: MeshArrays) -> DetachedSplit:
-    """Let go of the pieces that lie wholly in the region.
+    """Separate the components of a filled solid that are completely inside the region, which nothing holds.
 
-    Where a piece of the `whole` lay wholly in the region itself, the largest that is left of it stays.
+    If a component of the solid before filling was completely inside the region, the largest of its remains is kept.
 
     Parameters
     ----------
     points, triangles
-        A closed solid ``(n, 3)`` mm, ``(m, 3)``; shells of negative volume are voids in its pieces.
-    region, whole
-        Closed solids: the region, and what there was before.
+        The filled solid, closed, ``(n, 3)`` mm and ``(m, 3)``; shells of negative volume are voids.
+    region
+        The region, closed.
+    whole
+        The solid before filling, closed.
     """
     shells = measure_shells(points, triangles)
     corners = points[triangles]
     outward = shells.volume > 0.0
-    loose = outward & ~_reaching_out(corners, shells.label, len(shells.volume), region)
-    loose[_largest_each(points, triangles, shells, loose, region, whole)] = False
-    if not loose.any():
+    detached = outward & ~_reaching_out(corners, shells.label, len(shells.volume), region)
+    detached[_largest_each(points, triangles, shells, detached, region, whole)] = False
+    if not detached.any():
         return DetachedSplit((points, triangles), (np.empty((0, 3)), np.empty((0, 3), np.int64)), 0)
-    gone = loose[shells.label]
-    islands = drop_unused_vertices(points, triangles[gone])
+    gone = detached[shells.label]
+    separate = drop_unused_vertices(points, triangles[gone])
     first = np.unique(shells.label, return_index=True)[1]
     voids = np.flatnonzero(~outward)
-    loose[voids] = _within(points[triangles[first[voids], 0]], islands)
-    count = int((loose & (shells.volume > CRUMB)).sum())
-    gone = loose[shells.label]
+    detached[voids] = _within(points[triangles[first[voids], 0]], separate)
+    count = int((detached & (shells.volume > CRUMB)).sum())
+    gone = detached[shells.label]
     return DetachedSplit(
         drop_unused_vertices(points, triangles[~gone]), drop_unused_vertices(points, triangles[gone]), count
     )
 
 
 def count_components(points: Floats, triangles: Int64s) -> int:
-    """Return how many pieces a closed solid has, crumbs and voids aside."""
+    """Return the number of disconnected components of a closed solid, without fragments and voids."""
     return int((measure_shells(points, triangles).volume > CRUMB).sum()) if len(triangles) else 0
 
 
 def genus_of(points: Floats, triangles: Int64s) -> int:
-    """Return how many handles all surfaces of a closed mesh have, each vertex of which is used by one of them."""
+    """Return the genus of a closed mesh, summed over its shells; no vertex may belong to two shells."""
     shells = len(measure_shells(points, triangles).volume)
     used = len(np.unique(triangles))
-    euler = used - len(triangles) // 2  # of closed triangles 3 / 2 as many edges as triangles
+    euler = used - len(triangles) // 2  # a closed mesh has 3 / 2 as many edges as triangles
     return shells - euler // 2
 
 
 def _reaching_out(corners: Floats, label: Int64s, count: int, region: MeshArrays) -> Bools:
-    """Tell which shells have solid outside the region just below their surface, ``(count,)``."""
+    """Tell which shells have material outside the region below their surface, ``(count,)``."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
-    fair = np.flatnonzero(length > 1e-9)
-    below = corners[fair].mean(axis=1) - _INWARD * normal[fair] / length[fair, None]
-    out = fair[~_within(below, region)]
+    valid = np.flatnonzero(length > 1e-9)
+    below = corners[valid].mean(axis=1) - _INWARD * normal[valid] / length[valid, None]
+    out = valid[~_within(below, region)]
     return np.asarray(np.bincount(label[out], minlength=count) > 0)
 
 
 def _largest_each(
-    points: Floats, triangles: Int64s, shells: Shells, loose: Bools, region: MeshArrays, whole: MeshArrays
+    points: Floats, triangles: Int64s, shells: Shells, detached: Bools, region: MeshArrays, whole: MeshArrays
 ) -> Int64s:
-    """Return the largest loose shell in each piece of the whole that lies in the region altogether."""
-    if not loose.any():
+    """Return the largest detached shell in each component of the whole that is completely inside the region."""
+    if not detached.any():
         return np.empty(0, np.int64)
     before = measure_shells(*whole)
     corners = whole[0][whole[1]]
     covered = (before.volume > CRUMB) & ~_reaching_out(corners, before.label, len(before.volume), region)
-    number = np.flatnonzero(loose)
+    number = np.flatnonzero(detached)
     first = np.unique(shells.label, return_index=True)[1][number]
     middle = _below(points[triangles[first]])
     found = []
@@ -99,7 +101,7 @@ def _largest_each(
 
 
 def _below(corners: Floats) -> Floats:
-    """Return a point just below the middle of each triangle."""
+    """Return a point slightly below the centre of each triangle."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]
     return np.asarray(corners.mean(axis=1) - _INWARD * normal)

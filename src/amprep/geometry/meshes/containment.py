@@ -1,4 +1,4 @@
-"""Which points lie inside a closed mesh, by winding number along vertical lines."""
+"""Containment of points in closed meshes, by the winding number along vertical lines."""
 
 import numpy as np
 
@@ -6,12 +6,20 @@ from amprep.arrays import Bools, Floats, Int32s
 
 
 def inside(points: Floats, vertices: Floats, triangles: Int32s) -> Bools:
-    """Tell which of `points` ``(n, 3)`` have a winding number above 0 with respect to the mesh.
+    """Tell which points have a positive winding number with respect to a closed mesh, ``(n,)``.
 
-    Points on the surface may count either way. Time grows with points and triangles that share a square of
-    a horizontal grid, not with their product.
+    Points on the surface may count either way. The time is proportional to the number of pairs of a point and a
+    triangle that share a square of a grid in plan.
+
+    Parameters
+    ----------
+    points
+        ``(n, 3)`` mm.
+    vertices, triangles
+        The mesh, ``(v, 3)`` mm and ``(m, 3)``.
     """
-    from amprep.kernels.meshes.containment import count_below
+    from amprep.kernels.meshes.containment import add_crossings_below
+    from amprep.kernels.meshes.walls import PointGrid
 
     winding = np.zeros(len(points), np.int32)
     if len(points) and len(triangles):
@@ -28,14 +36,11 @@ def inside(points: Floats, vertices: Floats, triangles: Int32s) -> Bools:
         first = np.searchsorted(square[order], np.arange(nx * ny + 1))
         counts = np.zeros(len(near), np.int32)
         corner = np.append(low, 0.0)
-        count_below(
-            np.ascontiguousarray(points[near][order] - corner),
-            first,
+        grid = PointGrid(np.ascontiguousarray(points[near][order] - corner), first, side, (ny, nx))
+        add_crossings_below(
+            grid,
             np.ascontiguousarray(vertices - corner),
             np.ascontiguousarray(triangles, np.int64),
-            side,
-            nx,
-            ny,
             counts,
         )
         winding[near[order]] = counts
@@ -48,7 +53,7 @@ def _bounds(vertices: Floats) -> tuple[Floats, Floats]:
 
 
 def _within(points: Floats, low: Floats, high: Floats) -> Bools:
-    """Tell which points lie in the box; axis by axis, far faster than over rows of three."""
+    """Tell which points are in the box; one axis at a time, which is far faster than rows of three."""
     within = np.ones(len(points), np.bool_)
     for axis in range(3):
         within &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])

@@ -1,4 +1,4 @@
-"""Fewer triangles for the same surface: vertices that hardly matter are moved onto a neighbour, one by one."""
+"""Decimation of closed meshes by edge collapses of bounded error."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,14 @@ from amprep.geometry.meshes.topology import drop_unused_vertices
 Point = tuple[float, float, float]
 
 _ROUNDS = 8
+"""Largest number of rounds."""
 
-_TURN = 0.5
-"""Least cosine between a triangle's normals before and after."""
+_LEAST_COSINE = 0.5
+"""Least cosine of the angle by which a collapse may turn the normal of a triangle."""
 
 
-class _Surface(NamedTuple):
-    """Corners and their planes, the triangles by number, and for each vertex those that use it."""
+class _EditableMesh(NamedTuple):
+    """Points and their planes, the triangles by number, and the triangles that use each vertex."""
 
     points: list[Point]
     planes: list[int]
@@ -25,19 +26,23 @@ class _Surface(NamedTuple):
 
 
 def decimate(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s) -> tuple[Floats, Int64s]:
-    """Collapse edges of a closed mesh where the surface moves by at most `tolerance` each time.
+    """Collapse edges of a closed mesh where each collapse moves the surface by at most a tolerance.
 
-    In each of a few rounds, vertices go in the order of their shortest edges; what lies around one that went stays
-    until the next. The mesh stays closed and keeps its handles (link condition: Dey et al. 1999, Publications de
-    l'Institut Mathematique 66), and no triangle turns over.
+    A round visits the edges from the shortest to the longest and collapses each onto its second end if that is allowed;
+    the neighbours of a removed vertex then stay until the next round. The mesh stays closed and keeps its genus (link
+    condition: Dey et al. 1999, Publications de l'Institut Mathematique 66), and no triangle turns over.
 
     Parameters
     ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    tolerance
+        Largest distance (mm) of the new position of a vertex from the plane of a triangle around its old one.
     planes
-        ``(n,)`` for each vertex the planes that it lies in, a bit each. Vertices in any plane stay where they are,
-        others may be moved onto them; no further triangle comes to lie in a plane.
+        ``(n,)`` planes that contain each vertex, one bit per plane. A vertex in a plane is never removed, and no
+        collapse puts another triangle into a plane.
     """
-    surface = _Surface(
+    surface = _EditableMesh(
         [(float(x), float(y), float(z)) for x, y, z in points],
         [int(each) for each in planes],
         {number: (int(a), int(b), int(c)) for number, (a, b, c) in enumerate(triangles)},
@@ -52,22 +57,22 @@ def decimate(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s
     return drop_unused_vertices(points, np.array(list(surface.triangles.values()), np.int64).reshape(-1, 3))
 
 
-def _round(surface: _Surface, tolerance: float) -> int:
-    """Try every free vertex once; return how many went."""
+def _round(surface: _EditableMesh, tolerance: float) -> int:
+    """Try every free vertex once; return the number of removed vertices."""
     resting = np.array(surface.planes) != 0
-    gone = 0
+    removed = 0
     for vertex, neighbour in _shortest_edges(surface):
         if resting[vertex] or not surface.users[vertex]:
             continue
-        if _may_go(surface, vertex, neighbour, tolerance):
+        if _may_collapse(surface, vertex, neighbour, tolerance):
             resting[list(_around(surface, vertex))] = True
             _collapse(surface, vertex, neighbour)
-            gone += 1
-    return gone
+            removed += 1
+    return removed
 
 
-def _shortest_edges(surface: _Surface) -> list[tuple[int, int]]:
-    """Return all directed edges, the shortest first."""
+def _shortest_edges(surface: _EditableMesh) -> list[tuple[int, int]]:
+    """Return all directed edges, shortest first."""
     corners = np.array(list(surface.triangles.values()), np.int64)
     edges = np.concatenate([corners[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
     points = np.array(surface.points)
@@ -76,12 +81,12 @@ def _shortest_edges(surface: _Surface) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges[order]]
 
 
-def _around(surface: _Surface, vertex: int) -> set[int]:
+def _around(surface: _EditableMesh, vertex: int) -> set[int]:
     return {corner for number in surface.users[vertex] for corner in surface.triangles[number]} - {vertex}
 
 
-def _may_go(surface: _Surface, vertex: int, neighbour: int, tolerance: float) -> bool:
-    """Tell whether a vertex can be moved onto a neighbour without harm."""
+def _may_collapse(surface: _EditableMesh, vertex: int, neighbour: int, tolerance: float) -> bool:
+    """Tell whether a vertex may be merged into a neighbour."""
     shared = surface.users[vertex] & surface.users[neighbour]
     if len(shared) != 2 or len(_around(surface, vertex) & _around(surface, neighbour)) != 2:
         return False
@@ -97,7 +102,7 @@ def _may_go(surface: _Surface, vertex: int, neighbour: int, tolerance: float) ->
         after = [target if corner == vertex else surface.points[corner] for corner in corners]
         old, new = _normal(*before), _normal(*after)
         size, length = _dot(old, old) ** 0.5, _dot(new, new) ** 0.5
-        if length < 1e-12 or _dot(old, new) < _TURN * size * length:
+        if length < 1e-12 or _dot(old, new) < _LEAST_COSINE * size * length:
             return False
         height = _dot(old, _minus(target, before[0]))
         if abs(height) > tolerance * size:
@@ -105,7 +110,7 @@ def _may_go(surface: _Surface, vertex: int, neighbour: int, tolerance: float) ->
     return True
 
 
-def _collapse(surface: _Surface, vertex: int, neighbour: int) -> None:
+def _collapse(surface: _EditableMesh, vertex: int, neighbour: int) -> None:
     for number in list(surface.users[vertex]):
         corners = surface.triangles[number]
         if neighbour in corners:

@@ -1,4 +1,4 @@
-"""How far bodies are apart and how deep they meet: boxes, solids, bare triangles."""
+"""Distance and penetration depth of boxes, solids and sets of triangles."""
 
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,14 @@ if TYPE_CHECKING:
 
 
 def near_pairs(lo: Floats, hi: Floats, distance: float) -> list[tuple[int, int]]:
-    """Return the pairs i < j of boxes ``(n, 3)`` whose gap along every axis is less than `distance`.
+    """Return the pairs i < j of boxes whose distance along every axis is below a limit.
 
-    With `distance` 0 these are the pairs that overlap; a negative one leaves out shallow overlaps.
+    Parameters
+    ----------
+    lo, hi
+        ``(n, 3)`` mm, corners of the boxes.
+    distance
+        The limit, mm; with 0 the pairs that overlap are found, with a negative one those that overlap deeper than that.
     """
     pairs: list[tuple[int, int]] = []
     for i in range(len(lo) - 1):
@@ -23,9 +28,14 @@ def near_pairs(lo: Floats, hi: Floats, distance: float) -> list[tuple[int, int]]
 
 
 def box_distance(lo: Floats, hi: Floats, other_lo: Floats, other_hi: Floats) -> float:
-    """Return the distance of two sets of boxes ``(k, 3)``, ``(m, 3)``; when they overlap, less the depth.
+    """Return the distance of two sets of boxes, mm; if they overlap, minus the penetration depth.
 
-    The depth of an overlap is the shortest way along an axis that ends it.
+    The penetration depth is the length of the shortest translation along an axis that separates two boxes.
+
+    Parameters
+    ----------
+    lo, hi, other_lo, other_hi
+        ``(k, 3)`` and ``(m, 3)`` mm, corners of the boxes.
     """
     gap = np.maximum(lo[:, None] - other_hi[None], other_lo[None] - hi[:, None])
     outside = np.linalg.norm(np.maximum(gap, 0.0), axis=2)
@@ -48,9 +58,9 @@ def box_solids(lo: Floats, hi: Floats) -> "Manifold":
 
 
 def thickness(solid: "Manifold") -> float:
-    """Return the thickness of the thickest piece of a solid: twice its volume over its surface, mm.
+    """Return the greatest ratio of twice the volume to the surface area over the pieces of a solid, mm.
 
-    Of a thin slab, such as what two bodies share that touch, that is the slab's thickness.
+    For a thin slab, such as the intersection of two solids that touch, this is the thickness of the slab.
     """
     thickest = 0.0
     for piece in solid.decompose():
@@ -61,7 +71,7 @@ def thickness(solid: "Manifold") -> float:
 
 
 def solid_distance(solid: "Manifold", other: "Manifold", limit: float) -> float:
-    """Return the distance of two solids, at most `limit`; if they overlap, less the `thickness` shared."""
+    """Return the distance of two solids, at most `limit`, mm; if they overlap, minus the `thickness` of the overlap."""
     shared = thickness(solid ^ other)
     if shared > 0.0 or limit <= 0.0:
         return -shared
@@ -69,10 +79,18 @@ def solid_distance(solid: "Manifold", other: "Manifold", limit: float) -> float:
 
 
 def triangle_distance(corners: Floats, other: Floats, limit: float) -> float:
-    """Return the distance of two sets of triangles ``(n, 3, 3)``, at most `limit`; if crossing, less depth.
+    """Return the distance of two sets of triangles; if they intersect, minus the penetration depth.
 
-    The depth of a crossing is how far the edge would have to be drawn back, or the pierced triangle trimmed.
-    Triangles that enclose others without touching them do not cross them.
+    Where an edge pierces a triangle, the depth is the least distance from the point of intersection, measured normal to
+    the triangle to an end of the edge, or in the triangle to its border. Triangles that enclose others without touching
+    them do not intersect them.
+
+    Parameters
+    ----------
+    corners, other
+        ``(n, 3, 3)`` and ``(m, 3, 3)`` mm.
+    limit
+        Largest distance that is searched, mm; it is returned where the sets are farther apart.
     """
     from amprep.kernels.meshes.distance import least_distance
 

@@ -1,4 +1,4 @@
-"""Meshes as manifold3d takes them."""
+"""Conversion of meshes to solids of manifold3d."""
 
 from typing import TYPE_CHECKING
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 def as_manifold(vertices: ArrayLike, triangles: ArrayLike) -> "Manifold":
-    """Hand a mesh to manifold3d; its `status` says whether it is accepted, a refused one is empty.
+    """Return a mesh as a solid of manifold3d, which is empty if manifold3d rejects the mesh (see `accepted`).
 
-    Indices have to be in range. Edges are matched here first: manifold3d 3.5 calls a mesh "not manifold"
-    where they do not match, but on some such meshes it crashes.
+    Indices must be in range. Edges are compared first, because manifold3d 3.5 crashes on some meshes whose edges do not
+    match instead of rejecting them.
     """
     from manifold3d import Manifold, Mesh64
 
@@ -27,7 +27,7 @@ def as_manifold(vertices: ArrayLike, triangles: ArrayLike) -> "Manifold":
 
 
 def accepted(solid: "Manifold") -> bool:
-    """Tell whether manifold3d took the mesh."""
+    """Tell whether manifold3d accepted the mesh."""
     from manifold3d import Error
 
     return bool(solid.status() == Error.NoError)

@@ -1,4 +1,4 @@
-"""The inside of a solid that lies deeper than a given distance below its surface."""
+"""Inward offset of a solid: the part that is deeper than a given distance below its surface."""
 
 import numpy as np
 
@@ -8,27 +8,37 @@ from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import as_manifold
 
 MOST_POINTS = 800_000
-"""Of the grid; manifold3d asks for one at a time."""
+"""Largest number of grid points; manifold3d evaluates them one at a time."""
 
 _MOST_SAMPLES = 2_000_000
+"""Largest number of sample points on the surface."""
 
-_SMOOTH = 200.0
-"""Part of the depth by which the surface may move when flat triangles are joined."""
+_SIMPLIFY = 200.0
+"""The result is simplified by at most the depth divided by this."""
 
-_CLOSE = 6.0
-"""Samples of the surface lie that many times closer than the depth, if there are not too many of them."""
+_SAMPLES_PER_DEPTH = 6.0
+"""Spacing of sample points on the surface: the depth divided by this, unless that gives too many."""
 
 
 def offset_inwards(points: Floats, triangles: Int64s, depth: float, step: float) -> tuple[Floats, Int64s]:
-    """Return a closed mesh of what lies at least `depth` mm below the surface of a solid.
+    """Return a closed mesh of the points of a solid at least `depth` mm below its surface.
 
-    A level set of the distance to points sampled on the surface, on a grid of about `step` mm. It errs to the
-    inside: what is left around it is nowhere thinner than `depth`, edges and corners inside come out a little blunt.
+    It is a level set of the distance to sample points on the surface, which errs inwards: the skin around it is nowhere
+    thinner than `depth`, and its edges and corners are slightly blunt.
+
+    Parameters
+    ----------
+    points, triangles
+        The solid, ``(n, 3)`` mm and ``(m, 3)``.
+    depth
+        Thickness of the skin, mm.
+    step
+        Pitch of the grid on which the distance is evaluated, mm; larger for large solids.
 
     Returns
     -------
     points, triangles
-        ``(n, 3)`` mm and ``(m, 3)``; none where the solid is nowhere that thick.
+        ``(k, 3)`` mm and ``(l, 3)``; empty if the solid is nowhere that thick.
     """
     from manifold3d import Manifold
 
@@ -45,28 +55,28 @@ def offset_inwards(points: Floats, triangles: Int64s, depth: float, step: float)
     values = _excess(np.array(asked), points, triangles, depth, step)
     known = dict(zip(asked, values.tolist(), strict=True))
     found = Manifold.level_set(lambda x, y, z: known[x, y, z], bounds, step)
-    return arrays_of((found ^ as_manifold(points, triangles)).simplify(depth / _SMOOTH))
+    return arrays_of((found ^ as_manifold(points, triangles)).simplify(depth / _SIMPLIFY))
 
 
 def _excess(places: Floats, points: Floats, triangles: Int64s, depth: float, most: float) -> Floats:
-    """Return how much deeper than `depth` places lie, at most `most`; outside the solid, minus the depth."""
+    """Return the depth of points below the surface minus `depth`, at most `most`; outside the solid, minus `depth`."""
     from scipy.spatial import cKDTree
 
     result = np.full(len(places), -depth)
     within = np.flatnonzero(inside(places, points, triangles.astype(np.int32)))
-    samples, spacing = _samples(points, triangles, depth / _CLOSE)
-    farthest = float(np.hypot(depth + most, spacing))  # looking farther takes long, and nobody asks
+    samples, spacing = _samples(points, triangles, depth / _SAMPLES_PER_DEPTH)
+    farthest = float(np.hypot(depth + most, spacing))  # a longer search is slow and not needed
     distance, _ = cKDTree(samples).query(places[within], distance_upper_bound=farthest, workers=-1)
-    # the sample nearest to a surface point is within `spacing` of it: so much farther than the surface may it be
+    # every point of the surface has a sample within `spacing`, so the surface may be nearer than the sample by that
     surface = np.sqrt(np.maximum(np.minimum(distance, farthest) ** 2 - spacing**2, 0.0))
     result[within] = surface - depth
     return result
 
 
 def _samples(points: Floats, triangles: Int64s, spacing: float) -> tuple[Floats, float]:
-    """Return points on triangles, and within which distance of one every point of a triangle lies.
+    """Return points on triangles, and a distance within which every point of a triangle has one of them.
 
-    They stand in rows along the longest side of each triangle.
+    The points are in rows parallel to the longest side of each triangle.
     """
     corners = points[triangles]
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)

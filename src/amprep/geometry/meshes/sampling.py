@@ -1,4 +1,4 @@
-"""Sample points on faces and edges, dense enough that no point of them is far from one."""
+"""Sample points on faces, edges and tips, at most a given distance apart."""
 
 from typing import NamedTuple
 
@@ -9,9 +9,9 @@ from amprep.geometry.overhangs.regions import Overhangs
 
 
 class OverhangSamples(NamedTuple):
-    """Points ``(n, 3)`` mm on what needs support, and the region ``(n,)`` of each.
+    """Points ``(n, 3)`` mm on overhangs, and the region ``(n,)`` of each.
 
-    `inner` tells the points of a lattice over the faces, each of which stands for the same area in plan.
+    `inner` marks the points of a lattice over the faces; each of them represents the same area in plan.
     """
 
     points: Floats
@@ -22,10 +22,19 @@ class OverhangSamples(NamedTuple):
 def sample_overhangs(
     vertices: Floats, triangles: Int32s, overhangs: Overhangs, spacing: float
 ) -> OverhangSamples:
-    """Return points on everything that needs support: lattices on faces, their rims, edges, tips.
+    """Return sample points on overhangs: a lattice on their faces, the rims of these, knife edges, and tips.
 
-    Every point of a face lies within ``spacing / sqrt(2)`` of a sample in plan, every point of a rim or an
-    edge within half of `spacing` (mm).
+    Every point of a face has a sample within ``spacing / sqrt(2)`` in plan, every point of a rim or a knife edge one
+    within ``spacing / 2``.
+
+    Parameters
+    ----------
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
+    overhangs
+        Overhangs with indices into the mesh.
+    spacing
+        Pitch of the lattice, mm.
     """
     faces = np.asarray(triangles[overhangs.faces], np.int64)
     inner, owner = _lattice(vertices, faces, spacing)
@@ -46,17 +55,17 @@ def sample_overhangs(
 
 
 def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Int64s]:
-    """Return points along segments, both ends included, and the segment of each."""
+    """Return points along segments at most `spacing` mm apart, both ends included, and the segment of each."""
     length = np.linalg.norm(end - start, axis=1)
     pieces = np.maximum(np.ceil(length / spacing), 1).astype(np.int64)
     owner = np.repeat(np.arange(len(pieces)), pieces + 1)
     first = np.concatenate([[0], np.cumsum(pieces + 1)])[:-1]
-    share = (np.arange(len(owner)) - first[owner]) / pieces[owner]
-    return start[owner] + share[:, None] * (end - start)[owner], owner
+    fraction = (np.arange(len(owner)) - first[owner]) / pieces[owner]
+    return start[owner] + fraction[:, None] * (end - start)[owner], owner
 
 
 def sample_triangles(corners: Floats, spacing: float) -> Floats:
-    """Return points of triangles ``(n, 3, 3)``, edges and corners included, in rows at most `spacing` mm apart."""
+    """Return points on triangles ``(n, 3, 3)`` mm with their edges and corners, in rows at most `spacing` mm apart."""
     sides = np.roll(corners, -1, axis=1) - corners
     length = np.linalg.norm(sides, axis=2)
     longest = length.argmax(axis=1)
@@ -67,8 +76,8 @@ def sample_triangles(corners: Floats, spacing: float) -> Floats:
         np.int64
     )
     owner = np.repeat(every, rows + 1)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(rows + 1) - rows - 1, rows + 1)) / rows[owner]
-    start, end = (each[owner] + share[:, None] * (c - each)[owner] for each in (a, b))
+    fraction = (np.arange(len(owner)) - np.repeat(np.cumsum(rows + 1) - rows - 1, rows + 1)) / rows[owner]
+    start, end = (each[owner] + fraction[:, None] * (c - each)[owner] for each in (a, b))
     return sample_segments(start, end, spacing)[0]
 
 
@@ -83,7 +92,7 @@ def _lattice(vertices: Floats, faces: Int64s, spacing: float) -> tuple[Floats, I
 
 
 def _rim(faces: Int64s) -> tuple[Int64s, Int64s]:
-    """Return the edges ``(n, 2)`` that only one of `faces` has, and that face."""
+    """Return the edges ``(n, 2)`` that belong to only one of the faces, and that face."""
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
     key = ends[:, 0] * (int(ends.max(initial=0)) + 1) + ends[:, 1]
     _, first, count = np.unique(key, return_index=True, return_counts=True)

@@ -1,4 +1,4 @@
-"""Splits triangles where a finer mesh is wanted, neighbours included, so that edges still meet edges."""
+"""Subdivision of marked triangles by bisection of their longest edges."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -8,45 +8,52 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int32s, Int64s
 
 MOST_TRIANGLES = 2_000_000
+"""Subdivision stops when there are this many triangles."""
 
-Wish = Callable[[Floats, Int64s], Bools]
-"""Called with corners ``(m, 3, 3)`` and the original triangle of each ``(m,)``; says which are to be split."""
+Marker = Callable[[Floats, Int64s], Bools]
+"""Function of the corners ``(m, 3, 3)`` mm and the original triangle ``(m,)`` that marks triangles to split."""
 
 
 class SubdividedMesh(NamedTuple):
-    """A finer mesh of the same surface; `parent` ``(m,)`` is the original triangle of each."""
+    """A finer mesh of the same surface; `parent` ``(m,)`` is the original triangle of each triangle."""
 
     vertices: Floats
     triangles: Int32s
     parent: Int64s
 
 
-def subdivide(vertices: Floats, triangles: Int32s, wish: Wish) -> SubdividedMesh:
-    """Halve the longest edges of triangles until none is wanted finer, or there are 2 million.
+def subdivide(vertices: Floats, triangles: Int32s, mark: Marker) -> SubdividedMesh:
+    """Bisect the longest edges of marked triangles until none is marked, or there are two million triangles.
 
-    A triangle next to a halved edge is split with it, its own longest edge first, so the mesh keeps neither
-    gaps nor corners on edges, and angles stay bounded (M.-C. Rivara 1984, doi 10.1002/nme.1620200412). New
-    vertices come after the old ones.
+    A triangle next to a bisected edge is split too, first at its own longest edge. So the mesh has no T-junctions, and
+    angles stay bounded (Rivara 1984, doi 10.1002/nme.1620200412). New vertices follow the old ones.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    mark
+        Called before each round with all present triangles.
     """
     refined = SubdividedMesh(
         np.asarray(vertices, np.float64), np.asarray(triangles), np.arange(len(triangles))
     )
     while len(refined.triangles) < MOST_TRIANGLES:
-        wanted = wish(refined.vertices[refined.triangles], refined.parent)
-        if not wanted.any():
+        marked = mark(refined.vertices[refined.triangles], refined.parent)
+        if not marked.any():
             break
-        refined = _halved(refined, wanted)
+        refined = _halved(refined, marked)
     return refined
 
 
-def _halved(mesh: SubdividedMesh, wanted: Bools) -> SubdividedMesh:
-    """Split the longest edges of the wanted triangles, and what has to be split with them."""
+def _halved(mesh: SubdividedMesh, marked: Bools) -> SubdividedMesh:
+    """Bisect the longest edges of the marked triangles, and of the neighbours that must be split with them."""
     corners = _longest_first(mesh)
     ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2).astype(np.int64)
     key, edge = np.unique(ends[..., 0] * len(mesh.vertices) + ends[..., 1], return_inverse=True)
     edge = edge.reshape(-1, 3)
     split = np.zeros(len(key), np.bool_)
-    split[edge[wanted, 0]] = True
+    split[edge[marked, 0]] = True
     while (more := split[edge].any(axis=1) & ~split[edge[:, 0]]).any():
         split[edge[more, 0]] = True
     chosen = np.flatnonzero(split)
@@ -59,7 +66,7 @@ def _halved(mesh: SubdividedMesh, wanted: Bools) -> SubdividedMesh:
 
 
 def _longest_first(mesh: SubdividedMesh) -> Int32s:
-    """Return the corners of each triangle, turned so that its longest edge leads from the first to the second."""
+    """Return the corners of each triangle, rotated so that its longest edge is from the first to the second."""
     points = mesh.vertices[mesh.triangles]
     length = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=2)
     turn = (length.argmax(axis=1)[:, None] + np.arange(3)) % 3
@@ -67,7 +74,7 @@ def _longest_first(mesh: SubdividedMesh) -> Int32s:
 
 
 def _pieces(corners: Int32s, middle: Int32s, parent: Int64s) -> tuple[Int32s, Int64s]:
-    """Return the triangles after splitting; `middle` ``(m, 3)`` is each edge's new vertex, or -1."""
+    """Return the triangles after splitting; `middle` ``(m, 3)`` is the new vertex of each edge, or -1."""
     a, b, c = corners.T
     m, right, left = middle.T
     whole, halved = m < 0, m >= 0

@@ -1,4 +1,4 @@
-"""Tidy a triangle mesh without changing its shape: merge equal vertices, drop what encloses nothing."""
+"""Mesh clean-up and edge queries: equal vertices, degenerate and repeated triangles, open edges."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,10 +7,10 @@ from amprep.arrays import Bools, Floats, Int64s
 
 
 def first_of_equal_rows(rows: NDArray[np.generic]) -> Int64s:
-    """Return for each row of `rows` ``(n, k)`` the index of the first row equal to it, ``(n,)``."""
+    """Return for each row of an array ``(n, k)`` the index of the first equal row, ``(n,)``."""
     if len(rows) == 0:
         return np.empty(0, np.int64)
-    order = np.lexsort(rows.T)  # stable: of equal rows the first comes first
+    order = np.lexsort(rows.T)  # stable, so equal rows keep their order
     ordered = rows[order]
     starts = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
     first = np.empty(len(rows), np.int64)
@@ -19,36 +19,36 @@ def first_of_equal_rows(rows: NDArray[np.generic]) -> Int64s:
 
 
 def merge_equal_vertices(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
-    """Make vertices at equal places one, and forget those no triangle uses; the order stays.
+    """Merge vertices with equal coordinates and drop unused ones; the order is kept.
 
     Parameters
     ----------
     vertices, triangles
-        ``(n, 3)`` finite, and ``(m, 3)`` indices in range.
+        ``(n, 3)`` finite coordinates, and ``(m, 3)`` indices in range.
 
     Returns
     -------
     vertices, triangles
-        The least list of vertices, and as many triangles as before.
+        Different vertices, and as many triangles as before.
     """
     return drop_unused_vertices(vertices, first_of_equal_rows(vertices)[triangles])
 
 
 def drop_unused_vertices(vertices: Floats, triangles: Int64s) -> tuple[Floats, Int64s]:
-    """Forget vertices that no triangle uses; the order stays."""
+    """Drop vertices that no triangle uses; the order is kept."""
     used = np.zeros(len(vertices), np.bool_)
     used[triangles] = True
     return vertices[used], (np.cumsum(used) - 1)[triangles]
 
 
 def degenerate(triangles: Int64s) -> Bools:
-    """Tell which triangles name a vertex twice, ``(m,)``."""
+    """Tell which triangles use a vertex twice, ``(m,)``."""
     following = np.roll(triangles, -1, axis=1)
     return np.asarray((triangles == following).any(axis=1))
 
 
 def repeated(triangles: Int64s) -> Bools:
-    """Tell which triangles repeat an earlier one, same corners turning the same way, ``(m,)``."""
+    """Tell which triangles repeat an earlier one with the same orientation, ``(m,)``."""
     lowest = triangles.argmin(axis=1)[:, None]
     turned = np.take_along_axis(triangles, (lowest + np.arange(3)) % 3, axis=1)
     return np.asarray(first_of_equal_rows(turned) != np.arange(len(triangles)))
@@ -62,9 +62,10 @@ def count_edges(triangles: Int64s) -> tuple[Int64s, Int64s, Int64s]:
     edges
         ``(e, 2)`` vertex indices, the lower first.
     uses
-        ``(e,)`` how many triangles have the edge.
+        ``(e,)`` number of triangles at the edge.
     balance
-        ``(e,)`` how many more run along it from the lower to the higher vertex than back; 0 where they match.
+        ``(e,)`` number of triangles that traverse the edge from the lower to the higher vertex, minus the others; 0
+        where they match.
     """
     triangles = triangles.astype(np.int64, copy=False)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
@@ -76,7 +77,7 @@ def count_edges(triangles: Int64s) -> tuple[Int64s, Int64s, Int64s]:
 
 
 def edges_match(triangles: Int64s) -> bool:
-    """Tell whether every edge is run along as often one way as the other."""
+    """Tell whether every edge is traversed equally often in both directions."""
     triangles = triangles.astype(np.int64, copy=False)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     base = int(triangles.max(initial=0)) + 1
@@ -86,19 +87,29 @@ def edges_match(triangles: Int64s) -> bool:
 
 
 def open_vertices(triangles: Int64s) -> Int64s:
-    """Return the vertices of edges whose triangles do not match, ``(k,)`` ascending."""
+    """Return the vertices of edges whose triangles do not match, ``(k,)`` in ascending order."""
     edges, _, balance = count_edges(triangles)
     return np.unique(edges[balance != 0])
 
 
 def join_near(vertices: Floats, chosen: Int64s, tolerance: float) -> Int64s:
-    """Join the `chosen` vertices that lie within `tolerance` mm, chains of them too.
+    """Join chosen vertices within a tolerance, directly or through chains of others.
+
+    Nothing is joined if on average more than twenty others are within the tolerance: that is not a seam.
+
+    Parameters
+    ----------
+    vertices
+        ``(n, 3)`` mm.
+    chosen
+        ``(k,)`` indices of the vertices to join.
+    tolerance
+        Largest distance, mm.
 
     Returns
     -------
     source
-        ``(n,)`` for each vertex the lowest one it is joined to, itself where there is none. Where more than
-        twenty lie that close on average nothing is joined: that is no seam.
+        ``(n,)`` lowest vertex to which each vertex is joined; itself if there is none.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

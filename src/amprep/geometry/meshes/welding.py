@@ -1,4 +1,4 @@
-"""Weld meshes on arrays: merge vertices that coincide, cancel triangles that face each other."""
+"""Weld meshes: merge coincident vertices and cancel opposite triangles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,16 +8,17 @@ from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.kernels.meshes.welding import label_rows
 
 WELD_LATTICE = 1e-4
-"""mm; cells that conform agree to about 1e-12 mm, a build file to 3e-5 mm, the finest wall is far thicker."""
+"""Pitch (mm) of the lattice on which vertices are merged: far coarser than the errors of conforming cells (1e-12 mm)
+and of build files (3e-5 mm), far finer than the thinnest wall."""
 
 
 def round_as_stored(points: Floats) -> Floats:
-    """Round coordinates to what 3MF keeps: six decimals, then float32; what is kept already stays."""
+    """Round coordinates to six decimals and to float32, as 3MF files store them; the function is idempotent."""
     return np.asarray(np.round(points, 6).astype(np.float32) + np.float32(0.0), np.float64)
 
 
 def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Int64s, int]:
-    """Number equal rows of `rows` ``(n, 3)`` in order of first appearance: labels ``(n,)`` and their count."""
+    """Number equal rows of an array ``(n, 3)`` in order of first appearance; return labels ``(n,)`` and their count."""
     table = np.full(1 << (2 * len(rows) + 1).bit_length(), -1, np.int64)
     label = np.empty(len(rows), np.int64)
     count = label_rows(np.ascontiguousarray(rows, np.int64), table, label)
@@ -27,19 +28,19 @@ def label_equal_rows(rows: NDArray[np.int64]) -> tuple[Int64s, int]:
 def merge_vertices(
     points: Floats, triangles: Int64s, *, lattice: float = WELD_LATTICE
 ) -> tuple[Floats, Int64s]:
-    """Make vertices on the same lattice point one, at the place a build file keeps.
+    """Merge vertices at the same point of a lattice and round their coordinates as build files store them.
 
     Parameters
     ----------
     points, triangles
         ``(n, 3)`` mm and ``(m, 3)``.
     lattice
-        mm; 0 merges only what a build file keeps at exactly the same place.
+        Pitch, mm; 0 merges only vertices that a build file stores with equal coordinates.
 
     Returns
     -------
     points, triangles
-        As many triangles as before, in their order; the first of each set of vertices stays.
+        Merged vertices, each at the first of its set, and as many triangles as before in their order.
     """
     rounded = round_as_stored(points)
     keys = np.round(points / lattice).astype(np.int64) if lattice else rounded.view(np.int64)
@@ -50,10 +51,9 @@ def merge_vertices(
 
 
 def cancel_opposite(triangles: Int64s) -> Bools:
-    """Tell which triangles stay, ``(m,)``, once those with the same corners turning opposite ways cancel.
+    """Tell which triangles remain, ``(m,)``, when triangles of the same corners and opposite orientation cancel.
 
-    Of equal triangles that are left over only the first stays: what is there twice is there once. Triangles
-    with a repeated corner go.
+    Of the equal triangles that remain only the first is kept. Triangles with a repeated corner are dropped.
     """
     flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
     order = np.sort(triangles, axis=1)
@@ -71,10 +71,10 @@ def cancel_opposite(triangles: Int64s) -> Bools:
 
 
 def weld(points: Floats, triangles: Int64s, *, lattice: float = WELD_LATTICE) -> tuple[Floats, Int64s]:
-    """Merge vertices and cancel opposite triangles; vertices nothing uses any more are dropped.
+    """Merge vertices, cancel opposite triangles and drop unused vertices.
 
-    Closed meshes give a closed mesh, and where faces coincide they vanish: the union of solids that touch
-    face to face with the same triangles.
+    Closed meshes give a closed mesh. Coincident faces vanish, so the result is the union of solids that touch in faces
+    with the same triangles.
 
     Parameters
     ----------

@@ -1,27 +1,51 @@
-"""Winding numbers of points: how often the surface is crossed on the way down from each."""
+"""Winding numbers of points: signed crossings of the surface below each point."""
 
 from numba import njit
 
 from amprep.arrays import Floats, Int32s, Int64s
+from amprep.kernels.meshes.walls import PointGrid
+
+# Strategy. A vertical line through a point crosses the triangles above whose projection the point is. Whether it is
+# above a triangle is decided by crossing numbers: for each edge that spans the y of the point, on which side of the
+# edge is its x? The crossing of an edge is computed from its end with the lower y, so the two triangles that share the
+# edge agree to the last bit, and no line slips through between them. Triangles visit only the points in the squares
+# under their box.
 
 
 @njit(cache=True)
-def count_below(
-    points: Floats,
-    first: Int64s,
-    vertices: Floats,
-    triangles: Int64s,
-    side: float,
-    nx: int,
-    ny: int,
-    winding: Int32s,
-) -> None:
-    """Add to `winding` (int32, modified in place) the signed crossings below each point.
+def _turns(vertices: Floats, triangles: Int64s, t: int, x: float, y: float) -> int:
+    """Return the winding number (-1, 0 or 1) of the projection of a triangle around a point in plan."""
+    turns = 0
+    for j in range(3):
+        p, q = triangles[t, j], triangles[t, (j + 1) % 3]
+        rising = vertices[p, 1] <= y < vertices[q, 1]
+        if not rising and not vertices[q, 1] <= y < vertices[p, 1]:
+            continue
+        if not rising:
+            p, q = q, p
+        crossing = vertices[p, 0] + (y - vertices[p, 1]) * (vertices[q, 0] - vertices[p, 0]) / (
+            vertices[q, 1] - vertices[p, 1]
+        )
+        if x < crossing:
+            turns += 1 if rising else -1
+    return turns
 
-    `points` are sorted by the square of a horizontal grid that holds them (`side` mm, ``nx * ny`` squares);
-    those of square s are ``first[s] : first[s + 1]``. On which side of an edge a point lies is computed from
-    the edge's lower end on, so that triangles which share it agree to the last bit.
+
+@njit(cache=True)
+def add_crossings_below(grid: PointGrid, vertices: Floats, triangles: Int64s, winding: Int32s) -> None:
+    """Add the signed crossings below each point to its winding number.
+
+    Parameters
+    ----------
+    grid
+        The points; their coordinates and those of the vertices are relative to the corner of the grid.
+    vertices, triangles
+        The mesh, ``(v, 3)`` mm and ``(m, 3)``.
+    winding
+        ``(n,)``, modified in place.
     """
+    points, first, side = grid.points, grid.first, grid.side
+    ny, nx = grid.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
@@ -39,19 +63,7 @@ def count_below(
             for ix in columns:
                 for i in range(first[iy * nx + ix], first[iy * nx + ix + 1]):
                     x, y, z = points[i, 0], points[i, 1], points[i, 2]
-                    turns = 0
-                    for j in range(3):
-                        p, q = triangles[t, j], triangles[t, (j + 1) % 3]
-                        rising = vertices[p, 1] <= y < vertices[q, 1]
-                        if not rising and not vertices[q, 1] <= y < vertices[p, 1]:
-                            continue
-                        if not rising:
-                            p, q = q, p
-                        crossing = vertices[p, 0] + (y - vertices[p, 1]) * (
-                            vertices[q, 0] - vertices[p, 0]
-                        ) / (vertices[q, 1] - vertices[p, 1])
-                        if x < crossing:
-                            turns += 1 if rising else -1
+                    turns = _turns(vertices, triangles, t, x, y)
                     if turns != 0:
                         height = az + slope_x * (x - ax) + slope_y * (y - ay)
                         if min(max(height, low), high) < z:

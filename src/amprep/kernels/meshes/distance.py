@@ -1,32 +1,42 @@
-"""Distances and crossings of triangles, compiled."""
+"""Distances and intersections of triangles."""
 
 import numpy as np
 from numba import njit
 
+from amprep.arrays import Floats
+
+Point = tuple[float, float, float]
+Triangle = tuple[Point, Point, Point]
+
+# Strategy. Two triangles that do not intersect have their least distance between two edges, or between a corner of one
+# and the inside of the other. If they intersect, an edge of one pierces the other. So nine pairs of edges and six
+# corners are measured per pair of triangles. One set is sorted by x, and boxes that are farther apart than the least
+# distance so far are skipped (sweep and prune). Points are tuples, which numba keeps in registers.
+
 
 @njit(cache=True)
-def _dot(a, b):
+def _dot(a: Point, b: Point) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @njit(cache=True)
-def _minus(a, b):
+def _minus(a: Point, b: Point) -> Point:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 @njit(cache=True)
-def _along(a, direction, t):
+def _along(a: Point, direction: Point, t: float) -> Point:
     return (a[0] + t * direction[0], a[1] + t * direction[1], a[2] + t * direction[2])
 
 
 @njit(cache=True)
-def _cross(a, b):
+def _cross(a: Point, b: Point) -> Point:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @njit(cache=True)
-def _segments(p, q, r, s):
-    """Return the squared distance of the segments pq and rs."""
+def _segment_distance(p: Point, q: Point, r: Point, s: Point) -> float:
+    """Return the squared distance of the segments pq and rs (Ericson 2005, Real-Time Collision Detection, 5.1.9)."""
     u, v, w = _minus(q, p), _minus(s, r), _minus(p, r)
     a, b, c, d, e = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w)
     det = a * c - b * b
@@ -36,12 +46,12 @@ def _segments(p, q, r, s):
     k = min(1.0, max(0.0, (b * t + e) / c)) if c > 0.0 else 0.0
     t = min(1.0, max(0.0, (b * k - d) / a)) if a > 0.0 else 0.0
     apart = _minus(_along(p, u, t), _along(r, v, k))
-    return _dot(apart, apart)
+    return float(_dot(apart, apart))
 
 
 @njit(cache=True)
-def _inside(point, triangle, normal):
-    """Return whether the point's projection lies in the triangle."""
+def _inside(point: Point, triangle: Triangle, normal: Point) -> bool:
+    """Return whether the projection of a point is inside a triangle."""
     for i in range(3):
         a, b = triangle[i], triangle[(i + 1) % 3]
         if _dot(_cross(_minus(b, a), _minus(point, a)), normal) < 0.0:
@@ -50,17 +60,17 @@ def _inside(point, triangle, normal):
 
 
 @njit(cache=True)
-def _to_border(point, triangle):
+def _border_distance(point: Point, triangle: Triangle) -> float:
     """Return the distance of a point to the nearest edge of a triangle."""
     least = np.inf
     for i in range(3):
-        least = min(least, _segments(point, point, triangle[i], triangle[(i + 1) % 3]))
-    return np.sqrt(least)
+        least = min(least, _segment_distance(point, point, triangle[i], triangle[(i + 1) % 3]))
+    return float(np.sqrt(least))
 
 
 @njit(cache=True)
-def _one_way(one, other, gap):
-    """Return `gap`, or less by the corners and edges of `one` against the inside of `other`."""
+def _against_inside(one: Triangle, other: Triangle, gap: float) -> float:
+    """Return the lesser of `gap` and the signed distance of the corners and edges of `one` to the inside of `other`."""
     normal = _cross(_minus(other[1], other[0]), _minus(other[2], other[0]))
     length = np.sqrt(_dot(normal, normal))
     if length == 0.0:
@@ -74,12 +84,12 @@ def _one_way(one, other, gap):
         if height_a * height_b < 0.0:
             point = _along(a, _minus(b, a), height_a / (height_a - height_b))
             if _inside(point, other, normal):
-                gap = min(gap, -min(abs(height_a), abs(height_b), _to_border(point, other)))
+                gap = min(gap, -min(abs(height_a), abs(height_b), _border_distance(point, other)))
     return gap
 
 
 @njit(cache=True)
-def _corners(triangles, i):
+def _corners(triangles: Floats, i: int) -> Triangle:
     return (
         (triangles[i, 0, 0], triangles[i, 0, 1], triangles[i, 0, 2]),
         (triangles[i, 1, 0], triangles[i, 1, 1], triangles[i, 1, 2]),
@@ -88,11 +98,17 @@ def _corners(triangles, i):
 
 
 @njit(cache=True)
-def least_distance(triangles, others, widest, limit):
-    """Return the least distance of two sets of triangles ``(n, 3, 3)``, at most `limit`.
+def least_distance(triangles: Floats, others: Floats, widest: float, limit: float) -> float:
+    """Return the least distance of two sets of triangles, at most a limit; if they intersect, minus the depth.
 
-    When they cross, it is less the depth. `others` are sorted by their least x; `widest` is the greatest
-    extent of one of them in x.
+    Parameters
+    ----------
+    triangles, others
+        ``(n, 3, 3)`` and ``(m, 3, 3)`` mm; `others` are sorted by their least x.
+    widest
+        Largest extent of one of the `others` in x, mm.
+    limit
+        Largest distance that is searched, mm.
     """
     least = limit
     starts = np.empty(others.shape[0])
@@ -121,9 +137,9 @@ def least_distance(triangles, others, widest, limit):
                 continue
             for p in range(3):
                 for q in range(3):
-                    square = _segments(one[p], one[(p + 1) % 3], two[q], two[(q + 1) % 3])
+                    square = _segment_distance(one[p], one[(p + 1) % 3], two[q], two[(q + 1) % 3])
                     if least > 0.0 and square < least * least:
                         least = np.sqrt(square)
-            least = _one_way(two, one, _one_way(one, two, least))
+            least = _against_inside(two, one, _against_inside(one, two, least))
             reach = max(least, 0.0)
     return least

@@ -1,4 +1,4 @@
-"""Lattice points on triangles: where upright lines through the nodes of a square lattice meet them."""
+"""Lattice points on triangles: intersections with the vertical lines through a square lattice."""
 
 import numpy as np
 from numba import njit
@@ -8,9 +8,18 @@ from amprep.arrays import Floats, Int64s
 
 @njit(cache=True)
 def lattice_points(vertices: Floats, triangles: Int64s, spacing: float, points: Floats, owner: Int64s) -> int:
-    """Fill `points` ``(n, 3)`` and `owner` ``(n,)`` (the triangle) while there is room; return their number.
+    """Write the lattice points on triangles, as many as fit into the arrays, and return their number.
 
-    Call it with empty arrays to count first. A line through a shared edge meets one of its two triangles.
+    A call with empty arrays only counts them. A line through a shared edge meets exactly one of its two triangles.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(v, 3)`` mm and ``(m, 3)``.
+    spacing
+        Pitch of the lattice, mm.
+    points, owner
+        ``(n, 3)`` and ``(n,)``, points and their triangles; written in place.
     """
     count = 0
     for t in range(triangles.shape[0]):
