@@ -1,92 +1,132 @@
-"""Lists what nothing holds: by region and reason, and what of it is too small to matter."""
+"""List the overhangs that no support holds, by region and reason."""
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
-from amprep.geometry.meshes.sampling import OverhangSamples
+from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs
 from amprep.geometry.overhangs.regions import OverhangRegion
-from amprep.model.build import BuildSettings, Unsupported
+from amprep.model.build import BuildSettings, PlacedPart, SupportBody, Unsupported
+from amprep.overhangs.contacts import find_held, sample_spacing
+from amprep.overhangs.of_part import PartOverhangs
 
-ReasonsOf = Callable[[Floats], Sequence[str]]
+ReasonsAt = Callable[[int, Floats], Sequence[str]]
+"""Returns the reasons for points ``(n, 3)`` mm on a part's unsupported overhangs; called with the part's index."""
 
 
-def list_bare(
-    part: int,
-    label: str,
-    samples: OverhangSamples,
-    regions: Sequence[OverhangRegion],
-    covered: Bools,
+def find_unsupported(
+    parts: Sequence[PlacedPart],
+    overhangs: Sequence[PartOverhangs],
+    bodies: Sequence[SupportBody],
     settings: BuildSettings,
-    reasons_of: ReasonsOf,
-) -> Iterator[Unsupported]:
-    """Yield the samples of a part that are not `covered`, by region, reason and whether they are minor.
+    reasons_at: ReasonsAt,
+) -> tuple[Unsupported, ...]:
+    """List the overhangs that have no contact within reach, by part, region and reason.
 
-    Minor is a connected patch smaller than the least area (a stretch shorter than the least length) that the
-    job asks to support, next to held surface that lies no higher: nothing there starts in the air. A tip is
-    never minor.
+    Parameters
+    ----------
+    parts
+        The parts of the build.
+    overhangs
+        The overhangs of each part, as the planner found them.
+    bodies
+        The finished supports.
+    settings
+        Reach, smallest area and smallest length.
+    reasons_at
+        Says why points are unsupported.
     """
-    bare = np.flatnonzero(~covered)
-    reasons = np.array(reasons_of(samples.points[bare]), dtype=object)
-    for region in np.unique(samples.region[bare]):
-        here = samples.region[bare] == region
-        minor = _minor(bare[here], samples, regions[region], covered, settings)
-        for reason in sorted(set(reasons[here])):
-            for small in (False, True):
-                chosen = bare[here][(reasons[here] == reason) & (minor == small)]
-                if len(chosen):
-                    measure = _measure(chosen, samples, regions[region])
-                    name = region_name(int(region), label)
-                    points = _thinned(samples.points[chosen], settings.reach / 3)
-                    kind = regions[region].kind
-                    yield Unsupported(part, name, kind, reason, measure, points, settings.reach, small)
+    found: list[Unsupported] = []
+    for part, (placed, own) in enumerate(zip(parts, overhangs, strict=True)):
+        spacing = sample_spacing(placed, settings.rules, settings.reach)
+        samples = sample_overhangs(own.mesh.vertices, own.mesh.triangles, own.overhangs, spacing)
+        held = find_held(samples.points, placed.mesh, bodies, spacing, settings.reach)
+        left = np.flatnonzero(~held)
+        reasons = np.array(reasons_at(part, samples.points[left]), dtype=object)
+        for number in np.unique(samples.region[left]):
+            here = samples.region[left] == number
+            region = _RegionCoverage(samples, held, own.overhangs.regions[number], settings)
+            for reason, minor, chosen in region.patches(left[here], reasons[here]):
+                found.append(
+                    Unsupported(
+                        part,
+                        region_name(int(number), placed.label),
+                        region.region.kind,
+                        reason,
+                        region.measure(chosen),
+                        _thinned(samples.points[chosen], settings.reach / 3),
+                        settings.reach,
+                        minor,
+                    )
+                )
+    return tuple(found)
 
 
 def region_name(region: int, label: str) -> str:
-    """Return what people call an overhang region of a placed part: ``overhang 7 of bracket-2``."""
+    """Return the name of an overhang region of a placed part in reports: ``overhang 7 of bracket-2``."""
     return f"overhang {region + 1} of {label}"
 
 
-def _minor(
-    bare: Ints, samples: OverhangSamples, region: OverhangRegion, covered: Bools, settings: BuildSettings
-) -> Bools:
-    """Tell which of the bare samples of one region are minor."""
-    least = {"face": settings.rules.min_area_mm2, "edge": settings.rules.min_length_mm, "tip": 0.0}[
-        region.kind
-    ]
-    minor = np.zeros(len(bare), np.bool_)
-    if least <= 0.0:
+class _RegionCoverage(NamedTuple):
+    """One overhang region of a part, with the samples of the part and which of them are held."""
+
+    samples: OverhangSamples
+    held: Bools
+    region: OverhangRegion
+    settings: BuildSettings
+
+    def patches(self, left: Ints, reasons: NDArray[np.object_]) -> Iterator[tuple[str, bool, Ints]]:
+        """Yield the samples of the region that are not held by reason, first those that count, then minor ones."""
+        minor = self._are_minor(left)
+        for reason in sorted(set(reasons)):
+            for small in (False, True):
+                chosen = left[(reasons == reason) & (minor == small)]
+                if len(chosen):
+                    yield reason, small, chosen
+
+    def measure(self, chosen: Ints) -> float:
+        """Return the area or length of the region that the chosen samples represent."""
+        own = self.samples.region == self.samples.region[chosen[0]]
+        weight = self.samples.inner if self.samples.inner[own].any() else np.ones(len(own), np.bool_)
+        return float(self.region.measure * weight[chosen].sum() / weight[own].sum())
+
+    def _are_minor(self, left: Ints) -> Bools:
+        """Tell which of the samples that are not held are minor.
+
+        A minor patch is smaller than the smallest area (or length), and beside it the part is held at a point
+        that is no higher: the part does not start in the air there. A tip is never minor.
+        """
+        rules, near = self.settings.rules, self.settings.reach / 2
+        smallest = {"face": rules.min_area_mm2, "edge": rules.min_length_mm, "tip": 0.0}[self.region.kind]
+        minor = np.zeros(len(left), np.bool_)
+        if smallest <= 0.0:
+            return minor
+        points, number = self.samples.points, self.samples.region[left[0]]
+        held = points[self.held & (self.samples.region == number)]
+        patch = _patches(points[left], near)
+        for label in range(int(patch.max(initial=-1)) + 1):
+            own = patch == label
+            is_small = self.measure(left[own]) < smallest
+            minor[own] = is_small and _is_held_as_low(points[left[own]], held, near)
         return minor
-    patch = _patches(samples.points[bare], settings.reach / 2)
-    held = samples.points[covered & (samples.region == samples.region[bare[0]])]
-    for number in range(int(patch.max(initial=-1)) + 1):
-        own = patch == number
-        small = _measure(bare[own], samples, region) < least
-        minor[own] = small and _stands(samples.points[bare[own]], held, settings.reach / 2)
-    return minor
 
 
-def _measure(chosen: Ints, samples: OverhangSamples, region: OverhangRegion) -> float:
-    """Return the share of the region's area or length that the chosen samples stand for."""
-    own = samples.region == samples.region[chosen[0]]
-    weight = samples.inner if samples.inner[own].any() else np.ones(len(own), np.bool_)
-    return float(region.measure * weight[chosen].sum() / weight[own].sum())
-
-
-def _patches(points: Floats, apart: float) -> Ints:
-    """Label points ``(n, 3)`` so that those at most `apart` mm from one another have one label."""
+def _patches(points: Floats, distance: float) -> Ints:
+    """Label points ``(n, 3)``; points at most `distance` mm apart have the same label."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
-    pairs = KDTree(points).query_pairs(apart, output_type="ndarray")
+    pairs = KDTree(points).query_pairs(distance, output_type="ndarray")
     graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(len(points), len(points)))
     return np.asarray(connected_components(graph, directed=False)[1])
 
 
-def _stands(patch: Floats, held: Floats, near: float) -> bool:
-    """Tell whether some held point near the patch is as low as its lowest."""
+def _is_held_as_low(patch: Floats, held: Floats, near: float) -> bool:
+    """Tell whether a held point within `near` mm of the patch is no higher than the lowest point of the patch."""
     from scipy.spatial import KDTree
 
     if not len(held):
@@ -97,6 +137,6 @@ def _stands(patch: Floats, held: Floats, near: float) -> bool:
 
 
 def _thinned(points: Floats, cell: float) -> Floats:
-    """Return one point of each cell of a grid."""
+    """Return one point of each cell (mm) of a grid."""
     _, first = np.unique(np.floor(points / cell), axis=0, return_index=True)
     return points[np.sort(first)]

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from amprep.checks.supports.coverage import find_unsupported
 from amprep.job import Job
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
@@ -15,6 +14,7 @@ from amprep.model import (
     SupportPlan,
     SupportProblem,
 )
+from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.stages import Clock
@@ -156,7 +156,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             progress=progress,
         )
     with clock.stage("judge"):
-        unsupported = find_unsupported(parts, bodies, settings, layout.reason_at)
+        unsupported = find_unsupported(parts, layout.part_overhangs, bodies, settings, layout.reason_at)
         build = Build(settings, parts, bodies, unsupported)
         removal = removal_of(job, build)
     return SupportedBuild(build, layout, tuple(advice_for(job, build, planned.pitch_mm)), removal)

@@ -10,6 +10,7 @@ from amprep.geometry.voxels.grid import Grid
 from amprep.model.mesh import Mesh
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
 from amprep.model.supports.edges import SupportEdges
+from amprep.overhangs.of_part import PartOverhangs
 from amprep.supports.grid.red_squares import RedSquares
 
 
@@ -77,6 +78,11 @@ class SupportLayout:
         object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
         object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
+
+    @property
+    def part_overhangs(self) -> tuple[PartOverhangs, ...]:
+        """The overhangs of each placed part, with the mesh that their indices refer to."""
+        return tuple(map(PartOverhangs, self.meshes, self.overhangs))
 
     def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
         """Say for each point ``(n, 3)`` mm of a part's unsupported overhangs why nothing holds it.

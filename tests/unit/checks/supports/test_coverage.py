@@ -6,7 +6,7 @@ import manifold3d
 import numpy as np
 import pytest
 
-from amprep.checks.supports.coverage import check_coverage, find_unsupported
+from amprep.checks.supports.coverage import check_coverage
 from amprep.geometry.meshes.sampling import sample_overhangs, sample_segments
 from amprep.geometry.overhangs.find import find_overhangs
 from amprep.model import (
@@ -21,6 +21,8 @@ from amprep.model import (
     Unsupported,
 )
 from amprep.model.supports.rules import SupportRules
+from amprep.overhangs.of_part import overhangs_of
+from amprep.overhangs.unsupported import find_unsupported
 
 Solid = manifold3d.Manifold
 SETTINGS = BuildSettings("b.build-1", BuildVolume([60, 60, 60]), reach=1.5, overlap=0.1)
@@ -56,7 +58,9 @@ def judged(*bodies, parts=(TABLE,), unsupported=(), **settings):
 
 
 def listed(*bodies, parts=(TABLE,), **settings):
-    return find_unsupported(parts, bodies, replace(SETTINGS, rules=SupportRules(**settings)), reasons)
+    rules = SupportRules(**settings)
+    overhangs = [overhangs_of(part, rules) for part in parts]
+    return find_unsupported(parts, overhangs, bodies, replace(SETTINGS, rules=rules), reasons)
 
 
 def test_a_support_under_everything_covers_everything():
@@ -73,7 +77,7 @@ def test_without_supports_everything_is_listed_with_its_area_reason_and_label():
     assert judged(unsupported=(region,)) == []
     (violation,) = judged()
     assert violation.subject == "table"
-    assert "overhang 1 of table (face)" in violation.message
+    assert "an overhanging face of table" in violation.message
 
 
 def test_half_a_support_leaves_the_other_half_less_the_reach():

@@ -8,7 +8,7 @@ from manifold3d import CrossSection, Manifold
 
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.contacts import check_contacts
-from amprep.checks.supports.coverage import check_coverage, find_unsupported
+from amprep.checks.supports.coverage import check_coverage
 from amprep.errors import JobError
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports.contact_area import contact_corners, measure_contact
@@ -16,6 +16,7 @@ from amprep.host import Host
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
 from amprep.model.contacts import ConnectorRules
+from amprep.overhangs.unsupported import find_unsupported
 from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.build import build_supports
 
@@ -118,7 +119,7 @@ def body(shape, kind):
 def judged(shape, bodies):
     part, layout = scene(shape)
     settings = BuildSettings("b", SPACE, overlap=OVERLAP, reach=1.5 * PITCH)
-    unsupported = find_unsupported((part,), bodies, settings, layout.reason_at)
+    unsupported = find_unsupported((part,), layout.part_overhangs, bodies, settings, layout.reason_at)
     build = Build(settings, (part,), bodies, unsupported)
     frame, (plane, y, x) = layout.frame, layout.red[layout.connected].T.astype(float)
     size = np.array([frame.pitch, frame.pitch, frame.step])
