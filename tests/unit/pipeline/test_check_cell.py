@@ -10,7 +10,7 @@ from amprep.cells import cell_offer
 from amprep.checks.cells.ports import PORTS
 from amprep.checks.cells.printability import FEATURE, HOLE, POCKET, STEEP
 from amprep.cli.cells import app
-from amprep.geometry.cells.metrology import feature, way_out
+from amprep.geometry.cells.metrology import escape_diameter, smallest_feature
 from amprep.host import Host, Listed
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
 from amprep.pipeline.check_cell import check_cell
@@ -113,7 +113,7 @@ def test_a_closed_pocket_is_measured():
     mesh = hollow((0.25, 0.25, 0.25), (0.75, 0.75, 0.75))
     place = np.array([[x, y, 0] for x in range(3) for y in range(3)])
     arrays = [(mesh.vertices, mesh.triangles.astype(np.int64))]
-    _, pocket = way_out(arrays, np.zeros(9, np.int64), place, np.full(3, 2.0), 16)
+    _, pocket = escape_diameter(arrays, np.zeros(9, np.int64), place, np.full(3, 2.0), 16)
     assert pocket == pytest.approx(0.125)
 
 
@@ -127,8 +127,8 @@ def test_walls_and_gaps_are_measured_to_within_a_voxel(width):
         place,
         np.full(3, 2.0),
     )
-    assert feature(*arrays, 24) == pytest.approx(2 * width, abs=2 / 24 * 1.5)
-    assert way_out(*arrays, 24)[0] == pytest.approx(2 - 2 * width, abs=2 / 24 * 1.5)
+    assert smallest_feature(*arrays, 24) == pytest.approx(2 * width, abs=2 / 24 * 1.5)
+    assert escape_diameter(*arrays, 24)[0] == pytest.approx(2 - 2 * width, abs=2 / 24 * 1.5)
 
 
 TOML = """

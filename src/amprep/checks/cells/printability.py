@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.checks.violation import Violation
-from amprep.geometry.cells.metrology import feature, way_out
+from amprep.geometry.cells.metrology import escape_diameter, smallest_feature
 from amprep.geometry.cells.ports import flush_sides, snapped
 from amprep.geometry.cells.struts import angles_deg
 from amprep.model.cell_shapes import GraphCell
@@ -110,9 +110,9 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
     meshes = [template.mesh.arrays for template in cells.templates]
     chosen = np.array(solids)[cells.template]
     template = cells.template.astype(np.int64)
-    hole, pocket = way_out(meshes, template[chosen], place[chosen], size, steps)
+    hole, pocket = escape_diameter(meshes, template[chosen], place[chosen], size, steps)
     few = chosen & (place < (2, 2, 3)).all(axis=1)
-    thinnest = feature(meshes, template[few], place[few], size, FINER * steps)
+    thinnest = smallest_feature(meshes, template[few], place[few], size, FINER * steps)
     # what no voxel's middle lies in is thinner than a voxel
     return CellMeasures(density, thinnest or 0.0, hole, pocket)
 

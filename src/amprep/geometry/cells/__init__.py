@@ -1,1 +1,1 @@
-"""Geometry of lattice cells: struts, functions, ports, tiling."""
+"""Geometry of lattice cells: struts, implicit functions, ports, tiling, measurements."""

@@ -1,6 +1,7 @@
-"""A function of the point, positive inside, as a closed mesh in the unit cube."""
+"""Mesh an implicit function inside the unit cube."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,59 +9,46 @@ from amprep.arrays import Floats, MeshArrays
 from amprep.geometry.cells.ports import conform
 from amprep.geometry.meshes.decimation import decimate
 
-_THINNED = 0.1
-"""Of a step of the grid: how far the surface may move so that it has fewer triangles; the grid is no better."""
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+# Strategy. The level set of manifold3d evaluates one point at a time and moves points to the surface in an order of its
+# own. Two passes make the evaluation fast: the first one only records the points, the function is then evaluated at all
+# of them at once, and the second pass looks the values up. Because triangles do not repeat exactly from cell to cell,
+# the mesh is made for the cube around the origin, cut in halves along each axis, and the halves are exchanged:
+# opposite sides of the cell are then the two sides of one cut, and match exactly.
+
+_DECIMATION = 0.1
+"""Largest distance, in steps of the grid, by which decimation moves the surface; the grid is no more accurate."""
 
 _ROUNDING = 1e-9
-"""Of the greatest value: what rounding may make of the difference between a point and the same one next door."""
+"""Relative tolerance when comparing the function at a point and at its periodic image."""
 
 
 def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> MeshArrays:
-    """Return where the function is positive, cut to the unit cube; the function has to repeat with the cube.
-
-    manifold3d's level set asks for one point at a time; so it is asked twice, first to learn its points, which
-    the function then gets all at once. It moves points to the surface in an order of its own, so its triangles do
-    not quite repeat from cell to cell. Therefore it meshes the cube around the origin; that is cut in halves
-    along each axis and these change places: opposite sides of the cell are then both sides of one cut. At last
-    triangles between the sides are made fewer.
+    """Return the region of the unit cube in which a periodic function is positive, as a closed mesh.
 
     Parameters
     ----------
     function
-        Takes ``(n, 3)``, gives ``(n,)``.
+        Takes points ``(n, 3)`` and returns values ``(n,)``; its period is the unit cube.
     resolution
-        Steps of the grid along each side.
+        Steps of the grid along each edge of the cube.
 
     Returns
     -------
     points, triangles
-        Without triangles when the function is nowhere positive.
+        No triangles if the function is nowhere positive. Opposite sides of the cube have the same triangles.
 
     Raises
     ------
     ValueError
-        When the function does not give one finite number for each point.
+        If the function does not return one finite number for each point.
     """
     from manifold3d import Manifold
 
     step = 1.0 / resolution
-    bounds = [-0.5 - step] * 3 + [0.5 + step] * 3
-    at_most = step * (1.0 - 1e-9)  # so that rounding makes it no step less
-    asked: list[tuple[float, float, float]] = []
-
-    def note(x: float, y: float, z: float) -> float:
-        asked.append((x, y, z))
-        return -1.0
-
-    Manifold.level_set(note, bounds, at_most)
-    points = np.array(asked)
-    values = _periodic(function, points)
-    known: dict[tuple[float, float, float], float] = dict(zip(asked, values.tolist(), strict=True))
-
-    def answer(x: float, y: float, z: float) -> float:
-        return known[x, y, z]
-
-    solid = Manifold.level_set(answer, bounds, at_most) ^ Manifold.cube([1.0] * 3, center=True)
+    solid = _level_set(function, step) ^ Manifold.cube([1.0] * 3, center=True)
     for axis in np.eye(3).tolist():
         above, below = (half.warp_batch(_on_halves) for half in solid.split_by_plane(axis, 0.0))
         solid = above + below.translate(axis)
@@ -71,17 +59,39 @@ def implicit_solid(function: Callable[[Floats], Floats], resolution: int) -> Mes
     if not len(triangles):
         return points, triangles
     sides = np.column_stack([points == 0.0, points == 1.0]) @ (1 << np.arange(6))
-    return decimate(points, triangles, _THINNED * step, sides)
+    return decimate(points, triangles, _DECIMATION * step, sides)
+
+
+def _level_set(function: Callable[[Floats], Floats], step: float) -> "Manifold":
+    """Return the region around the unit cube, centred on the origin, in which the function is positive."""
+    from manifold3d import Manifold
+
+    bounds = [-0.5 - step] * 3 + [0.5 + step] * 3
+    edge_length = step * (1.0 - 1e-9)  # so that rounding does not remove a step
+    asked: list[tuple[float, float, float]] = []
+
+    def note(x: float, y: float, z: float) -> float:
+        asked.append((x, y, z))
+        return -1.0
+
+    Manifold.level_set(note, bounds, edge_length)
+    values = _periodic(function, np.array(asked))
+    known: dict[tuple[float, float, float], float] = dict(zip(asked, values.tolist(), strict=True))
+
+    def answer(x: float, y: float, z: float) -> float:
+        return known[x, y, z]
+
+    return Manifold.level_set(answer, bounds, edge_length)
 
 
 def _on_halves(points: Floats) -> Floats:
-    """Put what rounding moved off the planes of the cuts back onto them."""
+    """Move points that rounding took off the planes of the cuts back onto them."""
     halves = np.round(2.0 * points) / 2.0
     return np.asarray(np.where(np.abs(points - halves) < _ROUNDING, halves, points))
 
 
 def _periodic(function: Callable[[Floats], Floats], points: Floats) -> Floats:
-    """Return values that are the same to the last bit where rounding alone makes them differ between cells."""
+    """Return values that are equal at a point and at its periodic image, unless they differ by more than rounding."""
     values = _values(function, points)
     wrapped = _values(function, np.round(points, 12) % 1.0)
     same = np.abs(values - wrapped) < _ROUNDING * max(float(np.abs(values).max()), 1e-300)
@@ -92,6 +102,7 @@ def _values(function: Callable[[Floats], Floats], points: Floats) -> Floats:
     values = np.asarray(function(points), np.float64)
     if values.shape != (len(points),) or not np.isfinite(values).all():
         raise ValueError(
-            f"the cell's function gives one finite number for each of {len(points)} points, got {values.shape}"
+            f"the function of a cell must return one finite number for each of {len(points)} points, "
+            f"got an array of shape {values.shape}"
         )
     return values

@@ -1,4 +1,4 @@
-"""Ports of a cell: its outlines on the sides of the unit cube, and the same triangles on opposite sides."""
+"""Find the ports of a cell, its outlines on the sides of the unit cube, and make opposite sides conform."""
 
 from typing import NamedTuple
 
@@ -8,29 +8,37 @@ from amprep.arrays import Floats, Int64s, MeshArrays
 from amprep.geometry.meshes.topology import degenerate, drop_unused_vertices, first_of_equal_rows
 
 SNAP = 1e-5
-"""Share of the unit cube: files keep six digits, so what is this close is meant to be the same place."""
+"""Distance, in edges of the unit cube, within which coordinates are taken as equal: files store six digits."""
 
 PLANE_AXES = ((1, 2), (2, 0), (0, 1))
-"""The two other axes u, v of each axis, so that u, v and the axis are right-handed."""
+"""For each axis the two other axes u, v; u, v and the axis are right-handed."""
 
-_MOST_ROUNDS = 32
+_MAX_ROUNDS = 32
 
 
 class Outlines(NamedTuple):
-    """Closed outlines of a mesh on one side of the cube: vertex indices, the mesh to the left seen from outside."""
+    """Closed outlines of a mesh on one side of the cube.
+
+    Attributes
+    ----------
+    loops
+        Vertex indices; the mesh is to the left seen from outside.
+    simple
+        False if outlines touch in a point; there are no loops then.
+    """
 
     loops: list[Int64s]
     simple: bool
 
 
 def snapped(points: Floats) -> Floats:
-    """Return points with coordinates close to 0 or 1 made exactly that."""
+    """Return the points with coordinates close to 0 or 1 set to exactly 0 or 1."""
     low, high = np.abs(points) < SNAP, np.abs(points - 1.0) < SNAP
     return np.asarray(np.where(low, 0.0, np.where(high, 1.0, points)))
 
 
 def flush_sides(points: Floats, triangles: Int64s) -> Int64s:
-    """Tell which side of the cube each triangle lies on: 2 axis + (0 or 1), or -1."""
+    """Return the side of the cube that contains each triangle: 2 axis + (0 or 1), or -1."""
     corners = points[triangles]
     flush = np.stack([(corners == 0.0).all(axis=1), (corners == 1.0).all(axis=1)], axis=2).reshape(-1, 6)
     return np.where(flush.any(axis=1), flush.argmax(axis=1), -1)
@@ -42,10 +50,10 @@ def outlines(points: Floats, triangles: Int64s, side: int) -> Outlines:
 
 
 def conform(points: Floats, triangles: Int64s) -> MeshArrays:
-    """Cut opposite sides of a closed mesh into the same triangles, where their outlines are the same.
+    """Triangulate opposite sides of a closed mesh alike, where their outlines are equal.
 
-    Copies of the cell side by side then share the triangles of their common side, and weld on arrays. Vertices
-    move by at most `SNAP`; sides whose outlines differ stay as they are.
+    Adjacent copies of the cell then have the same triangles on their common side and can be welded. Vertices move by
+    at most `SNAP`. Sides whose outlines differ keep their triangles.
 
     Parameters
     ----------
@@ -55,12 +63,12 @@ def conform(points: Floats, triangles: Int64s) -> MeshArrays:
     points = snapped(points)
     triangles = first_of_equal_rows(points)[triangles]
     points, triangles = drop_unused_vertices(points, triangles[~degenerate(triangles)])
-    for _ in range(_MOST_ROUNDS):
+    for _ in range(_MAX_ROUNDS):
         points, triangles, changed = _share_corners(points, triangles)
         if not changed:
             break
     for axis in range(3):
-        triangles = _recut(points, triangles, axis)
+        triangles = _triangulate_alike(points, triangles, axis)
     return drop_unused_vertices(points, triangles)
 
 
@@ -88,7 +96,7 @@ def _loops(border: Int64s) -> Outlines:
 
 
 def _share_corners(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s, bool]:
-    """Give the outlines of opposite sides the same vertices: move those close by, split edges for the rest."""
+    """Give the outlines of opposite sides the same vertices: move near vertices, and split edges for the others."""
     changed = False
     for axis in (2, 0, 1):
         u, v = PLANE_AXES[axis]
@@ -108,7 +116,7 @@ def _share_corners(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s, b
                 vertex, edge = found
                 place = points[wanted[~near][vertex]].copy()
                 place[axis] = float(there)
-                points, triangles = _split(points, triangles, edge, place)
+                points, triangles = _split_edge(points, triangles, edge, place)
                 changed = True
     return points, triangles, changed
 
@@ -116,31 +124,31 @@ def _share_corners(points: Floats, triangles: Int64s) -> tuple[Floats, Int64s, b
 def _on_edge(
     points: Floats, border: Int64s, places: Floats, plane: tuple[int, int]
 ) -> tuple[int, tuple[int, int]] | None:
-    """Return the first place ``(k, 3)`` that lies inside a border edge seen along the axis, and that edge."""
+    """Return the first of the places ``(k, 3)`` that is inside a border edge seen along the axis, and that edge."""
     start, end = points[border[:, 0]][:, plane], points[border[:, 1]][:, plane]
     along, to = (end - start)[None], places[:, None, list(plane)] - start[None]
     length = np.maximum(np.linalg.norm(along, axis=2), 1e-300)
-    share = (along * to).sum(axis=2) / length**2
+    fraction = (along * to).sum(axis=2) / length**2
     away = np.abs(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]) / length
-    found = np.argwhere((away < SNAP) & (share > 0.0) & (share < 1.0))
+    found = np.argwhere((away < SNAP) & (fraction > 0.0) & (fraction < 1.0))
     if not len(found):
         return None
     vertex, edge = found[0].tolist()
     return vertex, (int(border[edge, 0]), int(border[edge, 1]))
 
 
-def _split(points: Floats, triangles: Int64s, edge: tuple[int, int], place: Floats) -> MeshArrays:
-    """Put a vertex on an edge: each triangle that has the edge becomes two."""
+def _split_edge(points: Floats, triangles: Int64s, edge: tuple[int, int], place: Floats) -> MeshArrays:
+    """Put a vertex on an edge, which halves each triangle with this edge."""
     middle = len(points)
     cut = np.isin(triangles, edge).sum(axis=1) == 2
-    pieces = [triangles[~cut]]
+    parts = [triangles[~cut]]
     for end in edge:
-        pieces.append(np.where(triangles[cut] == end, middle, triangles[cut]))
-    return np.vstack([points, place]), np.concatenate(pieces)
+        parts.append(np.where(triangles[cut] == end, middle, triangles[cut]))
+    return np.vstack([points, place]), np.concatenate(parts)
 
 
-def _recut(points: Floats, triangles: Int64s, axis: int) -> Int64s:
-    """Triangulate the high side anew, and the low one like it, if both have the same outlines."""
+def _triangulate_alike(points: Floats, triangles: Int64s, axis: int) -> Int64s:
+    """Triangulate the high side again, and the low side like it, if both have the same outlines."""
     from manifold3d import triangulate
 
     side = flush_sides(points, triangles)
@@ -167,7 +175,7 @@ def _recut(points: Floats, triangles: Int64s, axis: int) -> Int64s:
 
 
 def _from_least(loop: Int64s, plan: Floats) -> Int64s:
-    """Turn a loop so that it begins at its least corner."""
+    """Rotate a loop to begin at its lowest corner."""
     return np.roll(loop, -int(np.lexsort(plan[loop].T[::-1])[0]))
 
 

@@ -1,4 +1,4 @@
-"""Struts and walls as a solid in the unit cube: round and of the thickness asked once the map is applied."""
+"""Make solids of struts and walls in the unit cube, with the requested radii and thickness after the map of an edge."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,18 +13,29 @@ if TYPE_CHECKING:
 
 
 SIDES = 8
-"""Corners of a strut's cross-section; it has the area of the circle."""
+"""Corners of the cross-section of a strut. The polygon has the area of the circle."""
 
 _BALL_SEGMENTS = 8
-_SQUARE = 0.999
-"""Sine; from there on a strut meets a side squarely, its cut is its cross-section."""
 
-_FLATTEST = 0.5
-"""Sine; where struts meet a side flatter than that, balls at the ports no longer grow (30 degrees)."""
+_PERPENDICULAR = 0.999
+"""Sine of the angle above which a strut is perpendicular to a side of the cube."""
+
+_LEAST_SINE = 0.5
+"""Sine of the angle to a side (30 degrees) below which balls at ports do not grow any more."""
 
 
 class Graph(NamedTuple):
-    """Points ``(n, 3)`` in the unit cube, struts ``(m, 2)``, radii ``(m, 2)`` mm, walls ``(k, 3)`` and their mm."""
+    """Graph of struts and walls.
+
+    Attributes
+    ----------
+    points
+        ``(n, 3)`` in the unit cube.
+    struts, radii
+        ``(m, 2)`` indices into `points`, and ``(m, 2)`` mm at both ends.
+    faces, thickness
+        ``(k, 3)`` indices into `points`, and mm.
+    """
 
     points: Floats
     struts: Int64s
@@ -36,30 +47,32 @@ class Graph(NamedTuple):
 def graph_solid(graph: Graph, linear: Floats) -> MeshArrays:
     """Return struts, balls at their ends, and walls as one closed mesh in the unit cube.
 
-    A ball at a port is as large as the widest cut of its struts by the side, so that a port looks the same
-    whichever way its struts go on: cells of all directions meet in equal discs.
+    A ball at a port is as large as the widest section of its struts with the side of the cube. Cells of all directions
+    therefore meet in equal discs.
 
     Parameters
     ----------
+    graph
+        Struts and walls.
     linear
-        ``(3, 3)`` the map's linear part, unit cube to mm.
+        ``(3, 3)``, linear part of the map from the unit cube to mm.
 
     Returns
     -------
     points, triangles
-        Opposite sides have the same triangles where their ports match.
+        Opposite sides have the same triangles if their ports match.
     """
     from manifold3d import Manifold, OpType
 
     places = graph.points @ linear.T
-    pieces = [
+    solids = [
         _strut(places[a], places[b], float(r), float(s))
         for (a, b), (r, s) in zip(graph.struts, graph.radii, strict=True)
     ]
-    pieces += [_ball(places[i], radius) for i, radius in _balls(graph, linear) if radius > 0.0]
-    pieces += [_wall(places[face], graph.thickness) for face in graph.faces] if graph.thickness else []
+    solids += [_ball(places[i], radius) for i, radius in _balls(graph, linear) if radius > 0.0]
+    solids += [_wall(places[face], graph.thickness) for face in graph.faces] if graph.thickness else []
     back = np.column_stack([np.linalg.inv(linear), np.zeros(3)])
-    whole = Manifold.batch_boolean(pieces, OpType.Add).transform(back)
+    whole = Manifold.batch_boolean(solids, OpType.Add).transform(back)
     inside = whole ^ Manifold.cube([1.0, 1.0, 1.0])
     mesh = inside.to_mesh64()
     points = np.array(mesh.vert_properties[:, :3], np.float64)
@@ -67,17 +80,17 @@ def graph_solid(graph: Graph, linear: Floats) -> MeshArrays:
 
 
 def angles_deg(points: Floats, struts: Int64s, linear: Floats) -> Floats:
-    """Return the steepness of struts under the map, degrees ``(m,)``: 90 is upright."""
+    """Return the angle of each mapped strut to the horizontal in degrees, ``(m,)``; vertical struts have 90."""
     along = (points[struts[:, 1]] - points[struts[:, 0]]) @ linear.T
     return np.degrees(np.arctan2(np.abs(along[:, 2]), np.hypot(along[:, 0], along[:, 1])))
 
 
 def _balls(graph: Graph, linear: Floats) -> list[tuple[int, float]]:
-    """Return the points that need a ball, and its radius in mm: all but ports where one strut ends squarely."""
-    normals = np.linalg.inv(linear)  # row k is normal to the mapped sides across axis k
+    """Return the points that need a ball and its radius (mm): all but ports with a single, perpendicular strut."""
+    normals = np.linalg.inv(linear)  # row k is the normal of the mapped sides across axis k
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     radius = np.zeros(len(graph.points))
-    squarely = np.bincount(graph.struts.ravel(), minlength=len(radius)) == 1
+    perpendicular = np.bincount(graph.struts.ravel(), minlength=len(radius)) == 1
     for (a, b), radii in zip(graph.struts.tolist(), graph.radii.tolist(), strict=True):
         along = linear @ (graph.points[b] - graph.points[a])
         slope = np.abs(normals @ along) / np.linalg.norm(along)
@@ -85,13 +98,13 @@ def _balls(graph: Graph, linear: Floats) -> list[tuple[int, float]]:
             flush = (graph.points[end] == 0.0) | (graph.points[end] == 1.0)
             crossed = slope[flush & (slope > 1e-9)]
             steepest = float(crossed.min(initial=1.0))
-            squarely[end] &= len(crossed) == 1 and steepest > _SQUARE
-            radius[end] = max(radius[end], own / max(steepest, _FLATTEST))
-    # a port is one place with its images on the opposite sides
+            perpendicular[end] &= len(crossed) == 1 and steepest > _PERPENDICULAR
+            radius[end] = max(radius[end], own / max(steepest, _LEAST_SINE))
+    # a port and its images on the opposite sides are one place
     place = first_of_equal_rows(np.where(graph.points == 1.0, 0.0, graph.points))
     largest, plain = np.zeros(len(radius)), np.ones(len(radius), np.bool_)
     np.maximum.at(largest, place, radius)
-    np.logical_and.at(plain, place, squarely)
+    np.logical_and.at(plain, place, perpendicular)
     return [(i, float(largest[place[i]])) for i in np.flatnonzero(~plain[place]).tolist()]
 
 
@@ -104,7 +117,7 @@ def _ball(centre: Floats, radius: float) -> "Manifold":
 
 
 def _strut(start: Floats, end: Floats, first: float, last: float) -> "Manifold":
-    """Return a prism or frustum whose corners do not depend on which way round the strut is given."""
+    """Return a prism or frustum; its corners do not depend on the order of the ends."""
     from manifold3d import Manifold
 
     along = (end - start) / np.linalg.norm(end - start)
@@ -120,7 +133,7 @@ def _strut(start: Floats, end: Floats, first: float, last: float) -> "Manifold":
 
 
 def _wall(corners: Floats, thickness: float) -> "Manifold":
-    """Return a triangle as a plate, a little wider all round, so that plates that meet at an angle join."""
+    """Return a triangle as a plate, enlarged on all sides, so that plates join that meet at an angle."""
     from manifold3d import Manifold
 
     normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])

@@ -1,4 +1,4 @@
-"""Make closed meshes of many cells: cells of one direction tile, so those that conform weld on arrays."""
+"""Weld cells of one direction, which tile space, to closed meshes."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.meshes.welding import cancel_opposite, merge_vertices
 
 _FLUSH = 1e-9
-"""Share of the unit cube: a corner this close to a side lies on it."""
+"""Distance, in edges of the unit cube, within which a corner counts as on a side."""
 
 
 class Tiles(NamedTuple):
@@ -20,10 +20,10 @@ class Tiles(NamedTuple):
     Attributes
     ----------
     template
-        ``(n,)`` which template.
+        ``(n,)`` numbers of templates.
     place
-        ``(n, 3)`` int64, the tile, in the order of the unit cube's axes: cells with a common side differ
-        by 1 in the one coordinate across it.
+        ``(n, 3)`` int64, integer coordinates of the tile along the axes of the unit cube. Cells with a common side
+        differ by 1 in one coordinate.
     matrix
         ``(n, 3, 4)`` unit cube to build coordinates.
     """
@@ -34,18 +34,12 @@ class Tiles(NamedTuple):
 
 
 def fills_unit_cube(points: Floats) -> bool:
-    """Whether all points lie in the unit cube."""
+    """Tell whether all points are in the unit cube."""
     return bool((points > -_FLUSH).all() and (points < 1.0 + _FLUSH).all())
 
 
 def plate(thickness: float) -> MeshArrays:
-    """Return a plate under the top of the unit cube, as wide as the cube.
-
-    Parameters
-    ----------
-    thickness
-        Share of the cube's height.
-    """
+    """Return a plate below the top of the unit cube, as wide as the cube; its thickness is a fraction of the height."""
     corners = [[x, y, z] for z in (1.0 - thickness, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
     triangles = [
         [0, 2, 3], [0, 3, 1], [4, 7, 6], [4, 5, 7], [0, 1, 5], [0, 5, 4],
@@ -59,12 +53,19 @@ def expand(
 ) -> tuple[Floats, Int64s, Int64s]:
     """Copy templates under their maps.
 
+    Parameters
+    ----------
+    templates
+        Meshes in the unit cube.
+    template, matrix
+        ``(n,)`` template of each copy, and ``(n, 3, 4)`` its map.
+
     Returns
     -------
     points, triangles
-        ``(n, 3)`` mm, nothing merged yet, and ``(m, 3)``.
+        ``(k, 3)`` mm, not merged, and ``(m, 3)``.
     source
-        ``(m,)`` which copy each triangle belongs to.
+        ``(m,)`` copy to which each triangle belongs.
     """
     points, triangles, source = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
     first = 0
@@ -80,15 +81,17 @@ def expand(
 
 
 def tile(templates: Sequence[MeshArrays], tiles: Tiles) -> Iterator[MeshArrays]:
-    """Yield closed meshes whose union is the cells: one when they conform, else two.
+    """Yield closed meshes whose union is the union of the cells: one mesh if neighbours conform, else two.
 
-    Where neighbours do not share the triangles of a common side, every other cell goes into the second
-    mesh, like the colours of a chessboard, so that within a mesh no two cells have a side in common.
+    If neighbours have different triangles on a common side, cells are coloured like a chessboard, and each colour
+    becomes one mesh. Cells of the same colour have no common side.
 
     Parameters
     ----------
     templates
         Closed meshes in the unit cube.
+    tiles
+        Cells of one direction.
     """
     welded, conform = _weld(templates, tiles)
     if conform:
@@ -101,7 +104,7 @@ def tile(templates: Sequence[MeshArrays], tiles: Tiles) -> Iterator[MeshArrays]:
 
 
 def _weld(templates: Sequence[MeshArrays], tiles: Tiles) -> tuple[MeshArrays, bool]:
-    """Weld all cells; tell whether neighbours left no triangles against one another."""
+    """Weld all cells; tell whether all triangles on common sides cancelled."""
     points, triangles, source = expand(templates, tiles.template, tiles.matrix)
     merged, corners = merge_vertices(points, triangles)
     stays = cancel_opposite(corners)
@@ -111,7 +114,7 @@ def _weld(templates: Sequence[MeshArrays], tiles: Tiles) -> tuple[MeshArrays, bo
 
 
 def _sides(templates: Sequence[MeshArrays], template: Int64s) -> Int64s:
-    """Which side of its cube each expanded triangle lies on: 2 axis + (0 or 1), or -1."""
+    """Return the side of the unit cube that contains each expanded triangle: 2 axis + (0 or 1), or -1."""
     sides = [np.empty(0, np.int64)]
     for index, (corners, faces) in enumerate(templates):
         low = (np.abs(corners[faces]) < _FLUSH).all(axis=1)
@@ -123,7 +126,7 @@ def _sides(templates: Sequence[MeshArrays], template: Int64s) -> Int64s:
 
 
 def _facing(place: Int64s, side: Int64s) -> bool:
-    """Whether triangles are left on both faces of a side between two cells."""
+    """Tell whether some side between two cells has triangles of both cells."""
     flush = side >= 0
     axis, far = np.divmod(side[flush], 2)
     between = place[flush].copy()

@@ -103,7 +103,7 @@ def test_a_function_is_meshed_up_to_the_sides_and_its_copies_weld():
 
 @pytest.mark.parametrize("wrong", [lambda points: points, lambda points: points[:, 0] * np.nan])
 def test_a_function_that_gives_no_numbers_is_refused(wrong):
-    with pytest.raises(ValueError, match="one finite number for each"):
+    with pytest.raises(ValueError, match="one finite number for each of"):
         implicit_solid(wrong, 8)
 
 
