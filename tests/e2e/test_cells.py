@@ -61,7 +61,7 @@ def test_a_cell_that_breaks_a_promise_gives_1_and_a_wrong_file_2(amprep, tmp_pat
     flat.write_text("points = 3")
     wrong = amprep("cells", "check", flat)
     assert (wrong.code, wrong.out) == (2, "")
-    assert "points is a list of rows of 3 numbers" in wrong.err
+    assert "points must be a list of rows of 3 numbers" in wrong.err
     missing = amprep("cells", "check", tmp_path / "none.stl")
     assert missing.code == 2
 

@@ -23,11 +23,11 @@ def test_every_promise_holds_on_the_sample_problems():
 
 
 @pytest.mark.parametrize("density", [0.2, 0.5, 0.7])
-def test_a_network_fills_the_share_asked_for(density):
+def test_a_network_fills_the_requested_fraction(density):
     assert template(density=density, resolution=20).mesh.signed_volume == pytest.approx(density, abs=0.02)
 
 
-def test_a_wall_has_the_thickness_asked_for():
+def test_a_wall_has_the_requested_thickness():
     # the gyroid's area in the unit cube is 3.0915 (numerically known): thin walls fill area times thickness
     walls = template(kind="wall", wall_mm=0.3, resolution=28).mesh
     assert walls.signed_volume == pytest.approx(3.0915 * 0.3 / 4.0, rel=0.05)

@@ -1,6 +1,6 @@
-"""Declared cells: shapes in the unit cube become offers, from Python or from files.
+"""Declare lattice cells in Python or in files, and offer them to the host.
 
-A lattice package needs no more than this::
+A complete lattice package::
 
     from amprep.cells import cell_offer
     from amprep.hookspecs import hookimpl
@@ -11,7 +11,7 @@ A lattice package needs no more than this::
     @hookimpl
     def amprep_cell_emitters():
         pin = GraphCell(points=[[0.5, 0.5, 0], [0.5, 0.5, 1]], struts=[[0, 1]], radius=0.4)
-        yield cell_offer("pin", "A round pin along every edge.", pin)
+        yield cell_offer("pin", "A round pin along each edge.", pin)
 """
 
 from amprep.cells.files import CellFile, cells_in, read_cell

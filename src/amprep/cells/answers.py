@@ -1,4 +1,4 @@
-"""Check what a cell emitter returned."""
+"""Check the answer of a cell emitter."""
 
 from collections.abc import Callable
 
@@ -8,15 +8,23 @@ from amprep.errors import PluginError
 from amprep.model import Beams, CellRequest, Cells
 
 Emit = Callable[[CellRequest], Cells]
+"""Calls a lattice cell."""
 
 
 def checked(request: CellRequest, cells: object) -> Cells:
-    """Return what an emitter answered if it is sound, as far as the host relies on it.
+    """Return the answer of an emitter if it fulfils what the host relies on.
+
+    Parameters
+    ----------
+    request
+        Request that was answered.
+    cells
+        Answer.
 
     Raises
     ------
     PluginError
-        Saying what was expected and what came.
+        If the answer has another type, indices out of range, values that are not finite, or beams that were refused.
     """
     if not isinstance(cells, Cells):
         raise PluginError(f"the lattice cell returned {type(cells).__name__}, expected amprep.model.Cells")

@@ -1,4 +1,4 @@
-"""Puts a declared cell in the place of each edge: picks variants, and shapes templates for each direction."""
+"""Replace edges by a declared cell: choose a variant for each edge, and make templates for each direction."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -26,11 +26,21 @@ from amprep.model import (
 )
 
 LOAD_STEPS = 8
-"""Radii grow with the load in that many steps, so that few templates are made."""
+"""Number of steps in which radii grow with the load; it bounds the number of templates."""
 
 
 class Fitted(NamedTuple):
-    """Edges that get the same template: the variant (index), how much thicker its struts are."""
+    """Edges that get the same template.
+
+    Attributes
+    ----------
+    variant
+        Index of the variant.
+    factor
+        Factor by which the radii of its struts grow with the load.
+    edges
+        ``(k,)`` indices of edges.
+    """
 
     variant: int
     factor: float
@@ -42,15 +52,17 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
 
     Parameters
     ----------
+    cell, request
+        Cell, and edges to replace.
     solid
-        False: struts become beams instead of templates, unless the request says which.
+        Whether struts become templates instead of beams. If `request.beams` is not None, it decides.
 
     Raises
     ------
     ValueError
-        When the function of an implicit cell does not give numbers.
+        If the function of an implicit cell does not return numbers.
     JobError
-        When it is nowhere positive.
+        If this function is nowhere positive.
     """
     solid = solid if request.beams is None else not request.beams
     templates: list[Template] = []
@@ -75,23 +87,23 @@ def emit_declared(cell: DeclaredCell, request: CellRequest, *, solid: bool = Tru
 
 
 def fit(cell: DeclaredCell, request: CellRequest) -> Iterator[Fitted]:
-    """Yield sets of edges that get the same template, each edge at most once."""
+    """Yield sets of edges that get the same template; an edge is in one set at most."""
     left = np.ones(len(request.edges), np.bool_)
     for number, variant in enumerate(cell.variants):
-        mine = left & edges_for(variant.when, request)
-        left &= ~mine
+        fits = left & edges_for(variant.when, request)
+        left &= ~fits
         factors = _factors(variant.shape, request.edges.flow)
-        # only what is measured in mm depends on the map
+        # only graphs, whose radii are in mm, depend on the map
         direction = request.edges.direction
         directions = direction if isinstance(variant.shape, GraphCell) else 0 * direction
-        keys = np.column_stack([directions, factors])[mine]
+        keys = np.column_stack([directions, factors])[fits]
         for direction, factor in np.unique(keys, axis=0).tolist():
-            same = mine & (directions == direction) & (factors == factor)
+            same = fits & (directions == direction) & (factors == factor)
             yield Fitted(number, float(factor), np.flatnonzero(same))
 
 
 def edges_for(when: When, request: CellRequest) -> Bools:
-    """Tell which edges of the request meet every condition."""
+    """Tell which edges of the request fulfil every condition, ``(n,)``."""
     edges = request.edges
     fits = (edges.flow >= when.least_load) & (edges.flow <= when.most_load)
     fits &= (edges.plane - 1) % when.every == when.layer
@@ -107,7 +119,7 @@ def edges_for(when: When, request: CellRequest) -> Bools:
 
 
 def sides_taken(request: CellRequest) -> Bools:
-    """Tell which of its four sides (-x, +x, -y, +y) each edge shares with an edge of its direction, ``(n, 4)``."""
+    """Tell on which of its sides (-x, +x, -y, +y) each edge has a neighbour of the same direction, ``(n, 4)``."""
     edges = request.edges
     ny, nx = int(edges.y.max(initial=0)) + 3, int(edges.x.max(initial=0)) + 3
     place = (edges.plane.astype(np.int64) * 5 + edges.direction) * ny * nx
@@ -116,14 +128,33 @@ def sides_taken(request: CellRequest) -> Bools:
 
 
 def templates_of(name: str, shape: Shape, linear: Floats, factor: float = 1.0) -> Iterator[Template]:
-    """Yield a shape as templates for edges whose map has the linear part ``(3, 3)``: a solid, a sheet, or both."""
+    """Yield the templates of a shape: a solid, a sheet, or both.
+
+    Parameters
+    ----------
+    name
+        Last part of the template's name.
+    shape
+        Shape in the unit cube.
+    linear
+        ``(3, 3)`` linear part of the map of the edges that get the templates.
+    factor
+        Factor on the radii of struts.
+
+    Raises
+    ------
+    ValueError
+        If the function of an implicit cell does not return numbers.
+    JobError
+        If this function is nowhere positive on its grid.
+    """
     if isinstance(shape, MeshCell):
         yield Template(f"mesh {name}", _conforming(shape), shape.surface)
     elif isinstance(shape, ImplicitCell):
         points, triangles = implicit_solid(shape.function, shape.resolution)
         if not len(triangles):
             raise JobError(
-                "the cell is empty: its function is nowhere positive on its grid; raise its resolution"
+                "the cell is empty: its function is nowhere positive on its grid; increase its resolution"
             )
         yield Template(f"implicit {name}", _mesh(points, triangles))
     else:
@@ -137,16 +168,16 @@ def templates_of(name: str, shape: Shape, linear: Floats, factor: float = 1.0) -
 def beams_of(shape: GraphCell, request: CellRequest, fitted: Fitted) -> Beams:
     """Return the struts of a set of edges as round beams."""
     matrix = request.matrices[fitted.edges]
-    places = np.einsum("nij,vj->nvi", matrix[:, :, :3], shape.points) + matrix[:, None, :, 3]
+    nodes = np.einsum("nij,vj->nvi", matrix[:, :, :3], shape.points) + matrix[:, None, :, 3]
     first = np.arange(len(matrix)) * len(shape.points)
     struts = (shape.struts[None] + first[:, None, None]).reshape(-1, 2)
     radii = np.tile(fitted.factor * shape.radii, (len(matrix), 1))
     group = np.repeat(request.edges.group[fitted.edges], len(shape.struts))
-    return Beams(places.reshape(-1, 3), struts.astype(np.int32), radii, group)
+    return Beams(nodes.reshape(-1, 3), struts.astype(np.int32), radii, group)
 
 
 def _joined(beams: list[Beams]) -> Beams | None:
-    """Join beams; points at the same place become one, and of equal beams in a group one stays."""
+    """Concatenate beams, merge nodes at the same place, and keep one of equal beams in a group."""
     if not beams:
         return None
     first = np.cumsum([0, *(len(each.nodes) for each in beams[:-1])])
@@ -161,11 +192,11 @@ def _joined(beams: list[Beams]) -> Beams | None:
 
 
 def _factors(shape: Shape, load: Ints) -> Floats:
-    """Return how much thicker the struts of each edge are: cross-sections grow evenly with the load, in steps."""
+    """Return the factor on the radii of each edge; the cross-section grows linearly with the load, in steps."""
     if not isinstance(shape, GraphCell) or shape.growth == 1.0:
         return np.ones(len(load))
-    share = np.clip((load - 1) / (shape.full_load - 1), 0.0, 1.0)
-    return np.asarray(np.sqrt(1.0 + np.ceil(share * LOAD_STEPS) / LOAD_STEPS * (shape.growth**2 - 1.0)))
+    fraction = np.clip((load - 1) / (shape.full_load - 1), 0.0, 1.0)
+    return np.asarray(np.sqrt(1.0 + np.ceil(fraction * LOAD_STEPS) / LOAD_STEPS * (shape.growth**2 - 1.0)))
 
 
 def _conforming(shape: MeshCell) -> Mesh:

@@ -1,4 +1,4 @@
-"""Cells given as files: a graph in TOML or as beams in 3MF, a closed mesh with an optional TOML beside it."""
+"""Read cells from files: a graph in TOML or as beams in 3MF, or a closed mesh with an optional TOML file."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -21,11 +21,11 @@ MESH_SUFFIXES = (".stl", ".obj", ".3mf", ".ply", ".off", ".glb", ".step", ".stp"
 _SUMMARY = "A cell from a file."
 
 ReadMesh = Callable[[Path], Mesh]
-"""Reads the one mesh of a file."""
+"""Reads the only mesh of a file."""
 
 
 class CellFile(NamedTuple):
-    """A cell from a file, with its name and its line for lists."""
+    """A cell from a file, with its name and a sentence for lists."""
 
     name: str
     summary: str
@@ -38,18 +38,22 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
     Parameters
     ----------
     path
-        TOML, or a mesh file; of a mesh file the TOML of the same name beside it is read too, if there is one.
+        TOML file or mesh file. If a TOML file of the same name is beside a mesh file, it is read as well.
+    read_mesh
+        Reads mesh files.
 
     Raises
     ------
     InputError
-        When a file is not what a cell needs: saying which, and why.
+        If a file does not declare a cell; the message names the file and the reason.
     """
     beside = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
     table = read_cell_table(beside) if beside.is_file() else {}
     size = number(table, "size_mm", str(beside), 1.0) or 0.0
     if not 0.0 < size < 1e6:
-        raise InputError(f"{beside}: size_mm is the side of the cube as it is drawn, above 0, got {size:g}")
+        raise InputError(
+            f"{beside}: size_mm, the edge of the cube in the drawing, must be above 0, got {size:g}"
+        )
     if path != beside:
         table = {**table, "mesh": path.name}
     variants = [
@@ -72,18 +76,20 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
 def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[CellEmitter]:
     """Yield the offers of all cells in a folder, in the order of their names.
 
-    Each TOML file but ``pyproject.toml`` is a cell, and so is each STL, OBJ or 3MF file without a TOML that names it.
+    Each TOML file but ``pyproject.toml`` is a cell, and so is each STL, OBJ or 3MF file that no TOML file names.
 
     Parameters
     ----------
     folder
-        Or a file in it: a plugin passes its ``__file__``.
+        The folder, or a file in it: a plugin passes its ``__file__``.
+    read_mesh
+        Reads mesh files; the default is trimesh.
 
     Raises
     ------
     InputError
-        When a TOML file is not what a cell needs, or there is no cell; a mesh is read, and refused, when its cell
-        is used.
+        If a TOML file does not declare a cell, or the folder holds no cell. A mesh file is read only when its cell is
+        used, and refused then.
     """
     place = Path(folder)
     place = place.parent if place.is_file() else place
@@ -103,12 +109,12 @@ def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[
             yield _offer_of(path, read_mesh or _plain_mesh)
     if not count:
         raise InputError(
-            f"{place}: no cell in this folder; a package has to bring its TOML and mesh files along when installed"
+            f"{place}: no cell in this folder; a package must install its TOML and mesh files with it"
         )
 
 
 def _offer_of(path: Path, read_mesh: ReadMesh) -> CellEmitter:
-    """Return the offer of a file; meshes are read when the cell is used, so that loading a plugin stays quick."""
+    """Return the offer of a file. Meshes are read only when the cell is used, so that a plugin loads quickly."""
     table = read_cell_table(path) if path.suffix.lower() == ".toml" else {}
     name = _slug(text(table, "name", str(path)) or path.stem)
     summary = text(table, "summary", str(path)) or _SUMMARY
@@ -119,12 +125,12 @@ def _offer_of(path: Path, read_mesh: ReadMesh) -> CellEmitter:
 
 
 def _shape(table: Mapping[str, Any], path: Path, size: float, read_mesh: ReadMesh) -> Shape:
-    """Return the shape a table declares: the mesh it names, or its graph."""
+    """Return the shape that a table declares: the mesh that it names, or its graph."""
     if "mesh" not in table:
         return graph_of(table, path)
     file = path.parent / text(table, "mesh", str(path))
     if file.suffix.lower() not in MESH_SUFFIXES or not file.is_file():
-        raise InputError(f"{path}: mesh names a mesh file beside it, found none at {file}")
+        raise InputError(f"{path}: mesh must name a mesh file in the same folder, found none at {file}")
     if file.suffix.lower() == ".3mf":
         graph = _beams(file, size)
         if graph is not None:
@@ -133,21 +139,30 @@ def _shape(table: Mapping[str, Any], path: Path, size: float, read_mesh: ReadMes
 
 
 def closed_cell(mesh: Mesh, path: Path, size: float = 1.0) -> Mesh:
-    """Return the mesh of a cell drawn in a cube of `size` mm; corners close to the sides are put onto them.
+    """Return the mesh of a cell in the unit cube; corners close to a side are moved onto it.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the cell, drawn in a cube of `size` mm.
+    path
+        File of the mesh, for messages.
+    size
+        Edge of the cube, mm.
 
     Raises
     ------
     MeshError
-        When it is no closed solid in the cube.
+        If the mesh is not a closed solid inside the cube.
     """
     shrunk = Mesh(snapped(mesh.vertices / size), mesh.triangles)
     for violation in check_template(Template(path.stem, shrunk)):
-        raise MeshError(f"{path}: a cell is a closed mesh in the unit cube, z up; {violation.message}")
+        raise MeshError(f"{path}: a cell must be a closed mesh in the unit cube, z up; {violation.message}")
     return shrunk
 
 
 def _beams(path: Path, size: float) -> GraphCell | None:
-    """Return the beam lattice of a 3MF file as a graph, or None when it has none."""
+    """Return the beam lattice of a 3MF file as a graph, or None if the file has none."""
     from amprep.threemf import read_beams
 
     lattice = read_beams(path)
@@ -155,13 +170,13 @@ def _beams(path: Path, size: float) -> GraphCell | None:
         return None
     nodes, struts, radii = lattice
     try:
-        return GraphCell(np.clip(snapped(nodes / size), *_slack(nodes / size)), struts, radii)
+        return GraphCell(np.clip(snapped(nodes / size), *_clip_bounds(nodes / size)), struts, radii)
     except ValueError as error:
-        raise InputError(f"{path}: {str(error)[:200]}; give size_mm in a TOML beside it") from error
+        raise InputError(f"{path}: {str(error)[:200]}; give size_mm in a TOML file beside it") from error
 
 
-def _slack(points: np.ndarray) -> tuple[float, float]:
-    """Return bounds that put points on the cube which rounding left just outside, and no others."""
+def _clip_bounds(points: np.ndarray) -> tuple[float, float]:
+    """Return bounds that clip points to the cube if only rounding took them out of it, else infinite bounds."""
     close = bool((points > -1e-5).all() and (points < 1.0 + 1e-5).all())
     return (0.0, 1.0) if close else (-np.inf, np.inf)
 

@@ -1,4 +1,4 @@
-"""Turns a declared cell into an offer that a plugin yields and a job picks by name."""
+"""Turn a declared cell into an offer, which a plugin yields and a job chooses by name."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -8,29 +8,29 @@ import numpy as np
 
 from amprep.hookspecs import CellEmitter, NoParams
 from amprep.model import CellRequest, Cells, DeclaredCell, GraphCell, Progress, Shape, Stop
+from amprep.validation import require_bounds
 
 Declare = Callable[[float, float, Any], "Shape | DeclaredCell"]
-"""Makes the cell for a grid, given pitch and step in mm and the checked parameters."""
+"""Makes the cell for a grid from its pitch and step (mm) and the checked parameters."""
 
 
 @dataclass(frozen=True)
 class GraphParams:
-    """Parameters of every cell that is declared as a graph and has none of its own.
+    """Parameters of a cell that is declared as a graph without a parameter class.
 
     Attributes
     ----------
     solid
-        Struts as solids; false: as beams.
+        Whether struts become solids instead of beams.
     radius_factor
-        All struts are that much thicker, 0.1 to 10.
+        Factor on all radii, 0.1 to 10.
     """
 
     solid: bool = True
     radius_factor: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 0.1 <= self.radius_factor <= 10.0:
-            raise ValueError(f"radius_factor is between 0.1 and 10, got {self.radius_factor}")
+        require_bounds(self, "radius_factor", at_least=0.1, at_most=10)
 
 
 def cell_offer(
@@ -40,14 +40,15 @@ def cell_offer(
 
     Parameters
     ----------
+    name, summary
+        Name by which a job chooses the cell, and a sentence for lists.
     cell
-        A shape, a cell with variants, or a function of pitch, step (mm) and params that makes one.
+        A shape, a cell with variants, or a function that makes one from pitch, step (mm) and parameters.
     params
-        Frozen dataclass as for every offer; a field ``solid`` that is False turns struts into beams. Left out, a
-        cell made of graphs gets `GraphParams`, another one none.
+        Frozen dataclass of the parameters; a field ``solid`` that is False turns struts into beams. The default is
+        `GraphParams` for a cell of graphs, and no parameters for other cells.
     """
-    declare, usual = _declaration(cell)
-    wanted = params or usual
+    declare, default_params = _declaration(cell)
 
     def emit(request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
         from amprep.cells.emission import emit_declared
@@ -58,13 +59,15 @@ def cell_offer(
     def material(pitch: float, step: float, params: Any) -> tuple[float, float]:
         return estimate(declare(pitch, step, params), pitch, step)
 
-    return CellEmitter(name, summary, run=emit, params=wanted, material=material, declare=declare)
+    return CellEmitter(
+        name, summary, run=emit, params=params or default_params, material=material, declare=declare
+    )
 
 
 def _declaration(
     cell: "Shape | DeclaredCell | Declare",
 ) -> tuple[Callable[[float, float, Any], DeclaredCell], type]:
-    """Return how the cell is made, and the params class it has when it brings none."""
+    """Return the function that makes the cell, and its default parameter class."""
     if callable(cell):
         return lambda pitch, step, chosen: DeclaredCell.of(cell(pitch, step, chosen)), NoParams
     fixed = DeclaredCell.of(cell)
@@ -73,7 +76,7 @@ def _declaration(
 
 
 def estimate(cell: DeclaredCell, pitch: float, step: float) -> tuple[float, float]:
-    """Return the mm3 of a vertical and of an oblique edge, on average over the layers of the stack."""
+    """Return the volume (mm3) of a vertical and of an oblique edge, averaged over the layers of a column."""
     from amprep.cells.emission import emit_declared
     from amprep.cells.samples import single_column
 
@@ -87,7 +90,7 @@ def estimate(cell: DeclaredCell, pitch: float, step: float) -> tuple[float, floa
 
 
 def _scaled(cell: DeclaredCell, params: Any) -> DeclaredCell:
-    """Return the cell with the struts as thick as the parameters say."""
+    """Return the cell with its radii scaled by the parameter ``radius_factor``, if there is one."""
     factor = getattr(params, "radius_factor", 1.0)
     if factor == 1.0:
         return cell

@@ -1,4 +1,4 @@
-"""Small requests on which a cell is measured and judged: a column, a block."""
+"""Sample requests on which a cell is measured and checked: a column, and a block."""
 
 from itertools import product
 
@@ -7,11 +7,11 @@ import numpy as np
 from amprep.model import DIRECTIONS, CellRequest, Grid, Role, SupportEdges
 
 LAYERS = 6
-"""Layers of a column, and of a block: every second or third layer differs in it at least twice."""
+"""Layers of a column and of a block: enough for cells that change every second or third layer."""
 
 
 def single_column(pitch: float, step: float, direction: int) -> CellRequest:
-    """Return a column of trunk edges that all lead the same way."""
+    """Return a column of trunk edges of one direction, in a grid of this pitch and step (mm)."""
     dy, dx = DIRECTIONS[direction]
     plane = np.arange(2, LAYERS + 2)
     side = LAYERS + 4
@@ -22,7 +22,17 @@ def single_column(pitch: float, step: float, direction: int) -> CellRequest:
 def block(
     pitch: float, step: float, *, width: int = 3, layers: int = LAYERS, direction: int = 0
 ) -> CellRequest:
-    """Return a block of edges of one direction: feet in the lowest layer, trunks above."""
+    """Return a block of edges of one direction: foot edges in the lowest layer, trunk edges above.
+
+    Parameters
+    ----------
+    pitch, step
+        Of the grid, mm.
+    width, layers
+        Edges along x and y, and layers.
+    direction
+        Index into `amprep.model.DIRECTIONS`.
+    """
     dy, dx = DIRECTIONS[direction]
     plane, y, x = np.array(list(product(range(1, layers + 1), range(width), range(width)))).T
     start = layers + 1

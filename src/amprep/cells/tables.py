@@ -1,4 +1,4 @@
-"""Reads the table of a cell's TOML file: graph, conditions, promises; says in one line what is wrong with it."""
+"""Read the table of a cell's TOML file: its graph, its conditions and its promises."""
 
 import math
 import tomllib
@@ -12,31 +12,31 @@ from amprep.errors import InputError, nearest_hint
 from amprep.model import GraphCell, When
 
 LARGEST_FILE = 4 * 1024 * 1024
-"""bytes."""
+"""Bytes."""
 
 MOST_STRUTS = 2000
-"""Struts and walls of one cell."""
+"""Largest number of struts and walls in a cell."""
 
 ABOUT = ("name", "summary", "author", "licence", "smallest_feature_mm", "least_angle_deg", "size_mm")
-"""Keys at the top of the file only."""
+"""Keys that are allowed only at the top of the file."""
 
 SHAPE = ("mesh", "points", "struts", "radius_mm", "faces", "thickness_mm", "growth", "full_load")
-"""Keys of a shape, at the top or in a variant."""
+"""Keys of a shape, at the top of the file or in a variant."""
 
 _WHEN = ("role", "edges", "load", "every", "layer")
 
 
 def read_cell_table(path: Path) -> dict[str, Any]:
-    """Return the table of a cell's TOML file, its keys known.
+    """Return the table of a cell's TOML file after a check of its keys.
 
     Raises
     ------
     InputError
-        When the file cannot be read, is too large or not TOML, or has an unknown key (with the nearest known one).
+        If the file cannot be read, is too large, is not TOML or has an unknown key; the message names the nearest key.
     """
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: a cell's TOML file may have {LARGEST_FILE} bytes, this one has more")
+            raise InputError(f"{path}: a cell's TOML file must not exceed {LARGEST_FILE} bytes")
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
@@ -54,29 +54,29 @@ def variants_of(table: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
     Raises
     ------
     InputError
-        When they are no list of tables.
+        If they are not a list of tables.
     """
     variants = table.get("variant", [])
     if not isinstance(variants, list) or not all(isinstance(each, dict) for each in variants):
-        raise InputError(f"{path}: variants are written as tables [[variant]]")
+        raise InputError(f"{path}: variants must be written as tables [[variant]]")
     return variants
 
 
 def text(table: Mapping[str, Any], key: str, where: str) -> str:
-    """Return a text of one line, empty when it is missing."""
+    """Return a text of one line, or an empty text if the key is missing."""
     value = table.get(key, "")
     if not isinstance(value, str) or not value.isprintable() or len(value) > 300:
-        raise InputError(f"{where}: {key} is a text of one line")
+        raise InputError(f"{where}: {key} must be a text of one line")
     return value
 
 
 def number(table: Mapping[str, Any], key: str, where: str, default: float | None = None) -> float | None:
-    """Return a finite number, or the default when it is missing."""
+    """Return a finite number, or the default if the key is missing."""
     if key not in table:
         return default
     value = table[key]
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError(f"{where}: {key} is a number, got {value!r}")
+        raise InputError(f"{where}: {key} must be a number, got {value!r}")
     return float(value)
 
 
@@ -86,10 +86,10 @@ def graph_of(table: Mapping[str, Any], path: Path) -> GraphCell:
     Raises
     ------
     InputError
-        For rows of the wrong length, points outside the cube, struts between points that do not exist, ...
+        For rows of the wrong length, points outside the cube, struts between points that do not exist, and so on.
     """
-    usual = number(table, "radius_mm", str(path), 0.3)
-    struts, radii = _struts(table.get("struts", []), usual, path)
+    default = number(table, "radius_mm", str(path), 0.3)
+    struts, radii = _struts(table.get("struts", []), default, path)
     values = {
         "thickness": number(table, "thickness_mm", str(path), 0.0),
         "growth": number(table, "growth", str(path), 1.0),
@@ -98,7 +98,7 @@ def graph_of(table: Mapping[str, Any], path: Path) -> GraphCell:
     faces = _rows(table.get("faces", []), (3,), "faces", path)
     points = _rows(table.get("points", []), (3,), "points", path)
     if len(struts) + len(faces) > MOST_STRUTS:
-        raise InputError(f"{path}: a cell has at most {MOST_STRUTS} struts and walls")
+        raise InputError(f"{path}: a cell must not have more than {MOST_STRUTS} struts and walls")
     try:
         return GraphCell(
             np.array(points, np.float64).reshape(-1, 3),
@@ -118,11 +118,11 @@ def when_of(table: Mapping[str, Any], path: Path) -> When:
     Raises
     ------
     InputError
-        For an unknown word or a bound that makes no sense.
+        For an unknown word or an impossible bound.
     """
     when = table.get("when", {})
     if not isinstance(when, dict):
-        raise InputError(f"{path}: when is a table, as in when = {{role = 'foot'}}")
+        raise InputError(f"{path}: when must be a table, as in when = {{role = 'foot'}}")
     _require_keys(when, _WHEN, f"{path}: when")
     roles = when.get("role", [])
     least, most = _load(when.get("load", [0, 1_000_000_000]), path)
@@ -139,42 +139,42 @@ def when_of(table: Mapping[str, Any], path: Path) -> When:
         raise InputError(f"{path}: when: {_short(error)}") from error
 
 
-def _struts(rows: Any, usual: float | None, path: Path) -> tuple[list[list[int]], list[list[float]]]:
-    """Split rows of two points and none, one or two radii."""
+def _struts(rows: Any, default: float | None, path: Path) -> tuple[list[list[int]], list[list[float]]]:
+    """Split rows of two points and up to two radii; a missing radius gets the default."""
     struts, radii = [], []
     for row in _rows(rows, (2, 3, 4), "struts", path):
         struts.append(_whole([row[:2]], "struts", path)[0])
-        own = row[2:] or [usual or 0.0]
+        own = row[2:] or [default or 0.0]
         radii.append([own[0], own[-1]])
     return struts, radii
 
 
 def _rows(rows: Any, lengths: tuple[int, ...], name: str, path: Path) -> list[list[float]]:
-    """Return rows of finite numbers, each of one of the lengths."""
+    """Return rows of finite numbers, each with one of the given lengths."""
     sizes = " or ".join(map(str, lengths))
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) in lengths for row in rows):
-        raise InputError(f"{path}: {name} is a list of rows of {sizes} numbers")
+        raise InputError(f"{path}: {name} must be a list of rows of {sizes} numbers")
     for row in rows:
         if not all(isinstance(x, int | float) and not isinstance(x, bool) and abs(x) < 1e9 for x in row):
-            raise InputError(f"{path}: {name} is a list of rows of {sizes} numbers, got {str(row)[:80]}")
+            raise InputError(f"{path}: {name} must be a list of rows of {sizes} numbers, got {str(row)[:80]}")
     return rows
 
 
 def _whole(rows: list[list[float]], name: str, path: Path) -> list[list[int]]:
     if not all(isinstance(x, int) for row in rows for x in row):
-        raise InputError(f"{path}: {name} name points by their numbers, from 0")
+        raise InputError(f"{path}: {name} must refer to points by number, from 0")
     return [[int(x) for x in row] for row in rows]
 
 
 def _load(value: Any, path: Path) -> tuple[int, int]:
     if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f"{path}: when: load is a pair, least and most number of paths")
+        raise InputError(f"{path}: when: load must be a pair, the smallest and the largest number of paths")
     return _int(value[0], "load", path), _int(value[1], "load", path)
 
 
 def _int(value: Any, name: str, path: Path) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
-        raise InputError(f"{path}: when: {name} is a whole number, got {value!r}")
+        raise InputError(f"{path}: when: {name} must be a whole number, got {value!r}")
     return value
 
 

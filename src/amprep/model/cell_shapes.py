@@ -1,4 +1,4 @@
-"""A lattice cell as an engineer declares it: a shape in the unit cube, apart from where it is put."""
+"""Declaration of a lattice cell: shapes in the unit cube, and the edges that each of them replaces."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,6 +8,7 @@ import numpy as np
 
 from amprep.arrays import Floats, Ints, frozen
 from amprep.model.mesh import Mesh
+from amprep.validation import require, require_bounds
 
 RoleWord = Literal["trunk", "surface", "foot", "connector"]
 EdgeWord = Literal["any", "straight", "oblique"]
@@ -18,26 +19,26 @@ EDGE_WORDS: tuple[EdgeWord, ...] = ("any", "straight", "oblique")
 
 @dataclass(frozen=True, eq=False)
 class GraphCell:
-    """Round struts between points, walls between points; the only kind whose thickness survives shear.
+    """Round struts and walls between points. Only this kind of cell keeps its thickness when it is sheared.
 
-    Points on the sides of the cube are the cell's ports: what is on one side is to be on the opposite one as
-    well. A strut between points of one side is shared with the neighbour there, and so cut lengthwise.
+    Points on the sides of the cube are the ports of the cell; opposite sides should have the same ports. A strut
+    between two points of one side is shared with the neighbour there: each cell contains half of it, lengthwise.
 
     Attributes
     ----------
     points
-        ``(n, 3)`` in the unit cube: z = 0 is the lower square, z = 1 the upper one.
+        ``(n, 3)`` in the unit cube; z = 0 is the lower square, z = 1 the upper one.
     struts
         ``(m, 2)`` int32, indices into `points`.
     radius
-        ``(m, 2)`` mm at both ends of each strut, whatever the map; given as one number, one for each strut, or two.
+        ``(m, 2)`` mm at both ends of each strut, after the map. One number, or one for each strut, is accepted as well.
     faces
-        ``(k, 3)`` int32, triangles over `points`: walls.
+        ``(k, 3)`` int32, walls as triangles over `points`.
     thickness
-        mm, of the walls; 0 makes them sheets without thickness, which a machine must not fill.
+        Thickness of the walls, mm; 0 makes sheets, which a machine must not fill.
     growth, full_load
-        Radii of an edge with `full_load` paths or more are `growth` times those of one with a single path;
-        in between the cross-section grows evenly.
+        Edges with `full_load` paths or more have `growth` times the radii of an edge with one path. In between, the
+        cross-section grows linearly.
     """
 
     points: Floats
@@ -57,36 +58,40 @@ class GraphCell:
         object.__setattr__(
             self, "radius", frozen(np.broadcast_to(rows, (len(self.struts), 2)), np.float64, 2)
         )
-        _require(bool(len(self.struts) or len(self.faces)), "a graph has struts or faces", "neither")
+        require(bool(len(self.struts) or len(self.faces)), "a graph must have struts or faces", "neither")
         for name in ("struts", "faces"):
             used = getattr(self, name)
             within = not len(used) or (used.min() >= 0 and used.max() < len(self.points))
-            _require(within, f"{name} name points from 0 to {len(self.points) - 1}", used.tolist())
+            require(within, f"{name} must refer to points 0 to {len(self.points) - 1}", used.tolist())
         ends = np.sort(self.struts, axis=1)
-        _require(bool((ends[:, 0] < ends[:, 1]).all()), "a strut joins two points", "one twice")
-        outside = ~((self.points >= 0.0) & (self.points <= 1.0)).all()
-        _require(not outside, "points lie in the unit cube", np.asarray(self.points).tolist())
-        _require(
-            bool((self.radii > 0.0).all() and np.isfinite(self.radii).all()), "radii are above 0", radius
+        require(
+            bool((ends[:, 0] < ends[:, 1]).all()),
+            "a strut must join two different points",
+            "the same point twice",
         )
-        _require(0.0 <= self.thickness < np.inf, "thickness is 0 or more", self.thickness)
-        _require(1.0 <= self.growth <= 10.0, "growth is between 1 and 10", self.growth)
-        _require(self.full_load >= 2, "full_load is at least 2", self.full_load)
+        outside = ~((self.points >= 0.0) & (self.points <= 1.0)).all()
+        require(not outside, "points must be inside the unit cube", np.asarray(self.points).tolist())
+        require(
+            bool((self.radii > 0.0).all() and np.isfinite(self.radii).all()), "radii must be above 0", radius
+        )
+        require_bounds(self, "thickness", at_least=0, below=np.inf)
+        require_bounds(self, "growth", at_least=1, at_most=10)
+        require_bounds(self, "full_load", at_least=2)
 
     @property
     def radii(self) -> Floats:
-        """``(m, 2)`` mm at both ends of each strut, for an edge with a single path."""
+        """``(m, 2)`` mm at both ends of each strut, for an edge with one path."""
         return np.asarray(self.radius)
 
     @property
     def is_sheet(self) -> bool:
-        """Whether its walls have no thickness."""
+        """Whether the cell has walls, and these have no thickness."""
         return len(self.faces) > 0 and self.thickness == 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class MeshCell:
-    """A closed mesh in the unit cube, or with `surface` an open one that a machine must not fill."""
+    """A closed mesh in the unit cube, or with `surface` an open mesh that a machine must not fill."""
 
     mesh: Mesh
     surface: bool = False
@@ -94,22 +99,22 @@ class MeshCell:
 
 @dataclass(frozen=True, eq=False)
 class ImplicitCell:
-    """A function of the point, positive inside.
+    """A periodic function of the point that is positive inside the cell.
 
     Attributes
     ----------
     function
-        Takes points ``(n, 3)``, gives values ``(n,)``. It is also asked a little outside the unit cube and
-        has to go on there as in the neighbouring cell: f(0, y, z) = f(1, y, z) and so on.
+        Takes points ``(n, 3)`` and returns values ``(n,)``. It is evaluated slightly outside the unit cube too, and
+        must have the unit cube as its period: f(0, y, z) = f(1, y, z), and so on.
     resolution
-        Steps along each side of the cube when it is turned into triangles.
+        Steps along each edge of the cube of the grid on which the function is meshed, 4 to 100.
     """
 
     function: Callable[[Floats], Floats]
     resolution: int = 20
 
     def __post_init__(self) -> None:
-        _require(4 <= self.resolution <= 100, "resolution is between 4 and 100", self.resolution)
+        require_bounds(self, "resolution", at_least=4, at_most=100)
 
 
 Shape = GraphCell | MeshCell | ImplicitCell
@@ -117,19 +122,19 @@ Shape = GraphCell | MeshCell | ImplicitCell
 
 @dataclass(frozen=True)
 class When:
-    """Which edges a variant is for; every condition has to hold.
+    """Conditions on an edge, all of which must hold.
 
     Attributes
     ----------
     roles
-        Words of `ROLE_WORDS`; ``surface`` is a trunk edge beside which an edge of its direction is missing.
-        Empty: all.
+        Words of `ROLE_WORDS`, or nothing for all roles. A ``surface`` edge is a trunk edge that lacks a neighbour of
+        its direction on some side.
     edges
-        Straight ones, oblique ones, or any.
+        Direction of the edge: straight, oblique or any.
     least_load, most_load
-        Number of paths on the edge.
+        Bounds of the number of paths on the edge.
     every, layer
-        Layers (0 stands on the plate) that leave the remainder `layer` when divided by `every`.
+        The number of the layer (0 is on the plate) must leave the remainder `layer` when divided by `every`.
     """
 
     roles: frozenset[str] = frozenset()
@@ -142,16 +147,16 @@ class When:
     def __post_init__(self) -> None:
         object.__setattr__(self, "roles", frozenset(self.roles))
         unknown = sorted(self.roles - set(ROLE_WORDS))
-        _require(not unknown, f"roles are among {', '.join(ROLE_WORDS)}", ", ".join(unknown))
-        _require(self.edges in EDGE_WORDS, f"edges is one of {', '.join(EDGE_WORDS)}", self.edges)
-        _require(self.least_load <= self.most_load, "least_load is at most most_load", self.least_load)
-        _require(self.every >= 1, "every is at least 1", self.every)
-        _require(0 <= self.layer < self.every, "layer is at least 0 and below every", self.layer)
+        require(not unknown, f"roles must be among {', '.join(ROLE_WORDS)}", ", ".join(unknown))
+        require(self.edges in EDGE_WORDS, f"edges must be one of {', '.join(EDGE_WORDS)}", self.edges)
+        require(self.least_load <= self.most_load, "least_load must be at most most_load", self.least_load)
+        require_bounds(self, "every", at_least=1)
+        require(0 <= self.layer < self.every, "layer must be at least 0 and below every", self.layer)
 
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A shape and the edges it is for."""
+    """A shape, and conditions on the edges that it replaces."""
 
     shape: Shape
     when: When = field(default_factory=When)
@@ -159,16 +164,20 @@ class Variant:
 
 @dataclass(frozen=True, eq=False)
 class DeclaredCell:
-    """A cell apart from where it is put: of its variants the first that fits an edge replaces it.
+    """A cell with variants; the first variant that fits an edge replaces it.
 
     Edges that no variant fits stay empty.
 
     Attributes
     ----------
-    least_angle_deg
-        Its promise: no strut and no face comes out flatter than this on an oblique edge; None for the usual bound.
+    variants
+        Shapes with their conditions, in order of precedence.
+    author, licence
+        For lists of cells.
     smallest_feature
-        Its promise: nothing of it is thinner, mm; None for the usual bound.
+        Thickness (mm) below which no part of the cell is, or None for the usual limit. `amprep cells check` judges it.
+    least_angle_deg
+        Angle to the horizontal below which no strut and no face is, even on oblique edges, or None for the usual limit.
     """
 
     variants: tuple[Variant, ...]
@@ -179,7 +188,7 @@ class DeclaredCell:
 
     @classmethod
     def of(cls, cell: "Shape | DeclaredCell") -> "DeclaredCell":
-        """Return the cell as it is, or a single shape as a cell.
+        """Return a cell unchanged, and a single shape as a cell with one variant.
 
         Raises
         ------
@@ -192,11 +201,6 @@ class DeclaredCell:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """Which kinds of shape it has: ``graph``, ``mesh``, ``implicit``."""
+        """Kinds of its shapes: ``graph``, ``mesh``, ``implicit``."""
         words = {GraphCell: "graph", MeshCell: "mesh", ImplicitCell: "implicit"}
         return tuple(dict.fromkeys(words[type(variant.shape)] for variant in self.variants))
-
-
-def _require(holds: bool, rule: str, value: object) -> None:
-    if not holds:
-        raise ValueError(f"{rule}, got {value}")

@@ -142,7 +142,7 @@ def test_a_graph_without_params_of_its_own_can_be_made_thicker():
     offer = cell_offer("pin", "A pin.", PIN)
     thin, thick = (emitted(offer, request([1]), radius_factor=factor).templates[0] for factor in (1.0, 1.5))
     assert thick.mesh.signed_volume / thin.mesh.signed_volume == pytest.approx(2.25)
-    with pytest.raises(JobError, match="radius_factor is between"):
+    with pytest.raises(JobError, match="radius_factor must be between"):
         emitted(offer, request([1]), radius_factor=99)
 
 
@@ -176,13 +176,13 @@ def test_a_declaration_that_is_none_or_empty_is_refused():
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [
-        ({"struts": [[0, 2]]}, "struts name points from 0 to 1"),
-        ({"struts": [[0, 0]]}, "a strut joins two points"),
-        ({"points": [[0, 0, 0], [0, 0, 1.1]]}, "points lie in the unit cube"),
-        ({"radius": 0.0}, "radii are above 0"),
-        ({"struts": np.empty((0, 2))}, "a graph has struts or faces"),
-        ({"growth": 0.5}, "growth is between 1 and 10"),
-        ({"full_load": 1}, "full_load is at least 2"),
+        ({"struts": [[0, 2]]}, "struts must refer to points 0 to 1"),
+        ({"struts": [[0, 0]]}, "a strut must join two different points"),
+        ({"points": [[0, 0, 0], [0, 0, 1.1]]}, "points must be inside the unit cube"),
+        ({"radius": 0.0}, "radii must be above 0"),
+        ({"struts": np.empty((0, 2))}, "a graph must have struts or faces"),
+        ({"growth": 0.5}, "growth must be between 1 and 10"),
+        ({"full_load": 1}, "full_load must be at least 2"),
     ],
 )
 def test_a_graph_without_sense_is_refused(wrong, reason):
@@ -193,11 +193,11 @@ def test_a_graph_without_sense_is_refused(wrong, reason):
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [
-        ({"roles": {"roof"}}, "roles are among trunk, surface, foot, connector"),
-        ({"edges": "up"}, "edges is one of any, straight, oblique"),
-        ({"least_load": 3, "most_load": 2}, "least_load is at most most_load"),
-        ({"every": 0}, "every is at least 1"),
-        ({"every": 2, "layer": 2}, "layer is at least 0 and below every"),
+        ({"roles": {"roof"}}, "roles must be among trunk, surface, foot, connector"),
+        ({"edges": "up"}, "edges must be one of any, straight, oblique"),
+        ({"least_load": 3, "most_load": 2}, "least_load must be at most most_load"),
+        ({"every": 0}, "every must be at least 1"),
+        ({"every": 2, "layer": 2}, "layer must be at least 0 and below every"),
     ],
 )
 def test_a_condition_without_sense_is_refused(wrong, reason):
@@ -233,7 +233,9 @@ def test_the_estimate_is_what_a_column_takes(name):
 def test_hatch_has_walls_windows_teeth_and_gaps():
     def volume(**table):
         listed = BUILT_IN.choose("cell", "hatch")
-        params = BUILT_IN.params(listed, {"window_mm": 0, "tooth_pitch_mm": 0, "fragment_every": 0, **table})
+        params = BUILT_IN.params(
+            listed, {"perforation_mm": 0, "tooth_pitch_mm": 0, "fragment_every": 0, **table}
+        )
         asked = request([1], role=Role.FOOT)
         cells = BUILT_IN.call(listed, asked, params=params, stop=Stop(), progress=silent)
         return cells.templates[0].mesh.signed_volume * 8
@@ -242,7 +244,7 @@ def test_hatch_has_walls_windows_teeth_and_gaps():
     plain = 2 * (4 * 2 * 0.25 - 4 * 0.25**2)
     assert volume() == pytest.approx(plain)
     # diamonds of 0.5 x 0.714 mm in the spans: one whole and two halves in each of four walls
-    assert plain - volume(window_mm=0.5) == pytest.approx(
+    assert plain - volume(perforation_mm=0.5) == pytest.approx(
         4 * 2 * 0.25 * 0.5 * 0.5 * np.tan(np.radians(55)) / 2, rel=1e-4
     )
     # wedges 0.8 mm deep between teeth of 0.5 mm a millimetre: less where the other walls' teeth fill them
@@ -255,12 +257,12 @@ def test_hatch_has_walls_windows_teeth_and_gaps():
     ("name", "table", "reason"),
     [
         ("strut", {"diameter_mm": 1.5}, "strut: struts of 1.5 mm need a pitch of at least 3 mm"),
-        ("bcc", {"diameter_mm": 0}, "diameter_mm must be more than 0"),
-        ("strut", {"tie_every": -1}, "tie_every must be 0 or more"),
+        ("bcc", {"diameter_mm": 0}, "diameter_mm must be above 0"),
+        ("strut", {"tie_every": -1}, "tie_every must be at least 0"),
         ("hatch", {"wall_mm": 1.2}, "hatch: walls of 1.2 mm every 1 mm leave no room"),
         ("hatch", {"fragment_gap_mm": 0.6}, "fragment_gap_mm = 0.6 does not fit"),
-        ("hatch", {"tooth_pitch_mm": 0.3}, "tooth_width_mm is at most tooth_pitch_mm"),
-        ("hatch", {"window_mm": -1}, "window_mm must be 0 or more"),
+        ("hatch", {"tooth_pitch_mm": 0.3}, "tooth_width_mm must be at most tooth_pitch_mm"),
+        ("hatch", {"perforation_mm": -1}, "perforation_mm must be at least 0"),
     ],
 )
 def test_what_does_not_fit_the_grid_is_said_in_numbers(name, table, reason):

@@ -1,4 +1,4 @@
-"""A lattice cell: the gyroid (A. Schoen, NASA TN D-5541, 1970), as a network or as a wall."""
+"""A lattice cell: the gyroid (A. Schoen, NASA TN D-5541, 1970) as a network or as a wall."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,13 +17,19 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class GyroidParams:
-    """What is filled: one side of the surface up to a density, or a wall of some thickness.
+    """Parameters of the gyroid.
 
     Attributes
     ----------
+    kind
+        ``network``: one side of the surface is filled up to the density; ``wall``: the surface is thickened.
+    density
+        Fraction of the volume that a network fills.
+    wall_mm
+        Thickness of a wall.
     resolution
-        Steps along each side of the cell. Left out, it is 6 for a network, and for a wall so many that its
-        thickness takes more than one.
+        Steps along each edge of the cell. The default is 6 for a network; for a wall, its thickness is more than one
+        step.
     """
 
     kind: Literal["network", "wall"] = "network"
@@ -49,11 +55,11 @@ def amprep_cell_emitters() -> Iterator[CellEmitter]:
 
 
 def declare_gyroid(pitch: float, step: float, params: GyroidParams) -> ImplicitCell:
-    """Return the gyroid for cells of pitch x pitch x step mm: a function of the point, positive inside."""
+    """Return the gyroid as an implicit cell of pitch x pitch x step mm."""
     size = np.array([pitch, pitch, step])
 
     def network(points: Floats) -> Floats:
-        # the share of the volume above a level is nearly linear in it: a third for each unit
+        # the fraction of the volume above a level is nearly linear in the level, with a slope of one third
         return gyroid(points)[0] - 3.03 * (0.5 - params.density)
 
     def wall(points: Floats) -> Floats:
@@ -63,12 +69,12 @@ def declare_gyroid(pitch: float, step: float, params: GyroidParams) -> ImplicitC
 
     if params.kind == "network":
         return ImplicitCell(network, params.resolution or 6)
-    usual = int(np.clip(np.ceil(1.5 * size.max() / params.wall_mm), 8, 60))
-    return ImplicitCell(wall, params.resolution or usual)
+    default = int(np.clip(np.ceil(1.5 * size.max() / params.wall_mm), 8, 60))
+    return ImplicitCell(wall, params.resolution or default)
 
 
 def gyroid(points: Floats) -> tuple[Floats, Floats]:
-    """Return the function whose zeros are the gyroid, ``(n,)``, and its gradient ``(n, 3)`` in the unit cube."""
+    """Return the function whose zero set is the gyroid, ``(n,)``, and its gradient ``(n, 3)``, in the unit cube."""
     sine, cosine = np.sin(2 * np.pi * points), np.cos(2 * np.pi * points)
     value = (sine * np.roll(cosine, -1, axis=1)).sum(axis=1)
     gradient = cosine * np.roll(cosine, -1, axis=1) - sine * np.roll(sine, 1, axis=1)

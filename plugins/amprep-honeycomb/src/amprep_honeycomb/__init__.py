@@ -1,4 +1,4 @@
-"""Lattice cells that are nothing but files: every TOML and mesh file in this folder is one."""
+"""Lattice cells declared in files: each TOML and mesh file in this folder is a cell."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""The promise that neighbours match: what of a cell meets a side is met by its neighbour there."""
+"""Judge whether neighbouring cells match on their common sides."""
 
 from typing import TYPE_CHECKING
 
@@ -15,18 +15,19 @@ if TYPE_CHECKING:
 PORTS = "ports match"
 SIDE_NAMES = ("left", "right", "front", "back", "bottom", "top")
 
-MOST_DIFFERENT = 0.05
-"""Share of the larger port by which two may differ: struts that come at a flat angle leave the ball a little."""
+LARGEST_DIFFERENCE = 0.05
+"""Fraction of the larger port by which two ports may differ: flat struts extend beyond the ball at the port."""
 
-LEAST_HELD = 0.25
-"""Share of the smaller port that has to stand on the other one where the way bends or the cell changes."""
+SMALLEST_CONTACT = 0.25
+"""Fraction of the smaller port that must be in contact where the direction or the cell changes."""
 
 
 def check_ports(request: CellRequest, cells: Cells) -> list[Violation]:
-    """Judge every pair of neighbours of the answer, each pair of templates once.
+    """Judge every pair of neighbouring templates in the answer once.
 
-    Side by side under one map, both have to look the same on the common side, unless one keeps away from it. One
-    on another, they have to stand on one another; when the templates are the same, they have to look the same too.
+    Neighbours side by side of the same direction must have equal sections with the common side, unless one of them does
+    not reach it. Of two cells above each other, the upper one must stand on the lower one; if both have the same
+    template, the sections must be equal, too.
     """
     ports = _Ports(cells.templates)
     found = [
@@ -38,13 +39,13 @@ def check_ports(request: CellRequest, cells: Cells) -> list[Violation]:
 
 
 def port_areas(template: Template) -> Floats:
-    """Return the share of each side that the template meets, ``(6,)`` in the order of `SIDE_NAMES`."""
+    """Return the fraction of each side that the template covers, ``(6,)`` in the order of `SIDE_NAMES`."""
     ports = _Ports((template,))
     return np.array([float(ports.section(0, side).area()) for side in range(6)])
 
 
 def _neighbours(request: CellRequest, cells: Cells) -> set[tuple[int, int, int, bool]]:
-    """List pairs of templates that meet: axis, the one at its low end, the one at its high end, whether alike."""
+    """List pairs of adjacent templates: axis, template on its low side, on its high side, whether both are to match."""
     edges = request.edges[cells.edge]
     upper, lower, direction = edges.upper.tolist(), edges.lower.tolist(), edges.direction.tolist()
     at: dict[tuple[int, ...], list[int]] = {}
@@ -63,31 +64,41 @@ def _neighbours(request: CellRequest, cells: Cells) -> set[tuple[int, int, int, 
 
 
 class _Ports:
-    """Sections of templates with the sides of the cube, made when they are first needed."""
+    """Sections of templates with the sides of the cube, computed when first needed."""
 
     def __init__(self, templates: tuple[Template, ...]) -> None:
         self.templates = templates
         self._sections: dict[tuple[int, int], CrossSection] = {}
 
     def section(self, template: int, side: int) -> "CrossSection":
-        """Return what of a template lies on a side, seen along the axis."""
+        """Return the part of a template in a side, seen along the axis."""
         if (template, side) not in self._sections:
             self._sections[template, side] = _section(self.templates[template], side)
         return self._sections[template, side]
 
     def judge(self, axis: int, low: int, high: int, same: bool) -> list[Violation]:
-        """Judge one pair: the high side of `low` against the low side of `high`."""
+        """Judge the high side of one template against the low side of another.
+
+        Parameters
+        ----------
+        axis
+            Axis across the common side.
+        low, high
+            Templates on both sides.
+        same
+            Whether both sections must be equal.
+        """
         if self.templates[low].surface or self.templates[high].surface:
             return self._judge_sheets(axis, low, high, same)
         ours, theirs = self.section(low, 2 * axis + 1), self.section(high, 2 * axis)
         areas = float(ours.area()), float(theirs.area())
         common = float((ours ^ theirs).area())
         apart = axis != 2 and min(areas) < SNAP
-        if same and not apart and sum(areas) - 2.0 * common > MOST_DIFFERENT * max(*areas, 1e-12) + SNAP:
+        if same and not apart and sum(areas) - 2.0 * common > LARGEST_DIFFERENCE * max(*areas, 1e-12) + SNAP:
             return [self._differs(axis, low, high, areas, common)]
-        if (axis == 2 and common < LEAST_HELD * min(areas) - SNAP) or (axis == 2 and min(areas) < SNAP):
+        if (axis == 2 and common < SMALLEST_CONTACT * min(areas) - SNAP) or (axis == 2 and min(areas) < SNAP):
             names = self.templates[high].name, self.templates[low].name
-            found = f"{names[0]} does not stand on {names[1]}: {common:.2%} of the square in common"
+            found = f"{names[0]} does not stand on {names[1]}: they share {common:.2%} of the square"
             return [Violation(PORTS, self.templates[high].name, found)]
         return []
 
@@ -96,13 +107,13 @@ class _Ports:
     ) -> Violation:
         here, there = SIDE_NAMES[2 * axis + 1], SIDE_NAMES[2 * axis]
         message = (
-            f"its {here} side has {areas[0]:.2%} of the square, the {there} side of "
-            f"{self.templates[high].name} above or beside it {areas[1]:.2%}, and {common:.2%} are the same"
+            f"its {here} side covers {areas[0]:.2%} of the square, the {there} side of the adjacent "
+            f"{self.templates[high].name} covers {areas[1]:.2%}, and both share {common:.2%}"
         )
         return Violation(PORTS, self.templates[low].name, message)
 
     def _judge_sheets(self, axis: int, low: int, high: int, same: bool) -> list[Violation]:
-        """Sheets end in lines: one on another, they have to have a corner in common."""
+        """Judge sheets, which end in lines: two sheets above each other must share a corner."""
         if not (self.templates[low].surface and self.templates[high].surface):
             return []
         ours, theirs = (_corners(self.templates[each], 2 * axis + end) for each, end in ((low, 1), (high, 0)))
@@ -122,7 +133,7 @@ def _section(template: Template, side: int) -> "CrossSection":
     triangles = template.mesh.triangles.astype(np.int64)
     flush = triangles[flush_sides(points, triangles) == side]
     plan = points[flush][:, :, list(PLANE_AXES[side // 2])]
-    turned = plan if side % 2 else plan[:, ::-1]  # a low side is seen from inside
+    turned = plan if side % 2 else plan[:, ::-1]  # triangles of a low side are seen from inside
     return CrossSection([np.ascontiguousarray(each) for each in turned], FillRule.Positive)
 
 

@@ -1,4 +1,4 @@
-"""The promise that a cell can be printed and emptied: steep enough, thick enough, open enough."""
+"""Judge whether a cell can be printed and powder removed from it: steepness, thickness, escape of powder."""
 
 from typing import NamedTuple
 
@@ -15,15 +15,25 @@ from amprep.model.cells import CellRequest, Cells, Template
 STEEP, FEATURE, HOLE, POCKET = "steep enough", "smallest feature", "hole for powder", "no trapped powder"
 
 BRIDGE = 0.6
-"""mm; what looks down flatter is held by what is beside it, when it is no wider."""
+"""Largest width (mm) of a downward face that needs no support, because it bridges between its neighbours."""
 
 
 FINER = 2
-"""How much finer the voxels are on which the smallest feature is measured, on a part of the block."""
+"""Factor by which the voxels are finer on which the smallest feature is measured, in a part of the block."""
 
 
 class PrintLimits(NamedTuple):
-    """What a machine can do: least steepness in degrees, thinnest feature and narrowest hole, mm."""
+    """Limits of a machine.
+
+    Attributes
+    ----------
+    angle_deg
+        Smallest angle of struts and downward faces to the horizontal.
+    feature
+        Smallest thickness, mm.
+    hole
+        Smallest diameter of a hole through which powder escapes, mm.
+    """
 
     angle_deg: float = 30.0
     feature: float = 0.15
@@ -31,18 +41,18 @@ class PrintLimits(NamedTuple):
 
 
 class CellMeasures(NamedTuple):
-    """What was measured on a block of the cell's upright edges.
+    """Measurements on a block of upright edges.
 
     Attributes
     ----------
     density
-        Share of the block's volume.
+        Fraction of the volume of the block that is solid.
     feature
-        mm; what is thinner makes up at most a hundredth of the cell. None without solids.
+        Smallest feature, mm; at most a hundredth of the cell is thinner. None without solids.
     hole
-        mm; the largest ball that gets out sideways from wherever powder lies. None when there is no powder.
+        Diameter of the largest ball that escapes sideways from the void, mm. None without a void.
     pocket
-        Share of the block's volume from which nothing gets out at all.
+        Fraction of the volume of the block that is void and closed on all sides.
     """
 
     density: float
@@ -52,7 +62,19 @@ class CellMeasures(NamedTuple):
 
 
 def check_struts(graph: GraphCell, linear: Floats, limits: PrintLimits, where: str) -> list[Violation]:
-    """Judge the steepness of each strut and wall of a graph under a map's linear part ``(3, 3)``."""
+    """Judge the steepness of each strut and wall of a graph.
+
+    Parameters
+    ----------
+    graph
+        The cell.
+    linear
+        ``(3, 3)`` linear part of the map from the unit cube to mm.
+    limits
+        Limits to apply.
+    where
+        Name of the sample, for messages.
+    """
     found = []
     for number, angle in enumerate(angles_deg(graph.points, graph.struts, linear).tolist()):
         if angle < limits.angle_deg - 1e-6 and not _is_short(graph.points[graph.struts[number]], linear):
@@ -72,7 +94,13 @@ def check_struts(graph: GraphCell, linear: Floats, limits: PrintLimits, where: s
 
 
 def check_overhangs(template: Template, linear: Floats, limits: PrintLimits, where: str) -> list[Violation]:
-    """Judge what looks down flatter than the limit, wider than a bridge, and does not stand on the cell below."""
+    """Judge downward faces that are flatter than the limit, wider than a bridge and not on the cell below.
+
+    Parameters
+    ----------
+    template, linear, limits, where
+        As for `check_struts`.
+    """
     points = snapped(template.mesh.vertices)
     triangles = template.mesh.triangles.astype(np.int64)
     corners = (points @ linear.T)[triangles]
@@ -85,14 +113,20 @@ def check_overhangs(template: Template, linear: Floats, limits: PrintLimits, whe
     width = _width(corners, triangles, flat)
     if width <= BRIDGE:
         return []
-    message = (
-        f"{template.name} has faces {width:.2g} mm wide that look down at {angle[flat].min():.1f} degrees"
-    )
+    message = f"{template.name} has downward faces {width:.2g} mm wide at {angle[flat].min():.1f} degrees"
     return [Violation(STEEP, where, f"expected at least {limits.angle_deg:g}; {message} on {where}")]
 
 
 def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
-    """Measure a block of upright edges, made of cubes with `steps` voxels along each side; features finer."""
+    """Measure a block of upright edges.
+
+    Parameters
+    ----------
+    request, cells
+        The block, and the answer of the cell.
+    steps
+        Voxels along each edge of a cell; the smallest feature is measured on finer ones.
+    """
     frame = request.frame
     size = np.array([frame.pitch, frame.pitch, frame.step])
     solids = [not template.surface for template in cells.templates]
@@ -113,23 +147,21 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
     hole, pocket = escape_diameter(meshes, template[chosen], place[chosen], size, steps)
     few = chosen & (place < (2, 2, 3)).all(axis=1)
     thinnest = smallest_feature(meshes, template[few], place[few], size, FINER * steps)
-    # what no voxel's middle lies in is thinner than a voxel
+    # a solid without any voxel centre is thinner than a voxel
     return CellMeasures(density, thinnest or 0.0, hole, pocket)
 
 
 def check_measures(measures: CellMeasures, limits: PrintLimits, accuracy: float) -> list[Violation]:
-    """Judge what was measured to within `accuracy` mm; features more accurately than holes."""
+    """Judge measurements with an error of `accuracy` mm; that of the smallest feature is less."""
     found = []
     if measures.feature is not None and measures.feature + accuracy / FINER < limits.feature:
         message = f"expected at least {limits.feature:g} mm, measured {measures.feature:.2g} mm"
         found.append(Violation(FEATURE, "block", message))
     if measures.pocket > 0.0:
-        message = f"{measures.pocket:.2%} of the block is closed in on all sides: powder stays there"
+        message = f"{measures.pocket:.2%} of the block is void and closed on all sides, which traps powder"
         found.append(Violation(POCKET, "block", message))
     if measures.hole is not None and measures.hole + accuracy < limits.hole:
-        message = (
-            f"expected ways out sideways of at least {limits.hole:g} mm, measured {measures.hole:.2g} mm"
-        )
+        message = f"expected escape channels of at least {limits.hole:g} mm, measured {measures.hole:.2g} mm"
         found.append(Violation(HOLE, "block", message))
     return found
 
@@ -140,7 +172,7 @@ def _is_short(ends: Floats, linear: Floats) -> bool:
 
 
 def _width(corners: Floats, triangles: np.ndarray, chosen: Bools) -> float:
-    """Return the width of the widest connected patch of the chosen triangles: area in plan over half of its outline."""
+    """Return the width of the widest connected patch of the chosen triangles: area in plan divided by length."""
     from amprep.geometry.meshes.shells import label_shells
 
     if not chosen.any():

@@ -1,4 +1,4 @@
-"""The promise of a cell emitter: records that fit the request, closed templates in the unit cube."""
+"""Judge the answer of a cell emitter: records that match the request, closed templates in the unit cube."""
 
 import numpy as np
 
@@ -7,11 +7,11 @@ from amprep.model.cells import CellRequest, Cells, Template
 from amprep.model.mesh import Mesh
 
 TOLERANCE = 1e-6
-"""How far a template may leave the unit cube."""
+"""Largest distance by which a template may extend beyond the unit cube."""
 
 
 def check_cells(request: CellRequest, cells: Cells) -> list[Violation]:
-    """Judge what an emitter returned: indices, maps, templates in the unit cube, solids closed."""
+    """Judge the indices and maps of an answer, and each of its templates."""
     found = []
     numbers = {"edge": (cells.edge, len(request.edges)), "template": (cells.template, len(cells.templates))}
     for name, (values, count) in numbers.items():
@@ -26,24 +26,26 @@ def check_cells(request: CellRequest, cells: Cells) -> list[Violation]:
 
 
 def check_template(template: Template) -> list[Violation]:
-    """Judge one template: inside the unit cube, closed unless a surface, right side out."""
+    """Judge one template: it must be in the unit cube and, unless it is a surface, closed with normals outwards."""
     mesh, name = template.mesh, template.name
     corners = len(mesh.vertices)
     if not len(mesh.triangles) or mesh.triangles.min() < 0 or mesh.triangles.max() >= corners:
         return [Violation("unit cube", name, f"expected triangles over its {corners} vertices")]
     found = []
     outside = max(-mesh.vertices.min(), mesh.vertices.max() - 1.0)
-    if not outside <= TOLERANCE:  # so that not a number is found too
-        found.append(Violation("unit cube", name, f"leaves the unit cube by {outside:.3g}"))
+    if not outside <= TOLERANCE:  # also true for NaN
+        found.append(Violation("unit cube", name, f"extends beyond the unit cube by {outside:.3g}"))
     if not template.surface and not _is_closed(mesh):
-        found.append(Violation("closed", name, "a solid has each edge as often in both directions"))
+        found.append(
+            Violation("closed", name, "a solid must have each edge equally often in both directions")
+        )
     if not template.surface and not mesh.signed_volume > 0:
         found.append(Violation("closed", name, f"expected a positive volume, got {mesh.signed_volume:.3g}"))
     return found
 
 
 def _is_closed(mesh: Mesh) -> bool:
-    """Whether every directed edge has its opposite, as often."""
+    """Tell whether every directed edge occurs as often as its opposite."""
     edges = np.concatenate([mesh.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
     forward = edges[np.lexsort(edges.T)]
     backward = edges[:, ::-1][np.lexsort(edges[:, ::-1].T)]

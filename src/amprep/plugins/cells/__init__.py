@@ -14,24 +14,24 @@ amprep_api = 1
 
 @hookimpl
 def amprep_cell_emitters() -> Iterator[CellEmitter]:
-    """Yield the cells of thesis section 3.5, lattices of struts, and the block support."""
-    yield CellEmitter("prism", "Every section as its full prism.", run=emit_prisms, material=prism_material)
+    """Yield the cells of thesis 3.5, two lattices of struts, and block supports."""
+    yield CellEmitter("prism", "The whole prism of each edge.", run=emit_prisms, material=prism_material)
     yield CellEmitter(
         "x-wall",
-        "X-shaped walls whose arms meet their neighbours only every n-th layer, so that powder gets out.",
+        "X-shaped walls that meet their neighbours only in every n-th layer, so that powder escapes.",
         run=emit_x_walls,
         params=XWallParams,
         material=x_wall_material,
     )
     yield cell_offer(
-        "strut", "A round pin along every edge, tied to its neighbours.", declare_strut, params=StrutParams
+        "strut", "A round pin along each edge, tied to its neighbours.", declare_strut, params=StrutParams
     )
     yield cell_offer(
         "bcc", "Round struts from the centre to the corners of the cell.", declare_bcc, params=BccParams
     )
     yield CellEmitter(
         "hatch",
-        "Block support: a grid of thin walls with windows, teeth and gaps.",
+        "Block support: a grid of thin walls with perforations, teeth and gaps.",
         run=emit_hatch,
         params=HatchParams,
         material=hatch_material,

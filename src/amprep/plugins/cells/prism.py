@@ -1,4 +1,4 @@
-"""The simplest support: every edge as its whole prism (thesis 3.5)."""
+"""The cell ``prism``: each edge becomes its whole prism (thesis 3.5)."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from amprep.hookspecs import NoParams
 from amprep.model import CellRequest, Cells, Mesh, Progress, Stop, Template
 
 _CORNERS = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
-# opposite faces have the same diagonal, so that prisms that touch share their triangles
+# opposite faces are cut along the same diagonal, so that adjacent prisms have the same triangles
 _FACES = [
     [0, 2, 3], [0, 3, 1], [4, 7, 6], [4, 5, 7],
     [0, 1, 5], [0, 5, 4], [2, 7, 3], [2, 6, 7],
@@ -27,5 +27,5 @@ def emit_prisms(request: CellRequest, *, params: NoParams, stop: Stop, progress:
 
 
 def prism_material(pitch: float, step: float, params: NoParams) -> tuple[float, float]:  # noqa: ARG001
-    """Volume in mm3 of an upright and of a sheared prism: the same, shearing keeps volume."""
+    """Return the volume (mm3) of an upright and of an oblique prism; shear preserves volume."""
     return pitch * pitch * step, pitch * pitch * step

@@ -1,4 +1,4 @@
-"""Two lattices of round struts, declared as graphs: a pin along every edge, and the body-centred cubic cell."""
+"""The cells ``strut`` and ``bcc``: a pin along each edge, and the body-centred cubic cell, both declared as graphs."""
 
 from dataclasses import dataclass
 
@@ -6,25 +6,26 @@ import numpy as np
 
 from amprep.errors import JobError
 from amprep.model import DeclaredCell, GraphCell, Variant, When
+from amprep.validation import require_bounds
 
 _CORNERS = [[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
 _CENTRE = 8
 _UPRIGHT = [[0, 4], [1, 5], [2, 6], [3, 7]]
-"""The four edges of the cube along the way of the support."""
+"""The four vertical edges of the cube."""
 
 
 @dataclass(frozen=True)
 class StrutParams:
-    """How thick the pins are, and where they hold one another.
+    """Parameters of the cell ``strut``.
 
     Attributes
     ----------
     diameter_mm
-        Of pins and ties. Left out, it is 0.8 mm, or a quarter of the pitch if that is less.
+        Diameter of pins and ties. The default is 0.8 mm, but at most a quarter of the pitch.
     tie_every
-        In every n-th layer upright pins lean four ties on their neighbours; 0: never.
+        In every n-th layer, four ties connect an upright pin to its neighbours; 0 for no ties.
     solid
-        Struts as solids; false: as beams.
+        Whether struts become solids instead of beams.
     """
 
     diameter_mm: float | None = None
@@ -32,35 +33,34 @@ class StrutParams:
     solid: bool = True
 
     def __post_init__(self) -> None:
-        _require_diameter(self.diameter_mm)
-        if self.tie_every < 0:
-            raise ValueError(f"tie_every must be 0 or more, got {self.tie_every}")
+        require_bounds(self, "diameter_mm", above=0, below=np.inf)
+        require_bounds(self, "tie_every", at_least=0)
 
 
 @dataclass(frozen=True)
 class BccParams:
-    """How thick the struts of the body-centred cubic cell are.
+    """Parameters of the cell ``bcc``.
 
     Attributes
     ----------
     diameter_mm
-        Left out, it is 0.8 mm, or a quarter of the pitch if that is less.
+        Diameter of the struts. The default is 0.8 mm, but at most a quarter of the pitch.
     solid
-        Struts as solids; false: as beams.
+        Whether struts become solids instead of beams.
     """
 
     diameter_mm: float | None = None
     solid: bool = True
 
     def __post_init__(self) -> None:
-        _require_diameter(self.diameter_mm)
+        require_bounds(self, "diameter_mm", above=0, below=np.inf)
 
 
 def declare_strut(pitch: float, step: float, params: StrutParams) -> DeclaredCell:  # noqa: ARG001
-    """Return a pin from the middle of the upper square to that of the lower one, with ties between upright ones.
+    """Return a pin between the centres of both squares, with ties between upright pins.
 
-    A tie runs from the foot of the pin to the middle of an edge of the upper square, where the neighbour's
-    meets it: steeper than the oblique pins of the same grid.
+    A tie runs from the lower end of the pin to the middle of a side of the upper square, where it meets the tie of the
+    neighbour. It is steeper than the oblique pins of the same grid.
     """
     radius = _radius("strut", pitch, params.diameter_mm)
     points = [[0.5, 0.5, 0], [0.5, 0.5, 1], [0, 0.5, 1], [1, 0.5, 1], [0.5, 0, 1], [0.5, 1, 1]]
@@ -78,9 +78,9 @@ def declare_strut(pitch: float, step: float, params: StrutParams) -> DeclaredCel
 
 
 def declare_bcc(pitch: float, step: float, params: BccParams) -> DeclaredCell:  # noqa: ARG001
-    """Return the cell whose struts join its centre to its corners; oblique edges get struts from corner to corner.
+    """Return the cell whose struts join its centre to its corners; oblique edges get struts between corners.
 
-    Sheared, four of the eight struts would lie too flat to be printed.
+    If the cell itself were sheared, four of its eight struts would be too flat to be printed.
     """
     radius = _radius("bcc", pitch, params.diameter_mm)
     corners = np.array(_CORNERS)
@@ -90,16 +90,11 @@ def declare_bcc(pitch: float, step: float, params: BccParams) -> DeclaredCell:  
     return DeclaredCell((Variant(centred, When(edges="straight")), Variant(oblique)))
 
 
-def _require_diameter(diameter: float | None) -> None:
-    if diameter is not None and not 0.0 < diameter < np.inf:
-        raise ValueError(f"diameter_mm must be more than 0, got {diameter}")
-
-
 def _radius(name: str, pitch: float, diameter: float | None) -> float:
     wanted = min(0.8, pitch / 4.0) if diameter is None else diameter
     if wanted > pitch / 2.0:
         raise JobError(
             f"{name}: struts of {wanted:g} mm need a pitch of at least {2.0 * wanted:.3g} mm, "
-            f"the grid has {pitch:.4g}; make diameter_mm smaller or pitch_mm larger"
+            f"the grid has {pitch:.4g}; reduce diameter_mm or increase pitch_mm"
         )
     return wanted / 2.0
