@@ -43,7 +43,7 @@ def test_a_mesh_without_triangles_is_an_empty_stl(tmp_path):
     assert len((tmp_path / "a.stl").read_bytes()) == 84
 
 
-def test_a_folder_that_is_not_there_is_an_error_of_one_line(tmp_path):
+def test_a_missing_folder_is_an_error_of_one_line(tmp_path):
     with pytest.raises(AmprepError, match="cannot write"):
         write_stl(CORNER, tmp_path / "nowhere" / "a.stl")
     assert not list(tmp_path.iterdir())

@@ -133,7 +133,7 @@ def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...
 
 
 def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported:
-    """Return to what extent a region is supported; `left` lists what of it is unsupported."""
+    """Return to what extent a region is supported; `left` lists its unsupported regions."""
     if all(each.minor for each in left):
         return "fully"
     return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
+from amprep.report.counting import counted
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.record import StageTime
 
@@ -164,8 +165,8 @@ def warnings_of(record: InfillRecord) -> Iterator[str]:
             yield _trapped_powder_warning(part, record.powder_hole_mm)
         if part.dropped_components:
             yield (
-                f"{part.name}: {part.dropped_components} disconnected components of cells "
-                f"({part.dropped_volume_mm3:.3g} mm3) were dropped because nothing holds them"
+                f"{part.name}: dropped {counted(part.dropped_components, 'disconnected component')} of cells "
+                f"({part.dropped_volume_mm3:.3g} mm3), which nothing holds"
             )
         for found in part.violations:
             yield f"{part.name}: {found.promise}: {found.message}"
@@ -176,7 +177,7 @@ def _trapped_powder_warning(part: FilledPartRecord, hole_mm: float) -> str:
     between = part.region_volume_mm3 - part.cell_volume_mm3
     advice = "; let the region reach the part's surface, or choose a more open cell"
     return (
-        f"{part.name}: {trapped:.4g} mm3 of powder in {len(part.pockets)} pockets cannot leave, "
+        f"{part.name}: {trapped:.4g} mm3 of powder in {counted(len(part.pockets), 'pocket')} cannot leave, "
         f"{trapped / max(between, trapped):.1%} of the powder between the cells (a ball of {hole_mm:g} mm "
         f"has no way out){advice if trapped > _MUCH_TRAPPED * between else ''}"
     )

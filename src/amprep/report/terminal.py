@@ -3,6 +3,7 @@
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from amprep.report.counting import counted
 from amprep.report.record import BuildRecord, RunRecord, StageTime
 
 if TYPE_CHECKING:
@@ -58,9 +59,7 @@ def _verified(entry: BuildRecord) -> str:
 def _totals(record: RunRecord) -> str:
     placed = sum(len(entry.build.parts) for entry in record.builds)
     bound = "" if record.bound is None else f", bound {record.bound:g}"
-    counts = (
-        f"{_count(placed, 'part')} in {_count(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
-    )
+    counts = f"{counted(placed, 'part')} in {counted(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
     return f"{counts}; packing {record.status} ({record.stop_reason}{bound}); seed {record.seed}"
 
 
@@ -99,7 +98,7 @@ def _trapped_powder(entry: BuildRecord) -> list[str]:
         return []
     volume = sum(pocket.volume for pocket in pockets)
     return [
-        f"powder cannot leave {_count(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ in total"
+        f"powder cannot leave {counted(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ in total"
     ]
 
 
@@ -125,7 +124,3 @@ def _printable(text: str) -> str:
     return "".join(
         character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text
     )
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -37,7 +37,7 @@ def test_well_known_printers_have_the_sizes_of_their_data_sheets(name, shape, si
     assert (printer.name, printer.space.shape, printer.space.size.tolist()) == (name, shape, size)
 
 
-def test_every_shipped_profile_names_its_source_and_can_be_found_by_its_name(places):
+def test_every_built_in_profile_states_its_source_and_can_be_found_by_its_name(places):
     printers, warnings = list_printers(*places)
     assert warnings == []
     assert len(printers) >= 20
@@ -93,7 +93,7 @@ def test_a_profile_is_found_by_path_and_zones_are_kept(places):
         ("size_mm = [", "not a TOML file"),
     ],
 )
-def test_a_wrong_profile_is_refused_by_name_and_only_a_warning_in_the_list(places, text, message):
+def test_an_invalid_profile_is_refused_by_name_and_gives_a_warning_in_the_list(places, text, message):
     folder, env = places
     path = folder / "printers" / "broken.toml"
     path.write_text(text)

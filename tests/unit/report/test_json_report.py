@@ -1,4 +1,4 @@
-"""The JSON report, the closing table and the measures behind them."""
+"""The JSON report and the summary for the terminal contain the results of a run."""
 
 import json
 from dataclasses import replace
@@ -48,7 +48,7 @@ def printed(record: RunRecord) -> str:
     return console.export_text()
 
 
-def test_the_json_report_holds_what_the_issue_asks_for(record):
+def test_the_json_report_contains_the_results_of_the_run(record):
     report = json.loads(json_text(to_json(record)))
     build = report["builds"][0]
     assert {"file", "parts", "density", "height_mm", "supports"} <= build.keys()
@@ -75,13 +75,13 @@ def test_numbers_that_are_not_finite_become_null(record):
     assert report["settings"]["packing"] == {"clearance_mm": 0.5, "limit": None, "size": [1.0, None]}
 
 
-def test_the_same_record_gives_the_same_text_and_names_survive_as_they_are(record):
+def test_the_same_record_gives_the_same_text_with_unchanged_names(record):
     odd = replace(record, job='a "name" [\n1, 2\n] \\ ü \udc80')
     assert json_text(to_json(odd)) == json_text(to_json(odd))
     assert json.loads(json_text(to_json(odd)))["job"] == odd.job
 
 
-def test_a_name_that_is_no_unicode_is_written_all_the_same(record, tmp_path):
+def test_a_name_with_invalid_unicode_is_written(record, tmp_path):
     path = tmp_path / "job.report.json"
     write_json(replace(record, job="\udc80"), path)
     assert json.loads(path.read_bytes())["job"] == "\udc80"
@@ -103,7 +103,7 @@ def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["report.json"]
 
 
-def test_measures_count_solids_once_and_surfaces_not_at_all(make_build):
+def test_measures_count_solids_once_and_ignore_surfaces(make_build):
     build = make_build()
     # highest is the bar: lowest point 0.3, 9 high, 3 mm above the plate
     assert build_height(build) == pytest.approx(12.3, abs=1e-5)
@@ -112,7 +112,7 @@ def test_measures_count_solids_once_and_surfaces_not_at_all(make_build):
     assert support_volume(make_build(surface=True)) == pytest.approx(2 * 2 * 3.3, rel=1e-5)
 
 
-def test_the_density_of_a_cylinder_is_taken_on_its_disc(make_build):
+def test_the_density_of_a_cylinder_refers_to_its_disc(make_build):
     build = make_build()
     space = BuildVolume((300, 300, 220), "cylinder")
     round_build = replace(build, settings=replace(build.settings, space=space))
@@ -130,7 +130,7 @@ def test_unplaced_copies_are_a_fault_unless_the_job_fills_one_build(record):
     assert replace(record, objective="fill").faults == 2
 
 
-def test_the_closing_table_says_what_came_of_the_run(record):
+def test_the_summary_shows_figures_issues_durations_and_files(record):
     text = printed(record)
     for words in ("25.0 %", "5.0 mm", "0.05 cm³", "12.5 mm²", "no (1)", "3 parts in 1 build, 1 unplaced"):
         assert words in text
@@ -143,7 +143,7 @@ def test_the_closing_table_says_what_came_of_the_run(record):
         assert words in text
 
 
-def test_names_from_files_can_neither_steer_the_terminal_nor_mark_up_the_table(record):
+def test_names_from_files_cannot_control_the_terminal_or_the_markup(record):
     evil = replace(
         record, job="[red]x[/red]\x1b[2J", unplaced=(UnplacedRecord("[b]y\x1b]0;t\x07", 1, "[/]"),)
     )
@@ -153,7 +153,7 @@ def test_names_from_files_can_neither_steer_the_terminal_nor_mark_up_the_table(r
     assert "[b]y" in text
 
 
-def test_long_lists_are_cut_in_the_terminal(record):
+def test_long_lists_are_shortened_in_the_terminal(record):
     many = tuple(UnplacedRecord("peg", copy, "no room left") for copy in range(1, 101))
     text = printed(replace(record, unplaced=many))
     assert text.count("\n!") <= MOST_LINES

@@ -8,6 +8,7 @@ from textwrap import dedent
 
 from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
+from amprep.report.counting import counted
 from amprep.report.json_values import plain
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
@@ -19,8 +20,11 @@ Cell = str | float | tuple[str, str]
 def header(record: RunRecord) -> str:
     """Return the title with the number of issues, the run's settings and the key figures."""
     faults = record.faults
-    issues = f"{faults} issue{'s' if faults > 1 else ''}"
-    chip = f'<span class="chip bad">{issues}</span>' if faults else '<span class="chip">no issues</span>'
+    chip = (
+        f'<span class="chip bad">{counted(faults, "issue")}</span>'
+        if faults
+        else '<span class="chip">no issues</span>'
+    )
     lead = " · ".join(
         escape(text)
         for text in (
@@ -143,7 +147,7 @@ def _parts(number: int, entry: BuildRecord) -> str:
         "Lowest corner mm",
         "Transform (row-major, mm)",
     )
-    name = f"Build {number}: {len(entry.build.parts)} parts"
+    name = f"Build {number}: {counted(len(entry.build.parts), 'part')}"
     return _details(name, table(headings, rows))
 
 
@@ -188,8 +192,9 @@ def _supports(number: int, entry: BuildRecord) -> str:
         "Height / width mm|",
         "Most slender at, mm",
     )
+    bodies = "1 support body" if len(entry.slenderness) == 1 else f"{len(entry.slenderness)} support bodies"
     most = max(each.slenderness for each in entry.slenderness)
-    name = f"Build {number}: {len(entry.slenderness)} support bodies, largest slenderness ratio {most:.1f}"
+    name = f"Build {number}: {bodies}, largest slenderness ratio {most:.1f}"
     return _details(name, table(headings, rows))
 
 
@@ -242,7 +247,7 @@ def _overhangs(number: int, entry: BuildRecord) -> str:
     )
     headings = ("Overhang", "Kind", "Size|", "Centre mm", "Demand squares connected|", "Supported", "Reasons")
     supported = sum(each.supported == "fully" for each in entry.overhangs)
-    name = f"Build {number}: {len(entry.overhangs)} overhangs, {supported} fully supported"
+    name = f"Build {number}: {counted(len(entry.overhangs), 'overhang')}, {supported} fully supported"
     return _details(name, table(headings, rows))
 
 
@@ -263,7 +268,7 @@ def _unsupported(record: RunRecord) -> str:
     if not squares:
         return listed
     grouped = [(number, region, count, reason) for (number, region, reason), count in squares.items()]
-    name = f"{sum(squares.values())} demand squares without a support"
+    name = f"{counted(sum(squares.values()), 'demand square')} without a support"
     return listed + _details(name, table(("Build|", "Region", "Demand squares|", "Reason"), grouped))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.measures.density import build_height
 from amprep.model import Build
+from amprep.report.counting import counted
 from amprep.report.picture.camera import Camera
 
 if TYPE_CHECKING:
@@ -31,10 +32,15 @@ def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
 def _subtitle(build: Build) -> str:
     x, y, z = build.settings.space.size.tolist()
     box = f"{x:g} x {y:g} x {z:g} mm" if build.settings.space.shape == "box" else f"⌀ {x:g} x {z:g} mm"
-    items = [build.settings.printer, box, f"{len(build.parts)} parts", f"{build_height(build):.1f} mm high"]
+    items = [
+        build.settings.printer,
+        box,
+        counted(len(build.parts), "part"),
+        f"{build_height(build):.1f} mm high",
+    ]
     count = sum(not region.minor for region in build.unsupported)
     if count:
-        items.append(f"{count} unsupported region{'s' if count > 1 else ''} (red)")
+        items.append(f"{counted(count, 'unsupported region')} (red)")
     return "   ·   ".join(item for item in items if item)
 
 

@@ -30,7 +30,7 @@ _MOST_WARNINGS = 10
 
 
 class _ItemRequest(NamedTuple):
-    """What a build item asks for: an object, its linear map and translation for row vectors, its metadata."""
+    """The contents of a build item: object, linear map and translation for row vectors, part number and metadata."""
 
     thing: "Lib3MF.Object"
     linear: Floats

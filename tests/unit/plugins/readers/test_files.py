@@ -202,14 +202,14 @@ def test_a_damaged_or_hostile_file_is_refused_in_one_line(tmp_path, name, conten
 
 
 @pytest.mark.parametrize("suffix", ["stl", "ply", "off", "obj", "glb", "gltf", "step"])
-def test_a_folder_or_nothing_at_all_is_refused_in_one_line(tmp_path, suffix):
+def test_a_folder_or_a_missing_file_is_refused_in_one_line(tmp_path, suffix):
     (tmp_path / f"folder.{suffix}").mkdir()
     assert "cannot read" in refused(tmp_path / f"folder.{suffix}")
     assert "cannot read" in refused(tmp_path / f"none.{suffix}")
 
 
 @pytest.mark.parametrize(("suffix", "content"), [("stl", BINARY), ("ply", PLY), ("off", OFF), ("glb", GLB)])
-def test_any_cut_and_any_flipped_byte_gives_parts_or_one_line(tmp_path, suffix, content):
+def test_any_changed_byte_gives_parts_or_an_error_of_one_line(tmp_path, suffix, content):
     rng = np.random.default_rng(7)
     path = tmp_path / f"a.{suffix}"
     for _ in range(40):

@@ -1,4 +1,4 @@
-"""The HTML report: complete, offline, harmless whatever the files are called, the same each time."""
+"""The HTML report is complete, works offline, is safe for all names, and the same each time."""
 
 import base64
 import hashlib
@@ -84,7 +84,7 @@ def renamed(build: Build, name: str) -> Build:
 
 
 def decoded(data: bytes, entry: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Unpack a mesh as viewer/decode.js does."""
+    """Decode a mesh as viewer/decode.js does."""
     n, m, start = entry["vertices"], 3 * entry["triangles"], entry["offset"]
     axes = []
     for axis in range(3):
@@ -105,7 +105,7 @@ def test_the_page_refers_to_no_other_file_and_to_no_network(make_build):
     assert "url(" not in Tags(text).raw_text("style")
 
 
-def test_the_policy_admits_the_bundled_script_and_style_alone(make_build):
+def test_the_policy_allows_only_the_bundled_script_and_style(make_build):
     page = Tags(html_text(run_of(make_build())))
     policy = next(a["content"] for tag, a in page.tags if tag == "meta" and "http-equiv" in a)
     assert "default-src 'none'" in policy
@@ -115,7 +115,7 @@ def test_the_policy_admits_the_bundled_script_and_style_alone(make_build):
         assert f"{kind}-src 'sha256-{digest}'" in policy
 
 
-def test_names_from_files_are_text_wherever_they_stand(make_build):
+def test_names_from_files_are_escaped_everywhere(make_build):
     harmless, evil = (Tags(html_text(run_of(renamed(make_build(), name), name))) for name in ("name", EVIL))
     assert evil.tags == harmless.tags
     assert json.loads(evil.raw_text("model"))["builds"][0]["parts"][0]["name"] == EVIL
@@ -123,7 +123,7 @@ def test_names_from_files_are_text_wherever_they_stand(make_build):
 
 @examples(25)
 @given(st.text(st.characters(exclude_categories=()), max_size=30))
-def test_no_name_whatsoever_changes_the_structure_of_the_page(name):
+def test_no_name_changes_the_structure_of_the_page(name):
     empty = Build(BuildSettings(name, BuildVolume((10, 10, 10)), printer=name), ())
     tags = Tags(html_text(run_of(empty, name)).encode("utf-8", "replace").decode()).tags
     assert tags == Tags(html_text(run_of(replace(empty), "name"))).tags
@@ -140,7 +140,7 @@ def test_the_model_names_every_part_support_and_unsupported_region(make_build):
     np.testing.assert_allclose(shown["parts"][1]["matrix"], build.parts[1].matrix.ravel())
 
 
-def test_geometry_comes_back_from_the_page_and_copies_share_it(make_build):
+def test_geometry_is_decoded_from_the_page_and_shared_by_copies(make_build):
     build = make_build()
     page = Tags(html_text(run_of(build)))
     model = json.loads(page.raw_text("model"))
@@ -155,7 +155,7 @@ def test_geometry_comes_back_from_the_page_and_copies_share_it(make_build):
 
 @examples(50)
 @given(st.integers(1, 40), st.integers(0, 60), st.integers(0, 2**32 - 1))
-def test_any_mesh_survives_packing_to_half_a_grid_step(corners, faces, seed):
+def test_any_mesh_is_decoded_to_half_a_step(corners, faces, seed):
     rng = np.random.default_rng(seed)
     mesh = Mesh(rng.normal(size=(corners, 3)) * [100.0, 1.0, 0.0], rng.integers(0, corners, (faces, 3)))
     pack = GeometryPack()
@@ -174,7 +174,7 @@ def test_the_same_record_gives_the_same_page(make_build, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.html", "b.html"]
 
 
-def test_a_run_without_builds_still_makes_a_page():
+def test_a_run_without_builds_has_a_page():
     record = RunRecord("job", "0", 1, "MK4", "generic", unplaced=(UnplacedRecord("crane", 1, "too large"),))
     text = html_text(record)
     assert "crane" in text
@@ -182,7 +182,7 @@ def test_a_run_without_builds_still_makes_a_page():
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder"])
-def test_the_build_volume_reaches_the_view(make_build, shape):
+def test_the_model_contains_the_build_volume(make_build, shape):
     build = make_build()
     space = BuildVolume((200, 200, 100), shape, [[0, 0, 0]], [[5, 6, 7]])
     page = Tags(html_text(run_of(replace(build, settings=replace(build.settings, space=space)))))
@@ -190,7 +190,7 @@ def test_the_build_volume_reaches_the_view(make_build, shape):
     assert shown == {"size": [200, 200, 100], "shape": shape, "zones": [[[0, 0, 0], [5, 6, 7]]]}
 
 
-def test_the_bundle_carries_the_licence_of_what_it_contains_and_cannot_end_its_element():
+def test_the_bundle_contains_the_licence_of_three_js_and_cannot_end_its_element():
     bundle = files("amprep.report").joinpath("viewer.bundle.js").read_text(encoding="utf-8")
     assert "Permission is hereby granted, free of charge" in bundle
     assert "three.js authors" in bundle

@@ -1,4 +1,4 @@
-"""Pictures: the depth buffer against brute force, and what a person would look for in a picture."""
+"""The depth buffer agrees with brute force, and pictures show parts, supports and marks."""
 
 from dataclasses import replace
 
@@ -73,14 +73,14 @@ def test_the_depth_buffer_agrees_with_brute_force(seed):
     np.testing.assert_allclose(depth[~edge_near], expected_depth[~edge_near], rtol=1e-5, atol=1e-4)
 
 
-def test_triangles_without_area_and_outside_the_picture_draw_nothing():
+def test_triangles_without_area_or_outside_the_picture_draw_nothing():
     points = np.array([[0, 0, 1], [5, 5, 1], [9, 9, 1], [-9, -9, 1], [-5, -9, 1], [-9, -5, 1]], np.float64)
     depth, ids = np.full((10, 10), np.inf, np.float32), np.full((10, 10), -1, np.int32)
     draw(points, np.array([[0, 1, 2], [3, 4, 5]], np.int32), DepthBuffer(depth, ids))
     assert (ids == -1).all()
 
 
-def test_a_camera_shows_all_it_is_fitted_to_and_its_inverse_leads_back():
+def test_a_camera_shows_all_points_it_is_fitted_to_and_its_inverse_restores_them():
     corners = box_corners(np.zeros(3), np.array([30.0, 200.0, 10.0]))
     camera = fitted(view_axes(-62.0, 34.0), corners, (400, 300), margin=20.0)
     seen = camera.project(corners)
@@ -90,7 +90,7 @@ def test_a_camera_shows_all_it_is_fitted_to_and_its_inverse_leads_back():
     np.testing.assert_allclose(back, corners, atol=1e-9)
 
 
-def test_the_viewer_sees_up_as_up_and_right_as_right():
+def test_up_and_right_appear_as_up_and_right():
     axes = view_axes(-90.0, 20.0)  # stands at -y: x runs to the right, z up
     np.testing.assert_allclose(axes[0], [1, 0, 0], atol=1e-12)
     assert axes[1] @ [0, 0, 1] < 0  # rows grow downwards
@@ -107,7 +107,7 @@ def test_parts_appear_in_their_colours_and_copies_share_one():
     assert min(blue, orange) > 0.02 * SIZE[0] * SIZE[1]
 
 
-def test_an_own_colour_is_used_unless_all_parts_carry_the_same():
+def test_own_colours_are_used_unless_all_parts_have_the_same():
     build = build_of(box((0, 0, 0), (1, 1, 1)), box((2, 2, 0), (1, 1, 1)))
 
     def coloured(*colours):
@@ -125,7 +125,7 @@ def test_an_own_colour_is_used_unless_all_parts_carry_the_same():
     assert part_colours(coloured("#FF0000FF", '"><script>')) == ["#ff0000", PALETTE[1]]
 
 
-def test_unsupported_regions_are_red_and_shine_through_what_hides_them():
+def test_unsupported_regions_are_red_and_visible_through_parts():
     block = box((30, 30, 0), (40, 40, 30))
     grid = np.array([[x, y, 31.0] for x in range(40, 61, 2) for y in range(40, 61, 2)])
     above = Unsupported(0, "face", "face", "enclosed", 400.0, grid, 1.5)
@@ -151,7 +151,7 @@ def test_a_round_plate_has_no_corners():
     assert ((square != disc).any(axis=2)).sum() > 0.02 * SIZE[0] * SIZE[1]
 
 
-def test_files_are_pictures_of_the_asked_size_and_the_same_each_time(tmp_path):
+def test_files_are_pictures_of_the_requested_size_with_the_same_bytes_each_time(tmp_path):
     build = build_of(box((10, 10, 0), (30, 30, 20)))
     for name in ("a.png", "b.png"):
         write_picture(build, tmp_path / name, size=SIZE)
@@ -163,7 +163,7 @@ def test_files_are_pictures_of_the_asked_size_and_the_same_each_time(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.png", "mesh.png"]
 
 
-def test_marks_are_balls_about_their_points():
+def test_marks_are_spheres_around_their_points():
     mesh = balls(np.array([[0.0, 0, 0], [10, 0, 0]]), np.array([1.0, 2.0]))
     half = len(mesh.vertices) // 2
     np.testing.assert_allclose(np.linalg.norm(mesh.vertices[:half], axis=1), 1.0)

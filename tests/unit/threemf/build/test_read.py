@@ -1,4 +1,4 @@
-"""A build job tells its whole build; what is not one, or is damaged, is refused in one line."""
+"""A build file contains its whole build; other and damaged files are refused in one line."""
 
 import dataclasses
 import io
@@ -45,7 +45,7 @@ def round_trip(tmp_path):
 
 
 def differences(one, other, where="build"):
-    """Return where two records differ by more than a file keeps: float32 coordinates."""
+    """Return where two records differ by more than the rounding to float32 in a file."""
     if dataclasses.is_dataclass(one):
         pairs = [(getattr(one, each.name), getattr(other, each.name), each.name) for each in fields(one)]
     elif isinstance(one, Mapping):
@@ -64,13 +64,13 @@ def differences(one, other, where="build"):
 
 @pytest.mark.parametrize("share", [False, True])
 @pytest.mark.parametrize("target", TARGETS)
-def test_what_was_written_is_read(make_build, round_trip, target, share):
+def test_a_written_build_is_read_back(make_build, round_trip, target, share):
     build = make_build(target, share=share)
     found = differences(build, round_trip(build))
     assert set(found) == {f"build.parts.{index}.recorded_digest" for index in range(3)}
 
 
-def test_a_wall_without_thickness_comes_back_as_one(make_build, round_trip):
+def test_a_wall_without_thickness_is_read_back_as_such(make_build, round_trip):
     build = make_build(surface=True)
     assert [support.surface for support in round_trip(build).supports] == [True, False]
 
@@ -82,7 +82,7 @@ def test_a_build_without_supports_is_read(make_build, round_trip, target):
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_copies_share_their_part_again(make_build, round_trip, target):
+def test_copies_share_one_part_after_reading(make_build, round_trip, target):
     first, _, third = round_trip(make_build(target)).parts
     assert first.part is third.part
 
@@ -109,7 +109,7 @@ wild = (
     shift=arrays(float, 3, elements=st.floats(-400, 400)),
     angle=st.floats(-4, 4),
 )
-def test_wild_coordinates_keep_their_digest(round_trip, target, vertices, shift, angle):
+def test_any_coordinates_keep_their_digest(round_trip, target, vertices, shift, angle):
     mesh = Mesh(vertices, np.arange(60).reshape(-1, 3))
     turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
     matrix = np.eye(4)
@@ -144,7 +144,7 @@ def test_wild_coordinates_keep_their_digest(round_trip, target, vertices, shift,
     )
 )
 @examples(50)
-def test_settings_survive_their_record_exactly(rules):
+def test_settings_are_recorded_exactly(rules):
     volume = from_json(to_json(record.volume_record(rules.space)))
     text = to_json(record.settings_record(rules))
     assert differences(rules, record.settings_of(from_json(text), record.volume_of(volume))) == []
@@ -160,7 +160,7 @@ def test_every_override_is_recorded():
     )
 
 
-def test_the_record_does_not_say_where_the_job_lay():
+def test_the_record_does_not_contain_the_folder_of_the_job():
     here, there = (
         record.part_record(replace(_part(), source=f"{folder}/a.stl")) for folder in ("/home/a", "/b")
     )
@@ -198,7 +198,7 @@ def test_changed_geometry_does_not_have_the_recorded_digest(edited, target):
     assert placed.recorded_digest != placed.part.mesh.digest
 
 
-def test_a_moved_part_is_read_where_it_stands_now(edited):
+def test_a_moved_part_is_read_in_its_new_position(edited):
     assert edited("10.123456 20 3", "11 20 3").parts[0].matrix[:3, 3].tolist() == [11.0, 20.0, 3.0]
 
 
@@ -270,12 +270,12 @@ MISCOUNTED = {
 
 
 @pytest.mark.parametrize("claim", MISCOUNTED)
-def test_a_merged_mesh_must_be_counted_off_to_the_last(edited, claim):
+def test_the_recorded_sections_must_cover_a_merged_mesh(edited, claim):
     with pytest.raises(InputError, match="is damaged"):
         edited(*MISCOUNTED[claim], target="prusaslicer", share=True)
 
 
-def test_a_part_brought_back_by_a_singular_matrix_is_refused(edited, make_build, tmp_path):
+def test_a_singular_matrix_to_part_coordinates_is_refused(edited, make_build, tmp_path):
     write_build(make_build("prusaslicer", share=True), tmp_path / "a.3mf")
     with zipfile.ZipFile(tmp_path / "a.3mf") as package:
         text = package.read(MODEL).decode()
@@ -315,7 +315,7 @@ def test_a_model_that_lib3mf_refuses_is_an_error_of_one_line(edited, old, new):
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\3\4 and no more", b"solid part\nendsolid"])
-def test_what_is_no_package_is_refused(tmp_path, content):
+def test_a_file_that_is_not_a_package_is_refused(tmp_path, content):
     path = tmp_path / "job.3mf"
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"job\.3mf"):
@@ -336,7 +336,7 @@ def test_a_folder_or_a_missing_file_is_refused(tmp_path, name):
         read_build(tmp_path / name)
 
 
-def test_unsupported_points_come_back_to_a_micrometre(make_build, round_trip):
+def test_unsupported_points_are_read_back_to_a_micrometre(make_build, round_trip):
     points = np.array([[1.23456789, -2.0, 1e-9], [1 / 3, 2 / 3, 200.123456789]])
     region = Unsupported(0, "edge 1", "edge", "capacity", 3.25, points, 0.71)
     read = round_trip(replace(make_build(), unsupported=(region,))).unsupported[0]
@@ -350,7 +350,7 @@ def test_unsupported_points_come_back_to_a_micrometre(make_build, round_trip):
     )
 
 
-def test_a_freedom_about_z_needs_no_matrices(make_build, round_trip):
+def test_rotation_about_z_needs_no_matrices(make_build, round_trip):
     build = make_build()
     turned = replace(build.parts[0], orientations=Orientations("free", np.empty((0, 3, 3))))
     read = round_trip(replace(build, parts=(turned, *build.parts[1:]))).parts[0].orientations
@@ -359,7 +359,7 @@ def test_a_freedom_about_z_needs_no_matrices(make_build, round_trip):
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_long_records_are_read(make_build, round_trip, target):
-    """lib3mf cannot read 64 KiB of text in one piece."""
+    """lib3mf cannot read a text of 64 KiB."""
     points = np.random.default_rng(7).uniform(0, 200, (20_000, 3))
     region = Unsupported(0, "é" * 30_000, "face", "capacity", 3.25, points, 0.7)
     build = make_build(target)
@@ -370,8 +370,8 @@ def test_long_records_are_read(make_build, round_trip, target):
     assert len(differences(build, round_trip(build))) == 3
 
 
-def test_a_build_reads_wherever_the_buffer_of_lib3mf_ends(make_build, tmp_path, monkeypatch):
-    """Names with escaped characters near 64 KiB: without its care some of these files could not be read."""
+def test_a_build_is_readable_wherever_the_buffer_of_lib3mf_ends(make_build, tmp_path, monkeypatch):
+    """Names with escaped characters near 64 KiB; some of these files would be unreadable without padding."""
     build, path = make_build(), tmp_path / "build.3mf"
     plate = build.parts[0].part
 

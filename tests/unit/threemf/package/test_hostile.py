@@ -65,7 +65,7 @@ def refusal(path, content):
     return str(caught.value)
 
 
-def test_the_package_all_of_these_spoil_is_read(tmp_path):
+def test_the_intact_package_is_read(tmp_path):
     (tmp_path / "a.3mf").write_bytes(packed())
     (part,) = (repair_part(part, allow_surface=False) for part in read_parts(tmp_path / "a.3mf"))
     assert part.volume_mm3 == pytest.approx(1 / 6)
@@ -162,7 +162,7 @@ def test_a_zip_bomb_is_refused_before_it_is_inflated(tmp_path):
     assert peak < 120 << 20, "the entry has 200 MiB, and 64 MiB are allowed"
 
 
-def test_a_zip_bomb_that_lies_about_its_size_is_refused(tmp_path):
+def test_a_zip_bomb_that_states_a_wrong_size_is_refused(tmp_path):
     content = bytearray(packed(files={"bomb.png": b"\0" * (100 << 20)}))
     size = struct.pack("<I", 100 << 20)
     assert content.count(size) == 2
@@ -178,17 +178,17 @@ def test_many_small_entries_are_refused(tmp_path):
     assert "entries" in refusal(tmp_path / "a.3mf", stream.getvalue())
 
 
-def test_the_total_is_bounded_over_all_entries(tmp_path, monkeypatch):
+def test_the_total_size_of_all_entries_is_limited(tmp_path, monkeypatch):
     monkeypatch.setattr(package_module, "MOST_BYTES", 1000)
     assert "inflates" in refusal(tmp_path / "a.3mf", packed(files={"a.png": "x" * 400, "b.png": "y" * 400}))
 
 
-def test_elements_are_counted(tmp_path, monkeypatch):
+def test_the_number_of_xml_elements_is_limited(tmp_path, monkeypatch):
     monkeypatch.setattr(scan_module, "MOST_ELEMENTS", 10)
     assert "XML elements" in refusal(tmp_path / "a.3mf", packed())
 
 
-def test_a_folder_or_nothing_at_all_is_refused_in_one_line(tmp_path):
+def test_a_folder_or_a_missing_file_is_refused_in_one_line(tmp_path):
     (tmp_path / "folder.3mf").mkdir()
     for name in ("folder.3mf", "none.3mf"):
         with pytest.raises(InputError, match="cannot read the file"):
@@ -205,7 +205,7 @@ def test_an_encrypted_package_is_refused(tmp_path):
     assert "kind of zip" in refusal(tmp_path / "a.3mf", bytes(content))
 
 
-def test_a_relationship_that_leads_out_of_the_package_is_not_followed(tmp_path):
+def test_a_relationship_to_a_target_outside_the_package_is_not_followed(tmp_path):
     outward = (
         '<Relationship Target="file:///etc/passwd" TargetMode="External" Id="r2" '
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
@@ -216,7 +216,7 @@ def test_a_relationship_that_leads_out_of_the_package_is_not_followed(tmp_path):
     assert part.notes == ("removed a relationship to 'file:///etc/passwd', which is not in the package",)
 
 
-def test_any_cut_and_any_flipped_byte_gives_parts_or_one_line(tmp_path):
+def test_any_changed_byte_gives_parts_or_an_error_of_one_line(tmp_path):
     rng = np.random.default_rng(11)
     stored = io.BytesIO()
     with zipfile.ZipFile(stored, "w") as archive:
@@ -234,7 +234,7 @@ def test_any_cut_and_any_flipped_byte_gives_parts_or_one_line(tmp_path):
                 assert "\n" not in str(error)  # noqa: PT017 - either outcome is right
 
 
-def test_any_change_in_the_model_gives_parts_or_one_line(tmp_path):
+def test_any_change_in_the_model_gives_parts_or_an_error_of_one_line(tmp_path):
     """Changed before packing, so that the checksum does not catch it."""
     rng = np.random.default_rng(12)
     text = model(TETRAHEDRON + '<object id="2"><components><component objectid="1"/></components></object>')

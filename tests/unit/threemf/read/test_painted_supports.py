@@ -25,7 +25,7 @@ A, B, C, AB, BC, CA = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], 
         ("40003", (A, AB, CA)),
     ],
 )
-def test_painted_triangles_are_where_prusaslicer_puts_its_supports(code, corners):
+def test_painted_triangles_agree_with_the_supports_that_prusaslicer_makes(code, corners):
     """Compared with where PrusaSlicer 2.5 places supports when it slices a plate painted with the same code."""
     painted, states = decode(code)
     assert states.tolist() == [1]

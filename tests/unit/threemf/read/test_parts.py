@@ -1,4 +1,4 @@
-"""3MF jobs: what each build item shows, and all that is said of it."""
+"""Each build item of a 3MF job becomes a part with its metadata, in millimetres."""
 
 import shutil
 import subprocess
@@ -38,7 +38,7 @@ def relations(*more, target="/3D/3dmodel.model"):
 
 
 def pack(path, resources, build, *, unit="millimeter", files=None, rels=None):
-    """Write a 3MF package by hand."""
+    """Write a 3MF package without a library."""
     model = (
         f'<?xml version="1.0" encoding="UTF-8"?><model unit="{unit}" xml:lang="en-US" {SPACES}>'
         f"<resources>{resources}</resources><build>{build}</build></model>"
@@ -73,7 +73,7 @@ def settled(path):
     return parts
 
 
-def test_a_plain_job_comes_back_bit_for_bit(tmp_path):
+def test_a_simple_job_is_read_bit_for_bit(tmp_path):
     mesh = trimesh.creation.icosphere(2, 7.3)
     path = pack(tmp_path / "job.3mf", f'<object id="1">{mesh_xml(mesh)}</object>', '<item objectid="1"/>')
     (part,) = settled(path)
@@ -87,13 +87,13 @@ def test_a_plain_job_comes_back_bit_for_bit(tmp_path):
     ("unit", "factor"),
     [("micron", 0.001), ("centimeter", 10), ("inch", 25.4), ("foot", 304.8), ("meter", 1000)],
 )
-def test_every_unit_becomes_millimetres_and_that_is_said(tmp_path, unit, factor):
+def test_every_unit_is_converted_to_millimetres_with_a_note(tmp_path, unit, factor):
     (part,) = settled(pack(tmp_path / "a.3mf", box_object(), '<item objectid="1"/>', unit=unit))
     assert np.ptp(part.mesh.vertices, axis=0) == pytest.approx([factor, 2 * factor, 3 * factor])
     assert "to millimetres" in part.notes[0]
 
 
-def test_items_of_one_object_are_one_part_with_a_quantity_wherever_they_stand(tmp_path):
+def test_items_of_one_object_are_one_part_with_a_quantity(tmp_path):
     build = (
         '<item objectid="1" transform="1 0 0 0 1 0 0 0 1 5 6 7"/><item objectid="1"/>'
         '<item objectid="1" transform="0 1 0 -1 0 0 0 0 1 9 9 9"/>'
@@ -104,7 +104,7 @@ def test_items_of_one_object_are_one_part_with_a_quantity_wherever_they_stand(tm
     assert np.ptp(turned.mesh.vertices, axis=0) == pytest.approx([2, 1, 3])
 
 
-def test_a_mirrored_item_is_still_right_way_out(tmp_path):
+def test_a_mirrored_item_has_outward_normals(tmp_path):
     build = '<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 0 0 0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", box_object(), build))
     assert part.mesh.signed_volume == pytest.approx(6)
@@ -117,7 +117,7 @@ def test_a_sheared_and_scaled_item_has_the_volume_of_its_determinant(tmp_path):
     assert part.notes == ()
 
 
-def test_nested_and_mirrored_components_become_one_part_where_they_belong(tmp_path):
+def test_nested_and_mirrored_components_become_one_part_in_the_right_position(tmp_path):
     resources = (
         box_object(1)
         + '<object id="2"><components><component objectid="1" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>'
@@ -174,7 +174,7 @@ def test_quantity_value_and_rotations_come_from_amprep_metadata(tmp_path):
     [{"quantity": "0"}, {"quantity": "many"}, {"quantity": "9999999999"}, {"value": "nan"}, {"value": "-1"},
      {"rotations": "some"}, {"rotations": "[[1]]"}],
 )  # fmt: skip
-def test_wishes_that_cannot_be_meant_are_refused_by_name(tmp_path, wrong):
+def test_invalid_job_metadata_is_refused_by_name(tmp_path, wrong):
     path = pack(
         tmp_path / "a.3mf", box_object(more='name="box"', inside=wishes(**wrong)), '<item objectid="1"/>'
     )
@@ -204,7 +204,7 @@ def test_one_colour_on_all_triangles_is_the_colour_of_the_part(tmp_path):
     assert (part.appearance.material, part.appearance.colour) == (None, "#FF0000FF")
 
 
-def test_colours_that_differ_are_kept_for_each_corner_the_object_colouring_the_rest(tmp_path):
+def test_different_colours_are_kept_for_each_corner_and_the_object_colours_the_rest(tmp_path):
     mesh = mesh_xml().replace('<triangle v1="', '<triangle pid="9" p1="0" p2="1" p3="1" v1="', 1)
     resources = f'{MATERIALS}<object id="1" pid="8" pindex="0">{mesh}</object>'
     (part,) = settled(pack(tmp_path / "a.3mf", resources, '<item objectid="1"/>'))
@@ -224,7 +224,7 @@ def test_the_corners_of_a_mirrored_triangle_keep_their_colours(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["support", "solidsupport", "surface"])
-def test_what_is_not_to_be_printed_is_left_out_and_that_is_said(tmp_path, kind):
+def test_objects_that_are_not_printable_are_left_out_with_a_note(tmp_path, kind):
     other = box_object(2).replace('type="model"', f'type="{kind}" name="prop"')
     group = (
         '<object id="3"><components><component objectid="1"/><component objectid="2"/></components></object>'
@@ -297,7 +297,7 @@ def test_a_component_that_bambu_studio_calls_a_blocker_is_not_printed(tmp_path):
     assert part.regions[0].mesh.bounds[0][0] == pytest.approx(8.5)
 
 
-def test_items_marked_as_not_printable_are_left_out_and_that_is_said(tmp_path):
+def test_items_marked_as_not_printable_are_left_out_with_a_note(tmp_path):
     build = '<item objectid="1" printable="0"/><item objectid="1"/><item objectid="1" printable="0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", box_object(), build))
     assert part.quantity == 1
@@ -310,13 +310,13 @@ THUMBNAIL = (
 )
 
 
-def test_a_relationship_to_a_thumbnail_that_is_not_there_is_mended_and_that_is_said(tmp_path):
+def test_a_relationship_to_a_missing_thumbnail_is_removed_with_a_note(tmp_path):
     path = pack(tmp_path / "a.3mf", box_object(), '<item objectid="1"/>', rels=relations(THUMBNAIL))
     (part,) = settled(path)
     assert part.notes == ("removed a relationship to '/Metadata/thumbnail.png', which is not in the package",)
 
 
-def test_a_file_that_lib3mf_refuses_is_read_by_trimesh_and_that_is_said(tmp_path):
+def test_a_file_that_lib3mf_refuses_is_read_by_trimesh_with_a_note(tmp_path):
     path = pack(tmp_path / "a.3mf", box_object(more='name="box"'), '<item objectid="1"/>', unit="inch")
     with zipfile.ZipFile(path) as archive:
         contents = {name: archive.read(name) for name in archive.namelist() if name != "_rels/.rels"}
@@ -344,7 +344,7 @@ def test_objects_in_another_part_of_the_package_are_found(tmp_path):
     assert part.volume_mm3 == pytest.approx(6)
 
 
-def test_trimesh_and_we_agree_on_a_file_of_trimesh(tmp_path):
+def test_reading_agrees_with_trimesh_on_a_file_written_by_trimesh(tmp_path):
     scene = trimesh.Scene()
     scene.add_geometry(BOX, node_name="box", geom_name="box")
     scene.add_geometry(trimesh.creation.icosphere(1, 4), node_name="ball", geom_name="ball")
@@ -363,7 +363,7 @@ def test_reading_twice_gives_the_same_parts(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="PrusaSlicer is not installed")
-def test_what_prusaslicers_command_line_writes_is_read(tmp_path):
+def test_files_of_prusaslicers_command_line_are_read(tmp_path):
     BOX.export(tmp_path / "box.stl")
     command = ["prusa-slicer", "--export-3mf", "-o", str(tmp_path / "box.3mf"), str(tmp_path / "box.stl")]
     subprocess.run(command, check=True, capture_output=True)

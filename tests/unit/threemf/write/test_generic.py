@@ -1,4 +1,4 @@
-"""A build job says the same in every dialect, in each the way its reader understands."""
+"""A build file states the same build in every dialect, in the form that its reader understands."""
 
 import xml.etree.ElementTree as ET
 import zipfile
@@ -20,7 +20,7 @@ CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
 @pytest.fixture
 def written(make_build, tmp_path):
-    """Return a function that writes a build and gives back its path."""
+    """Return a function that writes a build and returns its path."""
 
     def write(build_or_target="generic", **options):
         build = (
@@ -67,7 +67,7 @@ def test_equal_builds_give_equal_bytes(make_build, tmp_path, target):
     assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()
 
 
-def test_another_build_has_other_identifiers(make_build, written):
+def test_a_different_build_has_different_identifiers(make_build, written):
     first = entry(written(make_build()))
     build = make_build()
     second = entry(written(replace(build, settings=replace(build.settings, build_id="job.build-2"))))
@@ -77,7 +77,7 @@ def test_another_build_has_other_identifiers(make_build, written):
 
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("share", [False, True])
-def test_lib3mf_reads_it_strictly_and_finds_nothing_to_warn_of(written, target, share):
+def test_lib3mf_reads_every_file_in_strict_mode_without_warnings(written, target, share):
     import lib3mf
 
     reader = lib3mf.get_wrapper().CreateModel().QueryReader("3mf")
@@ -88,7 +88,7 @@ def test_lib3mf_reads_it_strictly_and_finds_nothing_to_warn_of(written, target, 
 
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("share", [False, True])
-def test_trimesh_sees_everything_where_it_stands(make_build, written, target, share):
+def test_trimesh_finds_every_part_and_support_in_its_position(make_build, written, target, share):
     corners = placed_corners(make_build(target, share=share))
     scene = trimesh.load(written(target, share=share))
     assert scene.bounds == pytest.approx(np.array([corners.min(axis=0), corners.max(axis=0)]), abs=1e-5)
@@ -99,7 +99,7 @@ def test_the_file_is_in_millimetres(written, target):
     assert model_of(written(target)).get("unit") == "millimeter"
 
 
-def test_generic_ties_each_part_and_its_supports_in_one_components_object(written):
+def test_generic_puts_each_part_and_its_supports_in_one_components_object(written):
     items = [[(each.get("name"), each.get("type")) for each in item] for item in items_of(written())]
     assert items == [
         [("plate & <tray>", "model"), ("support 1 of plate", "solidsupport")],
@@ -124,7 +124,9 @@ def test_a_wall_without_thickness_has_the_type_that_machines_do_not_fill(written
 
 
 @pytest.mark.parametrize(("target", "kind"), [("generic", "surface"), ("prusaslicer", "model")])
-def test_a_part_that_is_no_solid_says_so_where_that_is_understood(make_build, written, target, kind):
+def test_a_part_that_is_not_a_solid_has_the_type_surface_except_for_prusaslicer(
+    make_build, written, target, kind
+):
     build = make_build(target)
     sheet = replace(build.parts[1].part, is_solid=False)
     path = written(
@@ -133,20 +135,20 @@ def test_a_part_that_is_no_solid_says_so_where_that_is_understood(make_build, wr
     assert [each[0].get("type") for each in items_of(path)] == ["model", kind, "model"]
 
 
-def test_what_lib3mf_refuses_is_an_error_of_one_line(make_build, written, monkeypatch):
+def test_a_document_that_lib3mf_refuses_is_an_error_of_one_line(make_build, written, monkeypatch):
     monkeypatch.setattr(writing_metadata, "STANDARD_NAMES", frozenset(["not a standard name"]))
     with pytest.raises(AmprepError, match=r"lib3mf refuses it"):
         written(make_build())
 
 
 @pytest.mark.parametrize("target", ["prusaslicer", "cura"])
-def test_slicers_are_not_given_walls_without_thickness(written, target, tmp_path):
+def test_walls_without_thickness_are_refused_for_slicers(written, target, tmp_path):
     with pytest.raises(AmprepError, match=r"support 1 of plate.*wall_mm"):
         written(target, surface=True)
     assert not list(tmp_path.iterdir())
 
 
-def test_cura_finds_supports_by_its_own_prefix_and_no_part_among_them(written):
+def test_cura_finds_all_supports_and_no_part_by_its_own_prefix(written):
     path = written("cura")
     assert 'xmlns:cura="http://software.ultimaker.com/xml/cura/3mf/2015/10"' in entry(path)
     marked = {
@@ -158,14 +160,14 @@ def test_cura_finds_supports_by_its_own_prefix_and_no_part_among_them(written):
 
 
 @pytest.mark.parametrize("share", [False, True])
-def test_prusaslicer_gets_only_models_each_of_them_on_the_plate(written, share):
+def test_prusaslicer_gets_only_objects_of_type_model_on_the_plate(written, share):
     path = written("prusaslicer", share=share)
     assert {each.get("type") for each in objects_of(path).values()} == {"model"}
     assert {each.get("id") for item in items_of(path) for each in item} == set(objects_of(path))
     assert '<metadata name="slic3rpe:Version3mf" preserve="1">1</metadata>' in entry(path)
 
 
-def test_prusaslicer_volumes_count_off_the_triangles_of_parts_and_supports(written):
+def test_prusaslicer_volumes_are_the_triangle_ranges_of_parts_and_supports(written):
     path = written("prusaslicer", share=True)
     config = ET.fromstring(entry(path, "Metadata/Slic3r_PE_model.config"))
     volumes = [
@@ -194,14 +196,14 @@ def test_prusaslicer_shows_copies_without_supports_as_instances(make_build, writ
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_names_say_part_and_build(written, target):
+def test_names_contain_part_and_build(written, target):
     path = written(target)
     names = [each.get("name") for each in objects_of(path).values()]
     assert {"plate & <tray> (job.build-1)", "bar (job.build-1)"} <= set(names)
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_what_came_with_a_part_goes_with_it(written, target):
+def test_metadata_of_a_part_is_written(written, target):
     plate = next(each for each in objects_of(written(target)).values() if each.get("partnumber"))
     kept = {data.get("name").rpartition(":")[2]: data.text for data in plate.iter(f"{CORE}metadata")}
     assert plate.get("partnumber") == "PN-7"
@@ -276,12 +278,12 @@ def test_an_interruption_leaves_the_old_file_and_nothing_else(make_build, tmp_pa
     assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"of yesterday"]
 
 
-def test_a_folder_that_is_not_there_is_an_error_of_one_line(make_build, tmp_path):
+def test_a_missing_folder_is_an_error_of_one_line(make_build, tmp_path):
     with pytest.raises(AmprepError, match=r"^cannot write .*nowhere.*$"):
         write_build(make_build(), tmp_path / "nowhere" / "job.3mf")
 
 
-def test_a_file_appears_only_when_it_is_whole(tmp_path):
+def test_a_file_appears_only_when_it_is_complete(tmp_path):
     path = tmp_path / "file"
     with replacing(path) as temporary:
         temporary.write_text("half")
@@ -291,8 +293,8 @@ def test_a_file_appears_only_when_it_is_whole(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_group_of_parts_chained_by_supports_is_one(make_build, written):
-    """Supports that hold 0 and 1, and 1 and 2, tie all three."""
+def test_parts_chained_by_shared_supports_form_one_group(make_build, written):
+    """One support holds parts 0 and 1, another 1 and 2."""
     build = make_build()
     chained = tuple(
         replace(body, parts=parts) for body, parts in zip(build.supports, [(0, 1), (1, 2)], strict=True)

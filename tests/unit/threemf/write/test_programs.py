@@ -1,4 +1,4 @@
-"""Build jobs in the programs they are for, where these are installed: accepted, and nothing moved."""
+"""The target programs, if installed, accept build files without moving anything."""
 
 import json
 import re
@@ -47,7 +47,7 @@ def slice_with_prusa_slicer(path):
 
 
 def extents(gcode):
-    """Return the least and greatest x and y that are printed for each labelled object."""
+    """Return the smallest and largest printed x and y of each labelled object."""
     found, label, here = {}, None, np.zeros(2)
     for line in gcode:
         if line.startswith("; printing object "):
@@ -64,7 +64,7 @@ def extents(gcode):
 
 @pytest.mark.skipif(PRUSA_SLICER is None, reason="PrusaSlicer is not installed")
 @pytest.mark.parametrize("share", [False, True])
-def test_prusaslicer_prints_parts_and_supports_where_they_stand(make_build, tmp_path, share):
+def test_prusaslicer_prints_parts_and_supports_in_their_positions(make_build, tmp_path, share):
     build = make_build("prusaslicer", share=share)
     write_build(build, tmp_path / "job.3mf")
     printed = extents(slice_with_prusa_slicer(tmp_path / "job.3mf"))
@@ -81,7 +81,7 @@ def test_prusaslicer_prints_parts_and_supports_where_they_stand(make_build, tmp_
 
 
 @pytest.mark.skipif(PRUSA_SLICER is None, reason="PrusaSlicer is not installed")
-def test_prusaslicer_sees_part_and_support_as_one_object(make_build, tmp_path):
+def test_prusaslicer_reads_a_part_and_its_support_as_one_object(make_build, tmp_path):
     write_build(make_build("prusaslicer"), tmp_path / "job.3mf")
     run = subprocess.run(
         [PRUSA_SLICER, "--info", tmp_path / "job.3mf"], capture_output=True, text=True, timeout=60, check=True
