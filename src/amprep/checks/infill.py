@@ -1,4 +1,4 @@
-"""The promise of a filled region: closed, the part as it was outside, just the cells inside, and nothing loose."""
+"""Judge a filled part: closed, unchanged outside the regions, cells inside them, and connected."""
 
 from collections.abc import Sequence
 
@@ -19,18 +19,22 @@ PROMISES = (CLOSED, OUTSIDE, CELLS, WHOLE)
 def check_filled(
     name: str, before: Mesh, regions: Sequence[Mesh], cells: Mesh, after: Mesh, *, dropped: float = 0.0
 ) -> list[Violation]:
-    """Judge a part whose regions were filled with cells; everything is measured by manifold3d, exactly.
+    """Judge a part whose regions were filled with cells, by exact volumes of manifold3d.
 
-    What is allowed for is rounding to what a file keeps: `FILE_STEP` times the area of the surface.
+    The tolerance is the rounding of coordinates in files: `FILE_STEP` times the area of the surface.
 
     Parameters
     ----------
+    name
+        Name of the part in messages.
     before, after
-        The part as it was and as it is.
+        The part before and after filling.
+    regions
+        Closed meshes of the regions.
     cells
-        One closed mesh, not trimmed.
+        One closed mesh of all cells before clipping.
     dropped
-        mm3 of cells that were dropped because nothing held them.
+        Volume (mm3) of the components of cells that were dropped because nothing held them.
     """
     was, now, grid = (as_manifold(each.vertices, each.triangles) for each in (before, after, cells))
     if not accepted(now) or now.volume() <= 0.0:
@@ -49,6 +53,6 @@ def check_filled(
         found.append(Violation(CELLS, name, message))
     pieces, most = count_components(*arrays_of(now)), max(count_components(*arrays_of(was)), 1)
     if pieces > most:
-        message = f"expected {most}, found {pieces}: the cells do not hold the part together"
+        message = f"expected {most} components, found {pieces}; the cells do not hold the part together"
         found.append(Violation(WHOLE, name, message))
     return found

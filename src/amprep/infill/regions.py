@@ -1,4 +1,4 @@
-"""Which regions of which parts are to be filled: modifiers in the file, meshes of other files, or all but a shell."""
+"""Find the regions of parts to fill: modifiers in the input file, and meshes of other files."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -18,24 +18,35 @@ KIND: RegionKind = "lattice"
 
 
 def with_files(parts: Sequence[Part], files: Sequence[Path], read: Read) -> list[Part]:
-    """Return the parts, each with the meshes of the files that meet the box around it as further regions.
+    """Return the parts with the meshes of files as further regions, where their bounding boxes meet.
+
+    Parameters
+    ----------
+    parts
+        The parts of the job.
+    files
+        Mesh files in the coordinates of the input.
+    read
+        Function that reads the parts of a file.
 
     Raises
     ------
     InputError
-        When a file is not there, cannot be read, or is near no part.
+        When a file does not exist or cannot be read.
+    JobError
+        When the mesh of a file meets no part.
     """
     result = list(parts)
     for file in files:
         if not file.is_file():
             raise InputError(f"{file}: no such file; a region is a mesh file in the coordinates of the input")
         found = [
-            Region(KIND, piece.name, mesh=mesh) for piece in read(file) for mesh in _where_it_lies(piece)
+            Region(KIND, piece.name, mesh=mesh) for piece in read(file) for mesh in _placed_meshes(piece)
         ]
         near = [[_at(region, part) for region in found if _meet(region, part)] for part in parts]
         if not any(near):
             raise JobError(
-                f"{file}: the region lies outside all parts; it takes the coordinates of the input"
+                f"{file}: the region is outside all parts; its coordinates must be those of the input"
             )
         result = [
             replace(part, regions=(*part.regions, *own)) for part, own in zip(result, near, strict=True)
@@ -44,14 +55,14 @@ def with_files(parts: Sequence[Part], files: Sequence[Path], read: Read) -> list
 
 
 def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[tuple[Region, ...]]:
-    """Return for each part its closed regions of the given names, all without names.
+    """Return for each part its regions of the given names as closed meshes, all regions if no names are given.
 
     Raises
     ------
     JobError
-        When there is none, or none of a name.
+        When no part has a region, or none has a region of one of the names.
     MeshError
-        When a region is no closed mesh.
+        When a region is not a closed mesh.
     """
     found = [
         [region for region in part.regions if region.kind == KIND and region.mesh is not None]
@@ -72,7 +83,7 @@ def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[tuple[Region, ..
 
 
 def without(part: Part, filled: Sequence[Region]) -> Part:
-    """Return the part without the regions that were filled, and without what reading said of them."""
+    """Return the part without the regions that were filled, and without the notes about them."""
     names = {region.name for region in filled}
     notes = {modifier_note(name) for name in names}
     kept = [region for region in part.regions if region.kind != KIND or region.name not in names]
@@ -80,11 +91,11 @@ def without(part: Part, filled: Sequence[Region]) -> Part:
 
 
 def positions(part: Part) -> np.ndarray:
-    """Return where the part's origin lies, ``(k, 3)`` mm."""
+    """Return the positions of the origin of the part, ``(k, 3)`` mm."""
     return np.zeros((1, 3)) if part.positions is None else part.positions
 
 
-def _where_it_lies(part: Part) -> list[Mesh]:
+def _placed_meshes(part: Part) -> list[Mesh]:
     return [Mesh(part.mesh.vertices + at, part.mesh.triangles) for at in positions(part)]
 
 
@@ -93,7 +104,7 @@ def _meet(region: Region, part: Part) -> bool:
 
 
 def _touched(region: Region, part: Part) -> np.ndarray | None:
-    """Return the first position of the part whose box meets the region's."""
+    """Return the first position of the part at which its bounding box meets that of the region."""
     if region.mesh is None:
         return None
     (low, high), (part_low, part_high) = region.mesh.bounds, part.mesh.bounds
@@ -104,7 +115,7 @@ def _touched(region: Region, part: Part) -> np.ndarray | None:
 
 
 def _at(region: Region, part: Part) -> Region:
-    """Return the region in the part's own coordinates."""
+    """Return the region in the coordinates of the part."""
     at = _touched(region, part)
     if region.mesh is None or at is None:
         return region
@@ -116,5 +127,5 @@ def _closed(region: Region, part: Part) -> Region:
         return region
     repaired = repair_mesh(region.mesh.vertices, region.mesh.triangles)
     if repaired.problem:
-        raise MeshError(f"{part.name}: the region {region.name!r} is no closed mesh: {repaired.problem}")
+        raise MeshError(f"{part.name}: the region {region.name!r} is not a closed mesh: {repaired.problem}")
     return replace(region, mesh=Mesh(repaired.vertices, repaired.triangles))

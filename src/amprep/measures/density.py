@@ -1,4 +1,4 @@
-"""The figures of a build that every report shows, measured on the original meshes."""
+"""Measure volumes, height and density of a build on the original meshes."""
 
 from math import pi
 
@@ -11,15 +11,15 @@ def part_volume(placed: PlacedPart) -> float:
 
 
 def build_height(build: Build) -> float:
-    """Return the height of the highest point of parts and supports, mm; 0 for an empty build."""
+    """Return the greatest height of parts and supports, mm; 0 for an empty build."""
     meshes = [placed.mesh for placed in build.parts] + [body.mesh for body in build.supports]
     return max((float(mesh.bounds[1][2]) for mesh in meshes if len(mesh.vertices)), default=0.0)
 
 
 def build_density(build: Build) -> float:
-    """Return the share of the space up to the build's height that parts fill: volume / (plate area x height).
+    """Return the volume of the parts divided by plate area times build height.
 
-    Supports do not count; forbidden zones are not taken off the plate.
+    Supports do not count, and forbidden zones are not subtracted from the plate.
     """
     x, y, _ = build.settings.space.size.tolist()
     plate = x * y if build.settings.space.shape == "box" else pi / 4 * x * x
@@ -28,5 +28,5 @@ def build_density(build: Build) -> float:
 
 
 def support_volume(build: Build) -> float:
-    """Return the volume of the solid supports, mm3; walls without thickness have none."""
+    """Return the volume of the solid supports, mm3; walls without thickness have no volume."""
     return sum(abs(body.mesh.signed_volume) for body in build.supports if not body.surface)

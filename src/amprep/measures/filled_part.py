@@ -1,4 +1,4 @@
-"""Measures a filled part: its mass, and the powder that cannot leave it."""
+"""Measure the mass of a filled part and the powder trapped in it."""
 
 import numpy as np
 
@@ -7,17 +7,17 @@ from amprep.measures.removability import density_of
 from amprep.model import Mesh, Part
 
 _LIFT = 1000.0
-"""mm; parts are looked at that high above the plate, which closes nothing once they are off it."""
+"""Height (mm) to which a part is lifted, so that the plate closes no opening."""
 
 
 def mass(part: Part, volume: float, density: float | None) -> float | None:
-    """Return grams, None where neither a density (g/cm3) is given nor the part's material is known."""
+    """Return the mass in grams; None without a density (g/cm3) if the material of the part is unknown."""
     density = density or density_of(part.appearance.material)
     return None if density is None else volume * density / 1000.0
 
 
 def pockets_of(mesh: Mesh, hole: float) -> tuple[Pocket, ...]:
-    """Return the pockets in a solid that a ball of diameter `hole` mm cannot leave, in any direction."""
+    """Return the pockets of a solid that a ball of diameter `hole` mm cannot leave in any direction."""
     shift = np.array([0.0, 0.0, _LIFT - mesh.bounds[0][2]])
     return tuple(
         pocket._replace(

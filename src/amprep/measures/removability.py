@@ -1,4 +1,4 @@
-"""What supports cost and how they come off: mass, scanned area, contacts with the parts, powder locked in."""
+"""Measure mass, scanned area, contacts and trapped powder of supports."""
 
 import os
 import re
@@ -10,26 +10,26 @@ from amprep.geometry.supports.contact_area import measure_contact
 from amprep.model import Build, SupportBody
 
 DENSITIES = {"alsi10mg": 2.67, "ti64": 4.41, "ti6al4v": 4.41, "316l": 7.9, "in718": 8.15, "inconel718": 8.15}
-"""g/cm3 of solid metal by words in a material's name: usual values, rounded; `cells.density_g_cm3` comes before."""
+"""Densities (g/cm3) of metals by words in the name of a material, rounded; `cells.density_g_cm3` takes precedence."""
 
 _MOST_AT_ONCE = 4
-"""Bodies measured at the same time: each takes memory of its own."""
+"""Largest number of bodies measured at the same time, because each needs memory."""
 
 
 @dataclass(frozen=True)
 class RemovalRules:
-    """What is measured, and by which figures.
+    """Settings of the measurement.
 
     Attributes
     ----------
     layer_mm
-        Thickness of a printed layer.
+        Layer height of the printer.
     density_g_cm3
-        Of the supports; None takes it from the material of the part they hold, if that is a known one.
+        Density of the supports; None takes that of the material of the part that they hold, if it is known.
     hole_mm
-        Powder is loose where a ball of this diameter can leave.
+        Diameter of a ball that must be able to escape; otherwise powder is trapped.
     thorough
-        Whether contacts and powder are measured, too.
+        Whether contacts and powder are measured too.
     """
 
     layer_mm: float = 0.04
@@ -45,15 +45,15 @@ class Removal:
     Attributes
     ----------
     mass_g
-        None where the density is not known.
+        Mass; None if the density is unknown.
     scan_mm2
-        Sum over the printed layers of the body's cross-section: its volume over the thickness of a layer.
+        Sum of the cross-sections in all printed layers: volume over layer height.
     contact_mm2, contacts
-        Area of the parts' surfaces inside the body, and number of patches; None when not measured.
+        Area of the surfaces of parts inside the body, and number of its patches; None if not measured.
     pockets
-        Powder that cannot leave, largest first; None when not measured.
+        Pockets of trapped powder, largest first; None if not measured.
     resolution_mm
-        To within which the ways out are measured.
+        Resolution at which escape channels are measured.
     """
 
     mass_g: float | None
@@ -65,21 +65,21 @@ class Removal:
 
     @property
     def trapped_mm3(self) -> float | None:
-        """Volume of the powder that cannot leave."""
+        """Volume of the trapped powder."""
         return None if self.pockets is None else sum(pocket.volume for pocket in self.pockets)
 
 
 def measure_removal(build: Build, rules: RemovalRules) -> tuple[Removal, ...]:
-    """Return the figures of each support body of a build; walls without thickness weigh nothing.
+    """Return the figures of each support body of a build; walls without thickness have no mass.
 
-    Bodies are measured side by side, as far as the machine has processors.
+    Bodies are measured in parallel, one thread per processor.
     """
     with ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_AT_ONCE)) as pool:
         return tuple(pool.map(lambda body: _removal(build, body, rules), build.supports))
 
 
 def totals(removal: tuple[Removal, ...]) -> dict[str, float | None]:
-    """Return the sums over all bodies by name; None where a body's figure is not known."""
+    """Return the sums over all bodies by name; None where the figure of a body is unknown."""
     names = ("mass_g", "scan_mm2", "contact_mm2", "contacts", "trapped_mm3")
     return {name: _sum([getattr(each, name) for each in removal]) for name in names}
 
@@ -90,7 +90,7 @@ def _sum(values: list[float | None]) -> float | None:
 
 
 def density_of(material: str | None) -> float | None:
-    """Return the density of a known metal named by `material`, g/cm3, or None."""
+    """Return the density (g/cm3) of the known metal that `material` names, or None."""
     name = re.sub(r"[\W_]+", "", (material or "").casefold())
     return next((density for word, density in DENSITIES.items() if word in name), None)
 

@@ -1,4 +1,4 @@
-"""How slender supports are: the height of each connected piece over its least width."""
+"""Measure the slenderness of supports: height over least width of each disconnected component."""
 
 from typing import NamedTuple
 
@@ -10,20 +10,21 @@ from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model import SupportBody
 
 _DIRECTIONS = 36
+"""Number of directions in the horizontal plane in which widths are measured."""
 
 
 class Slenderness(NamedTuple):
-    """The connected pieces of a support body, by its most slender one.
+    """Figures of the most slender component of a support body.
 
     Attributes
     ----------
     pieces
-        How many there are; pieces that meet in a point are connected.
+        Number of components; components that share a point are connected.
     slenderness
-        Greatest height over least width of any piece. The width is that of the piece's shadow on the plate
-        in the direction in which it is narrowest.
+        Greatest ratio of height to width of a component. The width is that of its projection onto the plate in the
+        direction in which this is narrowest.
     height_mm, width_mm, position_mm
-        Of that piece; the position is the middle of its box.
+        Height, width and centre of the bounding box of that component.
     """
 
     pieces: int
@@ -34,14 +35,14 @@ class Slenderness(NamedTuple):
 
 
 def measure_slenderness(body: SupportBody) -> Slenderness:
-    """Return how slender a support body is."""
+    """Return the slenderness of a support body."""
     points, triangles = merge_equal_vertices(np.round(body.mesh.vertices, 4), body.mesh.triangles)
     count, shell = label_shells(triangles, len(points))
     corners = points[triangles]
     volume = np.bincount(
         shell, np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])), count
     )
-    pieces = np.flatnonzero((volume > 0.0) | body.surface)  # the others bound voids inside pieces
+    pieces = np.flatnonzero((volume > 0.0) | body.surface)  # the others bound voids
     if not len(pieces):
         return Slenderness(0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
     piece = np.zeros(len(points), np.int64)
@@ -61,7 +62,7 @@ def measure_slenderness(body: SupportBody) -> Slenderness:
 
 
 def _extremes(values: Floats, piece: np.ndarray, count: int) -> tuple[Floats, Floats]:
-    """Return the least and greatest of each column of `values`, ``(count, k)`` each, by piece."""
+    """Return the least and greatest value of each column of `values` for each piece, ``(count, k)`` each."""
     least, most = np.full((count, values.shape[1]), np.inf), np.full((count, values.shape[1]), -np.inf)
     for axis in range(values.shape[1]):
         np.minimum.at(least[:, axis], piece, values[:, axis])

@@ -1,4 +1,4 @@
-"""A triangle mesh: vertices and triangles, nothing else."""
+"""Triangle mesh of vertices and triangles."""
 
 import hashlib
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from amprep.arrays import Floats, Ints, MeshArrays, frozen
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles over shared vertices; normals point out of the solid (right-hand rule).
+    """Triangle mesh with shared vertices; normals point out of the solid (right-hand rule).
 
     Attributes
     ----------
@@ -41,14 +41,14 @@ class Mesh:
 
     @cached_property
     def signed_volume(self) -> float:
-        """Volume enclosed, mm3, counting overlaps as often as they occur; negative when inside out."""
+        """Enclosed volume, mm3; overlaps count repeatedly, and the volume is negative if the mesh is inside out."""
         corners = self.vertices[self.triangles] - self.vertices[:1]
         return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0)
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of the geometry as 3MF keeps it: float32 of six decimals, and the triangles."""
-        kept = np.round(self.vertices, 6).astype("<f4") + np.float32(0.0)  # adding zero turns -0 into 0
+        """SHA-256 of the geometry as 3MF files store it: float32 coordinates of six decimals, and the triangles."""
+        kept = np.round(self.vertices, 6).astype("<f4") + np.float32(0.0)  # adding zero turns -0 into +0
         return hashlib.sha256(kept.tobytes() + self.triangles.astype("<i4").tobytes()).hexdigest()
 
     def moved(self, matrix: Floats) -> "Mesh":

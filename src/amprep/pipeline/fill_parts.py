@@ -1,4 +1,4 @@
-"""Fills marked regions of parts with cells: read, fill, judge, measure, write, report."""
+"""Fill marked regions of parts with cells: read, fill, judge, measure, write, report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -28,20 +28,24 @@ from amprep.threemf import write_parts
 
 @dataclass(frozen=True)
 class LatticeOptions:
-    """What the command line decides.
+    """Options of ``amprep lattice``.
 
     Attributes
     ----------
     folder, stem
-        Where the outputs go, and what their names begin with.
+        Output folder, and beginning of the names of the output files.
     regions
         Mesh files of further regions.
     names
-        Regions to fill; all when empty.
+        Names of the regions to fill; all regions if empty.
     shell
-        mm; everything deeper than that below the surface is filled instead of marked regions.
+        Depth (mm) below the surface from which the part is filled, instead of marked regions.
     size, height
-        mm, of a cell; None is chosen, the height as the size.
+        Size and height of a cell, mm; None for the default size, and for a height equal to the size.
+    stl
+        Whether parts are also written as STL files.
+    dry_run
+        Whether nothing is written.
     """
 
     folder: Path
@@ -57,7 +61,7 @@ class LatticeOptions:
 
 @dataclass(frozen=True, eq=False)
 class _PartFill:
-    """A part as it was read, the regions that meet it, and what has become of it."""
+    """A part, the regions that meet it, and the result of filling them."""
 
     part: Part
     regions: tuple[Region, ...]
@@ -65,7 +69,7 @@ class _PartFill:
 
     @property
     def result(self) -> Part:
-        """The part as it is to be written; colours of single triangles and painted regions are lost."""
+        """The part to write; colours of single triangles and painted regions are lost by filling."""
         if self.filled is None:
             return self.part
         part = without(self.part, self.regions)
@@ -81,9 +85,22 @@ class _PartFill:
 def fill_lattice(
     job: Job, host: Host, options: LatticeOptions, *, watcher: Watcher, stop: Stop
 ) -> InfillRecord:
-    """Fill the marked regions of the job's parts with its cell and return what was done.
+    """Fill the marked regions of the parts of a job with its cell and return a record for the report.
 
-    Files appear together at the end; an interrupted run leaves none.
+    All files appear together at the end; an interrupted run leaves none.
+
+    Parameters
+    ----------
+    job
+        The job: inputs, cell and target program.
+    host
+        Offers of plugins.
+    options
+        Regions, size of cells and outputs.
+    watcher
+        Receives the progress of the stages.
+    stop
+        Cancels the cell emitter.
 
     Raises
     ------
@@ -132,9 +149,9 @@ def fill_lattice(
 def _check(options: LatticeOptions) -> None:
     for name, value in (("--size", options.size), ("--height", options.height), ("--shell", options.shell)):
         if value is not None and not 0.0 < value < 1e4:
-            raise JobError(f"{name} is in mm and above 0, got {value:g}")
+            raise JobError(f"{name} must be above 0 and below 10000 mm, got {value:g}")
     if options.shell is not None and (options.regions or options.names):
-        raise JobError("--shell fills the whole inside; give it without --region and --region-name")
+        raise JobError("--shell fills the whole inside of parts; use it without --region and --region-name")
 
 
 def _read(job: Job, host: Host, options: LatticeOptions, progress: Progress) -> list[Part]:
@@ -157,16 +174,16 @@ def _regions(parts: Sequence[Part], options: LatticeOptions, progress: Progress)
         met = tuple(each for each in regions if each.mesh and meets(part.mesh, each.mesh))
         work.append(_PartFill(part, met))
     if not any(each.regions for each in work):
-        raise JobError("the regions lie outside the parts: nothing of them can be filled with cells")
+        raise JobError("the regions are outside the parts, so they cannot be filled with cells")
     return work
 
 
 def _inside(part: Part, shell: float, progress: Progress) -> tuple[Region, ...]:
-    progress(0.1, f"looking for the inside of {part.name}")
+    progress(0.1, f"offsetting the surface of {part.name}")
     points, triangles = offset_inwards(*part.mesh.arrays, shell, shell / 2.0)
     if not len(triangles):
         raise JobError(
-            f"{part.name} is nowhere thicker than twice the shell of {shell:g} mm; choose a thinner --shell"
+            f"{part.name} must be thicker than twice the shell of {shell:g} mm somewhere; choose a thinner --shell"
         )
     return (Region(KIND, f"inside of {part.name}", mesh=Mesh(points, triangles)),)
 
@@ -190,24 +207,24 @@ def _filled(
 
 
 def _beams(job: Job) -> bool | None:
-    """Return whether struts become beams, None to leave it to the cell's parameters; slicers know none."""
+    """Return whether struts become beams; None leaves it to the parameters of the cell. Slicers read no beams."""
     if job.target != "generic" or job.cells.lattice == "mesh":
         return False
     return True if job.cells.lattice == "beams" else None
 
 
 def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> FilledPartRecord:
-    """Judge a filled part and measure it."""
-    part, wishes = each.part, job.cells
+    """Judge and measure a filled part."""
+    part, settings = each.part, job.cells
     regions = [region.mesh for region in each.regions if region.mesh]
     with clock.stage("judge"):
         found = check_filled(
             part.name, part.mesh, regions, filled.cells, filled.mesh, dropped=filled.dropped_volume_mm3
         )
     with clock.stage("powder"):
-        pockets = pockets_of(filled.mesh, wishes.powder_hole_mm)
-        before = pockets_of(part.mesh, wishes.powder_hole_mm) if pockets else ()
-    volume, density = filled.mesh.signed_volume, wishes.density_g_cm3
+        pockets = pockets_of(filled.mesh, settings.powder_hole_mm)
+        before = pockets_of(part.mesh, settings.powder_hole_mm) if pockets else ()
+    volume, density = filled.mesh.signed_volume, settings.density_g_cm3
     return FilledPartRecord(
         name=part.name,
         regions=tuple(region.name for region in each.regions),
@@ -230,7 +247,7 @@ def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> Fi
 
 
 def _notes(done: Sequence[_PartFill], job: Job) -> list[str]:
-    """Say what was mended in reading, and what of a part is lost by filling it."""
+    """Return notes on repairs, and on what filling a part loses."""
     notes = []
     for each in done:
         result = each.result
@@ -254,7 +271,7 @@ def _written(
     outputs: OutputFolder,
     clock: Clock,
 ) -> InfillRecord:
-    """Write everything, let all files appear, and return the record with their names."""
+    """Write and publish all files, and return the record with their names."""
     parts = [each.result for each in done]
     lattices: dict[int, tuple[Lattice, Mesh]] = {
         index: (each.filled.lattice, each.part.mesh)

@@ -8,7 +8,7 @@ from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, xy_distance
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
-from amprep.checks.supports.xy_distance import check_gap
+from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, silent
 
@@ -47,7 +47,7 @@ def verify_build(
     stop = stop or Stop()
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
         ("parts", lambda: check_placed(build.parts, build.settings, stop)),
-        ("supports", lambda: [*check_bodies(build, stop), *check_gap(build, stop)]),
+        ("supports", lambda: [*check_bodies(build, stop), *check_xy_distance(build, stop)]),
         ("coverage", lambda: check_coverage(build)),
     )
     violations: list[Violation] = []

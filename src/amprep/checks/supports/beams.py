@@ -1,4 +1,4 @@
-"""The promise of beams: sound, inside, in no part deeper than allowed, standing together with what they carry."""
+"""Judge beams: valid arrays, inside the build volume, not too deep in any part, connected to the plate."""
 
 from collections.abc import Callable
 
@@ -11,28 +11,27 @@ from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 
 _STEP = 0.4
-"""Radii between two balls that are judged; other places than those at which beams were planned."""
-
+"""Distance between the balls that are judged, in radii; it differs from the one that clips beams."""
 
 _DIRECTIONS = sphere(42)
 
 
 def fault_of(lattice: Lattice) -> str:
-    """Say what keeps the arrays from being beams at all, or ""."""
+    """Return why the arrays are not valid beams, or an empty text."""
     nodes, struts, radii = lattice.nodes, lattice.struts, lattice.radii
     if not len(struts) or len(radii) != len(struts):
-        return f"expected beams with two radii each, found {len(struts)} with {len(radii)}"
+        return f"expected two radii for each beam, found {len(struts)} beams and {len(radii)} pairs of radii"
     if struts.min() < 0 or struts.max() >= len(nodes) or (struts[:, 0] == struts[:, 1]).any():
-        return "a beam does not run between two of the nodes"
+        return "a beam does not connect two of the nodes"
     if not np.isfinite(nodes).all():
-        return "a node has NaN or infinite coordinates"
+        return "a node has non-finite coordinates"
     if not (np.isfinite(radii) & (radii > 0.0)).all():
-        return "a beam has a radius that is not above 0"
+        return "the radii of beams must be above 0"
     return ""
 
 
 def excess_of(lattice: Lattice, space: BuildVolume) -> float:
-    """Return how far beams, as far as they are not cut off, stick out of the build volume, mm."""
+    """Return the greatest distance of clipped beams outside the build volume, mm."""
     centres, radii = lattice.nodes[lattice.struts].reshape(-1, 3), lattice.radii.reshape(-1, 1)
     low, high = centres - radii, centres + radii
     if lattice.room is not None:
@@ -47,16 +46,16 @@ def excess_of(lattice: Lattice, space: BuildVolume) -> float:
 
 
 def enters_box(lattice: Lattice, lo: Floats, hi: Floats) -> bool:
-    """Tell whether a beam reaches into a box."""
+    """Tell whether a beam enters a box."""
     places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
     away = np.maximum(np.maximum(lo - places.centres, places.centres - hi), 0.0)
     return bool((np.linalg.norm(away, axis=1) < places.radii - CONTACT_TOLERANCE).any())
 
 
 def deepest_place(lattice: Lattice, mesh: Mesh, depth: float) -> Floats | None:
-    """Return the middle ``(3,)`` of a ball of a beam that lies more than `depth` mm deep in a solid, or None.
+    """Return the centre ``(3,)`` of a ball of a beam that is more than `depth` mm deep in a solid, or None.
 
-    Depth is measured upwards; on balls a little smaller than the beam, so that contact is none.
+    Depth is measured vertically, on balls slightly smaller than the beam, so that contact does not count.
     """
     places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
     reach = np.maximum(places.radii - 2.0 * CONTACT_TOLERANCE, 0.0)
@@ -65,16 +64,18 @@ def deepest_place(lattice: Lattice, mesh: Mesh, depth: float) -> Floats | None:
     return np.asarray(places.centres[deep][0]) if deep.any() else None
 
 
-def hanging_pieces(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
-    """Return how many pieces, of beams and solids that touch one another, stand on nothing.
+def count_floating(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
+    """Return the number of components of beams and solids that are not connected to the plate or to a part.
 
     Parameters
     ----------
+    lattice
+        Beams and the solids beside them.
     rests
-        Tells which vertices of the solids rest on something.
+        Function that tells which vertices of the solids rest on the plate or on a part.
     """
     solids = lattice.solids
-    stands = find_grounded(
+    grounded = find_grounded(
         lattice.nodes,
         lattice.struts.astype(np.int64),
         lattice.radii,
@@ -82,4 +83,4 @@ def hanging_pieces(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
         solids.triangles.astype(np.int64),
         rests,
     )
-    return stands.floating
+    return grounded.floating

@@ -1,4 +1,4 @@
-"""The promise of finished supports: closed, inside, on the plate, in no part deeper than allowed."""
+"""Judge finished supports: closed, inside the build volume, standing on the plate, not too deep in any part."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,11 +28,11 @@ STANDING = "support stands on the plate"
 PENETRATION = "support in a part"
 
 NEGLIGIBLE_VOLUME = 1e-4
-"""mm3; booleans on coordinates of 1e-5 mm leave slivers up to about 10 mm2 times that."""
+"""Volume (mm3) of the slivers that Booleans leave: rounding of coordinates (1e-5 mm) times about 10 mm2."""
 
 
 class JudgedBody:
-    """A support body, its solid made when it is first needed."""
+    """A support body with its solid, which is made when it is first needed."""
 
     def __init__(self, support: SupportBody) -> None:
         self.support = support
@@ -45,10 +45,10 @@ class JudgedBody:
 
 
 def check_bodies(build: Build, stop: Stop) -> list[Violation]:
-    """Return how the supports of a build break their promise.
+    """Return the broken promises of the supports of a build.
 
-    Solids are judged by manifold3d, exactly; of walls without thickness the corners and the middles of
-    triangles and edges are judged, of beams points on balls along them.
+    Solids are judged exactly, by manifold3d. Walls without thickness are judged at their corners and at the centres of
+    triangles and edges, beams at points on balls along them.
     """
     found: list[Violation] = []
     for support in build.supports:
@@ -67,7 +67,7 @@ def check_bodies(build: Build, stop: Stop) -> list[Violation]:
 
 
 def _closed(body: JudgedBody) -> list[Violation]:
-    """Judge a solid by manifold3d; a surface has only to be finite."""
+    """Judge whether a body is a solid; a surface must only be finite."""
     mesh = body.support.mesh
     if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
         return [Violation(CLOSED, body.name, "expected a finite mesh with triangles, found none")]
@@ -80,7 +80,7 @@ def _closed(body: JudgedBody) -> list[Violation]:
 
 
 def _unsound(support: SupportBody) -> list[Violation]:
-    """Judge beams as arrays, the solids beside them, and the solid that readers show who know no beams."""
+    """Judge the arrays of beams, the solids beside them, and the mesh for readers without beams."""
     if support.lattice is None:
         return []
     fault = beams.fault_of(support.lattice)
@@ -103,7 +103,7 @@ def _inside(body: JudgedBody, space: BuildVolume) -> list[Violation]:
 
 
 def _excess(points: Floats, space: BuildVolume) -> float:
-    """Return how far points lie outside the build volume, mm."""
+    """Return the greatest distance of points outside the build volume, mm."""
     below, above = -points.min(axis=0), points.max(axis=0) - space.size
     if space.shape == "cylinder":
         radius = space.size[0] / 2
@@ -132,10 +132,10 @@ def _volume_in_box(body: JudgedBody, lo: Floats, hi: Floats) -> bool:
 
 
 def _standing(body: JudgedBody, build: Build) -> list[Violation]:
-    """Judge that every connected piece reaches the plate; pieces that meet in a point are connected.
+    """Judge whether every disconnected component reaches the plate; components that share a point are connected.
 
-    A shell of negative volume bounds a void inside a piece and is none itself. Where the build allows it, a
-    piece may stand on a part that the body holds instead.
+    A shell of negative volume bounds a void and is not a component. Where the build allows it, a component may stand on
+    a part that the body holds instead.
     """
     if body.support.lattice is not None:
         return _standing_beams(body, body.support.lattice, build)
@@ -158,12 +158,12 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
         return []
     first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
     place = np.round(first, 2).tolist()
-    message = f"{floating} of {count} pieces do not reach the plate, one of them at {place} mm"
+    message = f"{floating} of {count} components do not reach the plate, one of them at {place} mm"
     return [Violation(STANDING, body.name, message)]
 
 
 def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Violation]:
-    """Judge that beams, and the solids that touch them, reach the plate together."""
+    """Judge whether beams and the solids that touch them are connected to the plate."""
 
     def rests(points: Floats) -> Bools:
         on_plate = points[:, 2] <= TOLERANCE
@@ -172,13 +172,13 @@ def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Vi
             on_plate |= _rest_on(points, held, build.settings.overlap)
         return np.asarray(on_plate)
 
-    hanging = beams.hanging_pieces(lattice, rests)
-    message = f"{hanging} pieces of beams and what they carry do not reach the plate"
-    return [Violation(STANDING, body.name, message)] if hanging else []
+    floating = beams.count_floating(lattice, rests)
+    message = f"{floating} components of beams and solids do not reach the plate"
+    return [Violation(STANDING, body.name, message)] if floating else []
 
 
 def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Bools:
-    """Tell which points are at or just below an upper surface of a part: in it, and out of it a little higher."""
+    """Tell which points are at or slightly below an upper surface of a part: inside it, and outside a little higher."""
     found = np.zeros(len(points), np.bool_)
     for placed in parts:
         mesh = placed.mesh
@@ -191,9 +191,10 @@ def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Boo
 def _penetration(
     body: JudgedBody, placed: PlacedPart, settings: BuildSettings, *, holds: bool
 ) -> list[Violation]:
-    """Judge one part: one that the body holds may be entered by the overlap, upwards; others not at all.
+    """Judge the depth of a body in one part.
 
-    Where supports may stand on parts, those that the body holds may be entered downwards as well.
+    A part that the body holds may be entered from below by the overlap, and from above where supports may stand on
+    parts. Other parts must not be entered.
     """
     feet = holds and settings.rules.grounding == "anywhere"
     depth = (settings.overlap if holds else 0.0) + TOLERANCE
@@ -211,17 +212,17 @@ def _penetration(
         return []
     if body.support.surface:
         deep = _sheet_enters(body, placed, depth)
-        found = f"a wall runs more than {depth:.4g} mm into it" if deep else ""
+        found = f"a wall is more than {depth:.4g} mm deep" if deep else ""
     else:
         volume = _volume_deeper(body, placed, depth, feet=feet)
-        found = f"{volume:.3g} mm3 lie more than {depth:.4g} mm deep" if volume > NEGLIGIBLE_VOLUME else ""
+        found = f"{volume:.3g} mm3 are more than {depth:.4g} mm deep" if volume > NEGLIGIBLE_VOLUME else ""
     return [Violation(PENETRATION, body.name, f"enters {placed.label}: {found}")] if found else []
 
 
 def _volume_deeper(body: JudgedBody, placed: PlacedPart, depth: float, *, feet: bool) -> float:
-    """Return the volume of the body's points in the part with the point `depth` below them in the part too.
+    """Return the volume of the points that are in body and part together with the point `depth` below them.
 
-    With `feet`, only of those with the point `depth` above them in the part as well.
+    With `feet`, the point `depth` above them must be in the part too.
     """
     part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
     below = body.solid ^ part.translate((0.0, 0.0, depth))
@@ -233,14 +234,14 @@ def _volume_deeper(body: JudgedBody, placed: PlacedPart, depth: float, *, feet: 
 
 
 def _thickness(solid: "Manifold") -> float:
-    """Return the mean thickness of a flat piece, mm: along a steep wall contact is thin, though it runs deep."""
+    """Return the mean thickness of a flat piece, mm; contact along a steep wall is deep but thin."""
     return float(2.0 * solid.volume() / max(solid.surface_area(), NEGLIGIBLE_VOLUME))
 
 
 def _sheet_enters(body: JudgedBody, placed: PlacedPart, depth: float) -> bool:
-    """Tell whether a corner or middle of the sheet lies in the part, and the point `depth` below it too.
+    """Tell whether a corner or centre of a surface is in the part together with the point `depth` below it.
 
-    Sideways it has to lie deeper than contact.
+    Horizontally it must be deeper than contact.
     """
     corners = body.support.mesh.vertices[body.support.mesh.triangles]
     middles = (corners + np.roll(corners, 1, axis=1)) / 2

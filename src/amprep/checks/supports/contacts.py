@@ -1,4 +1,4 @@
-"""The promise of connectors: over every connected red square something touches the part it holds."""
+"""Judge connectors: above every connected red square a support touches the part."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -16,21 +16,24 @@ if TYPE_CHECKING:
 
 PROMISE = "connector touches its part"
 
-_BESIDE = 1e-6
+_SLACK = 1e-6
+"""Distance (mm) from a box within which points count as inside it."""
 
 
 def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Violation]:
-    """Return the columns above connected red squares in which no support enters the part.
+    """Return a violation for each column above a connected red square in which no support enters the part.
 
-    Supports enter what they hold by the overlap, so volumes tell, by manifold3d. What is listed as unsupported
-    in a column excuses it. Walls without thickness have no volume: parts that they hold are not judged.
+    Supports enter parts by the overlap, so a column without a common volume has no contact. A column that contains a
+    listed unsupported point is excused. Walls without thickness have no volume, so parts that they hold are not judged.
 
     Parameters
     ----------
+    build
+        The build with its supports.
     lo, hi
-        ``(m, 3)`` mm, from each square up to the top of what its connector may reach.
+        ``(m, 3)`` mm, corners of the columns, from the red square up to the greatest height of its connector.
     part
-        ``(m,)`` the placed part that each square holds.
+        ``(m,)`` index of the placed part that each red square supports.
     """
     found = []
     for index, placed in enumerate(build.parts):
@@ -48,7 +51,7 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
 
 
 def _common(bodies: Sequence[SupportBody], mesh: Mesh, part: int) -> list["Manifold"]:
-    """Return what supports and the part they hold have in common."""
+    """Return the intersection of each support that holds a part with that part."""
     solid = as_manifold(mesh.vertices, mesh.triangles)
     held = [body.mesh for body in bodies if part in body.parts]
     return [as_manifold(each.vertices, each.triangles) ^ solid for each in held]
@@ -62,4 +65,4 @@ def _volume(solids: Sequence["Manifold"], lo: Floats, hi: Floats) -> float:
 
 
 def _within(points: Floats, lo: Floats, hi: Floats) -> Bools:
-    return np.asarray(((points >= lo - _BESIDE) & (points <= hi + _BESIDE)).all(axis=1))
+    return np.asarray(((points >= lo - _SLACK) & (points <= hi + _SLACK)).all(axis=1))

@@ -1,4 +1,4 @@
-"""The promise of the gap: no support comes nearer to the walls of parts than asked, measured sideways."""
+"""Judge the XY distance: no support is nearer to a wall of a part than requested, measured horizontally."""
 
 import numpy as np
 
@@ -12,23 +12,23 @@ from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
 from amprep.overhangs.of_part import overhangs_of
 
-PROMISE = "gap to walls"
+PROMISE = "XY distance to walls"
 
 SPACING = 0.3
-"""mm between the points of a support that are judged, at most; the gap itself if that is less."""
+"""Largest distance (mm) between the judged points of a support; the XY distance itself if that is less."""
 
-_GRANT = 0.005
-"""mm; along a nearly level wall a place that a file rounds up or down moves that far sideways."""
+_TOLERANCE = 0.005
+"""Horizontal error (mm) that float32 rounding causes on a nearly horizontal wall."""
 
-_GRANT_DEG = 0.02
-"""Faces this much steeper than the threshold still count as held, so that rounding in a file breaks no promise."""
+_TOLERANCE_DEG = 0.02
+"""Faces steeper than the overhang angle by at most this still count as overhangs, because files round coordinates."""
 
 
-def check_gap(build: Build, stop: Stop) -> list[Violation]:
-    """Judge solid supports at points all over their surface; the distance of each to the walls is exact.
+def check_xy_distance(build: Build, stop: Stop) -> list[Violation]:
+    """Judge the exact horizontal distance of points on the surface of solid supports to the walls of parts.
 
-    Walls are all faces that supports do not run up to. A wall counts for points on its outer side that see
-    it: what is between them is no part. Walls without thickness and beams are not judged.
+    Walls are all faces that are not overhangs. A point is judged against walls on whose outer side it is, unless the
+    part is between them. Walls without thickness and beams are not judged.
     """
     if build.settings.rules.gap_mm <= 0.0:
         return []
@@ -44,13 +44,13 @@ def check_gap(build: Build, stop: Stop) -> list[Violation]:
 
 def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Violation]:
     """Judge one support beside one part."""
-    reach = build.settings.rules.gap_mm - _GRANT
+    reach = build.settings.rules.gap_mm - _TOLERANCE
     walls = _walls(placed, build, stood_on=placed in [build.parts[index] for index in body.parts])
     corners = body.mesh.vertices[body.mesh.triangles]
     by_walls = occupancy_of(walls.corners.min(axis=1), walls.corners.max(axis=1))
     corners = corners[by_walls.near(corners, reach)]
     points = sample_triangles(corners, min(SPACING, build.settings.rules.gap_mm))
-    for up in (0.0, 2.0 * TOLERANCE):  # what is in the part, or right below a face, is contact
+    for up in (0.0, 2.0 * TOLERANCE):  # points in the part or directly below a face are contact
         points = points[~inside(points + (0.0, 0.0, up), placed.mesh.vertices, placed.mesh.triangles)]
     away, foot = wall_distance(points, walls, reach, 2.0 * TOLERANCE)
     close = np.flatnonzero(away < reach)
@@ -60,7 +60,7 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     worst = close[away[close].argmin()]
     place = np.round(points[worst], 2).tolist()
     message = (
-        f"comes within {away[worst]:.3f} mm of a wall of {placed.label} at {place} mm, the gap is "
+        f"is {away[worst]:.3f} mm from a wall of {placed.label} at {place} mm, the XY distance is "
         f"{build.settings.rules.gap_mm:g} mm ({len(close)} of {len(points)} points)"
     )
     return [Violation(PROMISE, body.name, message)]
@@ -68,16 +68,16 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
 
 def _walls(placed: PlacedPart, build: Build, *, stood_on: bool) -> PartWalls:
     settings = build.settings
-    needs = overhangs_of(placed, settings.rules, add_angle_deg=_GRANT_DEG)
+    found = overhangs_of(placed, settings.rules, add_angle_deg=_TOLERANCE_DEG)
     overlap = max(settings.overlap, CONTACT_TOLERANCE) + TOLERANCE
     stood_on = stood_on and settings.rules.grounding == "anywhere"
-    return walls_of(needs.mesh.vertices, needs.mesh.triangles, needs.overhangs, overlap, stood_on=stood_on)
+    return walls_of(found.mesh.vertices, found.mesh.triangles, found.overhangs, overlap, stood_on=stood_on)
 
 
 def _sees(points: Floats, foot: Floats, placed: PlacedPart) -> Bools:
-    """Tell between which points and places on walls there is nothing of the part."""
+    """Tell for which points the part is not between them and their nearest point on a wall."""
     free = np.ones(len(points), np.bool_)
-    for share in (0.2, 0.5, 0.8):
-        between = points + share * (foot - points)
+    for fraction in (0.2, 0.5, 0.8):
+        between = points + fraction * (foot - points)
         free &= ~inside(between, placed.mesh.vertices, placed.mesh.triangles)
     return free

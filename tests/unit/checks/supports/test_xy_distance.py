@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.checks.supports.xy_distance import check_gap
+from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.geometry.meshes.sampling import sample_triangles
 from amprep.geometry.overhangs.find import find_overhangs
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, spaces_beside, wall_distance, walls_of
@@ -39,7 +39,7 @@ def build_of(support: Manifold, part: Manifold = TABLE, gap: float = GAP, **sett
 
 
 def judged(*arguments, **settings) -> int:
-    return len(check_gap(build_of(*arguments, **settings), Stop()))
+    return len(check_xy_distance(build_of(*arguments, **settings), Stop()))
 
 
 @pytest.mark.parametrize(("away", "faults"), [(0.45, 1), (0.55, 0), (0.0, 1)])
@@ -165,10 +165,10 @@ def test_walls_know_no_level_faces_none_held_and_none_that_look_up_where_support
 def test_supports_that_nothing_trimmed_are_found_too_near_and_trimmed_ones_are_not():
     post, table = box((12, 9, 0), (15, 11, 10.1)), mesh_of(TABLE)
     build = build_of(post)
-    assert len(check_gap(build, Stop())) == 1
+    assert len(check_xy_distance(build, Stop())) == 1
     needs = find_overhangs(table.vertices, table.triangles, angle_deg=45.0)
     for solid in spaces_beside(walls_of(table.vertices, table.triangles, needs, 0.1), GAP):
         post -= solid
     trimmed = replace(build.supports[0], mesh=mesh_of(post))
-    assert check_gap(replace(build, supports=(trimmed,)), Stop()) == []
+    assert check_xy_distance(replace(build, supports=(trimmed,)), Stop()) == []
     assert post.volume() == pytest.approx(2.5 * 2 * 10.1, rel=0.01)
