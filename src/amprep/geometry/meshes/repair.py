@@ -1,4 +1,4 @@
-"""Is a mesh a solid? manifold3d judges; what may be mended without changing the shape is, and reported."""
+"""Validate meshes by manifold3d and repair defects that can be repaired without changing the shape."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.manifold import accepted, as_manifold
-from amprep.geometry.meshes.shells import MOST_UNITED, find_inside_out, measure_shells, solid_volume
+from amprep.geometry.meshes.shells import MAX_UNITED, find_inside_out, measure_shells, solid_volume
 from amprep.geometry.meshes.topology import (
     count_edges,
     degenerate,
@@ -23,28 +23,29 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 SEAM_TOLERANCE = 1e-3
-"""mm; open edges closer than this may be sewn together, the distance at which the product counts contact."""
+"""Largest width (mm) of an open seam that is closed; equal to the contact tolerance."""
 
-_FLOAT32_STEP = 2.0**-22  # of a coordinate: files keep float32, and exporters round once or twice
+_FLOAT32_STEP = 2.0**-22
+"""Rounding error of a coordinate, relative: files store float32, and exporters may round twice."""
 
 
 class RepairedMesh(NamedTuple):
-    """A mesh that has been judged.
+    """Result of validation and repair.
 
     Attributes
     ----------
     vertices, triangles
-        ``(n, 3)`` float64 mm and ``(m, 3)`` int32: the mesh given, merged and turned where `notes` say so.
+        ``(n, 3)`` float64 mm and ``(m, 3)`` int32, the repaired mesh.
     volume
-        mm3 where the winding number is positive; 0 when there is a problem.
+        Volume where the winding number is positive, mm3; 0 if the mesh is not a solid.
     notes
-        What was mended, a sentence each.
+        One sentence for each kind of repair.
     problem
-        Why manifold3d refuses it; empty for a solid.
+        Reason why the mesh is not a solid; empty for a solid.
     kept
-        ``(m,)`` which of the triangles given each one is.
+        ``(m,)`` index of the input triangle of each triangle.
     turned
-        ``(m,)`` whether its corners are in reverse order.
+        ``(m,)`` whether the orientation of the triangle was reversed.
     """
 
     vertices: Floats
@@ -64,7 +65,7 @@ class _Candidate(NamedTuple):
 
 
 def find_defect(vertices: ArrayLike, triangles: ArrayLike) -> str:
-    """Say what keeps the arrays from being a mesh at all: nothing there, NaN, indices out of range; or ""."""
+    """Return why arrays are not a mesh (no triangles, NaN, indices out of range), or an empty text."""
     points, corners = np.asarray(vertices, np.float64), np.asarray(triangles)
     if len(corners) == 0:
         return "it has no triangles"
@@ -73,18 +74,18 @@ def find_defect(vertices: ArrayLike, triangles: ArrayLike) -> str:
         return f"{(~finite).sum()} of {len(points)} vertices have NaN or infinite coordinates"
     outside = ((corners < 0) | (corners >= len(points))).any(axis=1)
     if outside.any():
-        return f"{outside.sum()} of {len(corners)} triangles name a vertex that does not exist"
+        return f"{outside.sum()} of {len(corners)} triangles refer to a vertex that does not exist"
     if np.abs(points).max() > 1e12:
         return f"coordinates reach {np.abs(points).max():.3g} mm, too large to compute with"
     return ""
 
 
 def repair_mesh(vertices: ArrayLike, triangles: ArrayLike) -> RepairedMesh:
-    """Judge a mesh by manifold3d, mending only what leaves its shape as it is.
+    """Validate a mesh by manifold3d and repair it without changing its shape.
 
-    Equal vertices are merged; degenerate and repeated triangles dropped; seams narrower than
-    `SEAM_TOLERANCE` sewn if the mesh is not accepted otherwise; shells that are inside out turned. A mesh
-    that manifold3d accepts without one of these steps is never refused for it.
+    Repairs merge equal vertices, drop degenerate and repeated triangles, close seams narrower than `SEAM_TOLERANCE` if
+    the mesh is not accepted otherwise, and turn shells that are inside out. A mesh that manifold3d accepts without one
+    of these repairs is never rejected because of it.
 
     Parameters
     ----------
@@ -105,29 +106,29 @@ def repair_mesh(vertices: ArrayLike, triangles: ArrayLike) -> RepairedMesh:
             if not found[-1].problem and _faithful(solid, candidate):
                 return found[-1]
     solids = [repaired for repaired in found if not repaired.problem]
-    return (solids or found or [_refused(_tidied(points, corners))])[0]
+    return (solids or found or [_rejected(_cleaned(points, corners))])[0]
 
 
 def _candidates(vertices: Floats, triangles: Int64s) -> Iterator[_Candidate]:
-    """Yield ways to read the mesh: tidied, as it came, and last with its seams sewn."""
-    merged = _tidied(vertices, triangles)
+    """Yield candidates in the order of preference: cleaned, unchanged, and with closed seams."""
+    merged = _cleaned(vertices, triangles)
     unique = _without(merged, repeated(merged.triangles), "repeated triangle")
     if len(unique.triangles) < len(merged.triangles) and _same_solid(unique, merged):
         yield unique
     yield merged
     yield _Candidate(vertices, triangles, np.arange(len(triangles)), ())
     yield unique
-    yield from _sewn(unique)
+    yield from _seams_closed(unique)
 
 
 def _same_solid(one: _Candidate, other: _Candidate) -> bool:
-    """Tell whether both fill the same: whole shells that come twice do, single triangles do not."""
+    """Tell whether two candidates have the same volume, as they do if only whole shells are repeated."""
     if not all(accepted(as_manifold(mesh.vertices, mesh.triangles)) for mesh in (one, other)):
         return False
     return bool(np.isclose(_oriented(one).volume, _oriented(other).volume, rtol=1e-9))
 
 
-def _tidied(vertices: Floats, triangles: Int64s) -> _Candidate:
+def _cleaned(vertices: Floats, triangles: Int64s) -> _Candidate:
     """Merge equal vertices and drop degenerate triangles."""
     first = first_of_equal_rows(vertices)
     used = np.zeros(len(vertices), np.bool_)
@@ -141,7 +142,7 @@ def _tidied(vertices: Floats, triangles: Int64s) -> _Candidate:
 
 
 def _without(mesh: _Candidate, dropped: Bools, what: str) -> _Candidate:
-    """Drop triangles, and the vertices that only they used."""
+    """Drop triangles and the vertices that only they use."""
     notes = mesh.notes
     if dropped.any():
         notes = (*notes, f"dropped {_count(int(dropped.sum()), what, what + 's')}")
@@ -149,8 +150,8 @@ def _without(mesh: _Candidate, dropped: Bools, what: str) -> _Candidate:
     return _Candidate(vertices, triangles, mesh.kept[~dropped], notes)
 
 
-def _sewn(mesh: _Candidate) -> Iterator[_Candidate]:
-    """Join vertices of open edges that lie close together, ever less close."""
+def _seams_closed(mesh: _Candidate) -> Iterator[_Candidate]:
+    """Yield candidates with joined vertices of open edges, for increasing tolerances."""
     float32_step = min(float(np.abs(mesh.vertices).max(initial=0.0)) * _FLOAT32_STEP, SEAM_TOLERANCE)
     loose = open_vertices(mesh.triangles)
     for tolerance in sorted({float32_step, SEAM_TOLERANCE / 10, SEAM_TOLERANCE}):
@@ -164,9 +165,9 @@ def _sewn(mesh: _Candidate) -> Iterator[_Candidate]:
 
 
 def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
-    """Tell whether manifold3d measures what the triangles enclose.
+    """Tell whether manifold3d measures the volume that the triangles enclose.
 
-    Where many triangles share an edge it may pair them so that too many cancel; other readings may do better.
+    At edges of more than two triangles it may pair triangles so that too many cancel; another candidate may be better.
     """
     corners = mesh.vertices[mesh.triangles] - mesh.vertices[0]
     enclosed = float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
@@ -175,10 +176,10 @@ def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
 
 
 def _oriented(mesh: _Candidate) -> RepairedMesh:
-    """Turn what is inside out, and measure; turn nothing where that would leave nothing."""
+    """Turn shells that are inside out and measure the volume; turn nothing if the volume would be zero then."""
     shells = measure_shells(mesh.vertices, mesh.triangles)
-    if shells.crowded.sum() > MOST_UNITED:
-        note = f"more than {MOST_UNITED} shells that may overlap: its volume counts overlaps repeatedly"
+    if shells.may_overlap.sum() > MAX_UNITED:
+        note = f"more than {MAX_UNITED} shells that may overlap: the volume counts overlaps repeatedly"
         mesh = mesh._replace(notes=(*mesh.notes, note))
     turn, outer = find_inside_out(shells)
     if outer:
@@ -188,20 +189,22 @@ def _oriented(mesh: _Candidate) -> RepairedMesh:
         volume = solid_volume(mesh.vertices, triangles, right)
         if volume > _least_volume(mesh):
             note = _turning_note(bool(turn.all()), outer, len(turn))
-            return _settled(mesh._replace(triangles=triangles, notes=(*mesh.notes, note)), volume, "", turned)
+            return _finished(
+                mesh._replace(triangles=triangles, notes=(*mesh.notes, note)), volume, "", turned
+            )
     volume = solid_volume(mesh.vertices, mesh.triangles, shells)
-    problem = "" if volume > _least_volume(mesh) else "its volume is zero: it encloses nothing"
-    return _settled(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
+    problem = "" if volume > _least_volume(mesh) else "its volume is zero"
+    return _finished(mesh, volume, problem, np.zeros(len(mesh.triangles), np.bool_))
 
 
-def _settled(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> RepairedMesh:
+def _finished(mesh: _Candidate, volume: float, problem: str, turned: Bools) -> RepairedMesh:
     triangles = mesh.triangles.astype(np.int32)
     measured = 0.0 if problem else volume
     return RepairedMesh(mesh.vertices, triangles, measured, mesh.notes, problem, mesh.kept, turned)
 
 
 def _least_volume(mesh: _Candidate) -> float:
-    """Return what rounding alone may make of a volume of zero, mm3."""
+    """Return the error that rounding causes in a volume of zero, mm3."""
     return 1e-15 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) ** 3
 
 
@@ -213,18 +216,18 @@ def _turning_note(whole: bool, count: int, shells: int) -> str:
     )
 
 
-def _refused(mesh: _Candidate) -> RepairedMesh:
-    problem = _describe_edges(mesh) if len(mesh.triangles) else "every triangle is without area"
-    return _settled(mesh, 0.0, problem, np.zeros(len(mesh.triangles), np.bool_))
+def _rejected(mesh: _Candidate) -> RepairedMesh:
+    problem = _describe_edges(mesh) if len(mesh.triangles) else "every triangle has zero area"
+    return _finished(mesh, 0.0, problem, np.zeros(len(mesh.triangles), np.bool_))
 
 
 def _describe_edges(mesh: _Candidate) -> str:
-    """Say in words which edges keep the mesh from being a solid, and where the first one is."""
+    """Describe the edges that prevent the mesh from being a solid, with the position of the first."""
     edges, uses, balance = count_edges(mesh.triangles)
     where = mesh.vertices[edges].mean(axis=1)
     odd, twisted = uses % 2 == 1, (uses % 2 == 0) & (balance != 0)
     if odd.any():
-        what = "an odd number of triangles (a hole, or a wall that ends inside)"
+        what = "an odd number of triangles (a hole, or an internal wall)"
         return f"{_edges(odd)} {what}, first near {_point(where[odd][0])}"
     if twisted.any():
         return f"{_edges(twisted)} triangles that face opposite ways, first near {_point(where[twisted][0])}"

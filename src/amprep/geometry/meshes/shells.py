@@ -1,4 +1,4 @@
-"""Shells of a mesh: which are inside out, and the volume where the winding number is positive."""
+"""Shells of a mesh: orientation, and the volume where the winding number is positive."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,36 +11,36 @@ from amprep.geometry.meshes.manifold import as_manifold
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-MOST_UNITED = 20_000
-"""Where more shells overlap, overlaps count as often as they occur; uniting them would take minutes."""
+MAX_UNITED = 20_000
+"""Largest number of overlapping shells that are united (this takes minutes); of more, overlaps count repeatedly."""
 
 _MOST_PAIRS = 50_000_000
 
 
 class Shells(NamedTuple):
-    """The shells of a mesh: triangles joined by edges.
+    """The shells of a mesh: sets of triangles connected by edges.
 
     Attributes
     ----------
     label
-        ``(m,)`` the shell of each triangle, 0 to k - 1.
+        ``(m,)`` shell of each triangle, 0 to k - 1.
     volume
-        ``(k,)`` signed, mm3; rounding counts as zero.
+        ``(k,)`` signed volume, mm3; rounding errors are set to zero.
     lo, hi
-        ``(k, 3)`` corners of their boxes.
-    crowded
-        ``(k,)`` whether a shell may overlap another, or itself, so that volumes do not just add up.
+        ``(k, 3)`` mm, corners of the bounding boxes.
+    may_overlap
+        ``(k,)`` whether a shell may overlap another or itself, so that volumes cannot be added.
     """
 
     label: Int64s
     volume: Floats
     lo: Floats
     hi: Floats
-    crowded: Bools
+    may_overlap: Bools
 
 
 def label_shells(triangles: Int64s, vertex_count: int) -> tuple[int, Int64s]:
-    """Return how many pieces (triangles joined by vertices) there are, and each triangle's, ``(m,)``."""
+    """Return the number of components (triangles connected by vertices), and that of each triangle, ``(m,)``."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -56,21 +56,21 @@ def measure_shells(vertices: Floats, triangles: Int64s) -> Shells:
     count, label, simple = _join_by_edges(triangles)
     corners = vertices[triangles]
     lo, hi = _boxes(corners, label, count)
-    crowded = ~simple | _overlapping(lo, hi)
-    return Shells(label, _volumes(corners, label, count), lo, hi, crowded)
+    may_overlap = ~simple | _overlapping(lo, hi)
+    return Shells(label, _volumes(corners, label, count), lo, hi, may_overlap)
 
 
 def find_inside_out(shells: Shells) -> tuple[Bools, int]:
-    """Find shells that lie in no other shell and have negative volume, with all the shells inside them.
+    """Find shells of negative volume that are inside no other shell, and all shells inside these.
 
-    Lying inside is judged by the boxes. A cavity is a shell of negative volume inside another: it stays.
+    A shell of negative volume inside another one is a cavity and remains. Containment is judged by bounding boxes.
 
     Returns
     -------
     turn
-        ``(k,)`` whether a shell has to be turned over.
+        ``(k,)`` whether the orientation of a shell must be reversed.
     outer
-        How many of these lie in no other.
+        Number of these shells that are inside no other.
     """
     if (shells.volume >= 0.0).all():
         return np.zeros(len(shells.volume), np.bool_), 0
@@ -80,19 +80,26 @@ def find_inside_out(shells: Shells) -> tuple[Bools, int]:
 
 
 def solid_volume(vertices: Floats, triangles: Int64s, shells: Shells) -> float:
-    """Volume where the winding number is positive: shells that overlap count once, cavities are hollow.
+    """Return the volume where the winding number is positive, mm3: overlaps count once, cavities are empty.
 
-    Of one self-intersecting shell the volume is the signed one.
+    A single shell that intersects itself counts with its signed volume.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    shells
+        Shells of the mesh.
     """
-    crowded = shells.crowded
-    alone = float(shells.volume[~crowded].clip(min=0.0).sum())
-    if not crowded.any():
+    may_overlap = shells.may_overlap
+    alone = float(shells.volume[~may_overlap].clip(min=0.0).sum())
+    if not may_overlap.any():
         return alone
-    if crowded.sum() > MOST_UNITED:
-        return alone + max(0.0, float(shells.volume[crowded].sum()))
+    if may_overlap.sum() > MAX_UNITED:
+        return alone + max(0.0, float(shells.volume[may_overlap].sum()))
     pieces = [
         piece
-        for shell in _split(triangles[crowded[shells.label]], shells.label[crowded[shells.label]])
+        for shell in _split(triangles[may_overlap[shells.label]], shells.label[may_overlap[shells.label]])
         for piece in _manifold_of(vertices, shell).decompose()
     ]
     outward = [piece for piece in pieces if piece.volume() > 0.0]
@@ -108,7 +115,7 @@ def _manifold_of(vertices: Floats, triangles: Int64s) -> "Manifold":
 
 
 def _join_by_edges(triangles: Int64s) -> tuple[int, Int64s, Bools]:
-    """Return the number of shells, each triangle's, and which have two triangles at every edge."""
+    """Return the number of shells, that of each triangle, and which shells have two triangles at every edge."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -156,7 +163,7 @@ def _sweep(lo: Floats, hi: Floats, axis: int) -> tuple[Int64s, Int64s]:
 
 
 def _volume_with_cavities(outward: Sequence["Manifold"], cavities: Sequence["Manifold"]) -> float:
-    """Volume of the points that lie in more outward shells than cavities."""
+    """Return the volume of the points that are inside more outward shells than cavities."""
     from manifold3d import Manifold
 
     hollow = _levels([_turned(shell) for shell in cavities], len(outward))
@@ -166,7 +173,7 @@ def _volume_with_cavities(outward: Sequence["Manifold"], cavities: Sequence["Man
 
 
 def _levels(shells: Sequence["Manifold"], most: int) -> list["Manifold"]:
-    """Return the sets of points inside at least 1, 2, ... of the shells, as far as not empty."""
+    """Return the sets of points inside at least 1, 2, ... shells, as long as they are not empty."""
     whole = _union(shells)
     if most < 2 or np.isclose(whole.volume(), sum(s.volume() for s in shells), rtol=1e-9):
         return [whole]
@@ -175,7 +182,7 @@ def _levels(shells: Sequence["Manifold"], most: int) -> list["Manifold"]:
 
 
 def _merged(a: list["Manifold"], b: list["Manifold"], most: int) -> list["Manifold"]:
-    """Return the levels of two families together: in i of the one and k - i of the other."""
+    """Return the levels of two families together: level k is the union of level i and level k - i over all i."""
     levels = []
     for k in range(1, min(len(a) + len(b), most) + 1):
         both = [a[i - 1] ^ b[k - i - 1] for i in range(1, k) if i <= len(a) and k - i <= len(b)]
@@ -193,13 +200,13 @@ def _union(solids: Sequence["Manifold"]) -> "Manifold":
 
 
 def _turned(solid: "Manifold") -> "Manifold":
-    """Return the solid with every triangle turned over."""
+    """Return the solid with every triangle reversed."""
     mesh = solid.to_mesh64()
     return as_manifold(mesh.vert_properties[:, :3], mesh.tri_verts[:, ::-1])
 
 
 def _volumes(corners: Floats, shell: Int64s, count: int) -> Floats:
-    """Signed volume of each shell, measured from the shell's own corner; rounding counts as zero."""
+    """Return the signed volume of each shell relative to one of its corners; rounding errors are set to zero."""
     first = np.unique(shell, return_index=True)[1]
     local = corners - corners[first, 0][shell][:, None]
     parts = np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2])) / 6.0
@@ -209,7 +216,7 @@ def _volumes(corners: Floats, shell: Int64s, count: int) -> Floats:
 
 
 def _boxes(corners: Floats, shell: Int64s, count: int) -> tuple[Floats, Floats]:
-    """Least and greatest corner of each shell, ``(count, 3)``."""
+    """Return the least and greatest corner of each shell, ``(count, 3)``."""
     lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(lo, shell, corners.min(axis=1))
     np.maximum.at(hi, shell, corners.max(axis=1))
@@ -217,7 +224,7 @@ def _boxes(corners: Floats, shell: Int64s, count: int) -> tuple[Floats, Floats]:
 
 
 def _outermost(lo: Floats, hi: Floats) -> Int64s:
-    """Return for each box the largest box that holds it, itself if there is none."""
+    """Return for each box the largest box that contains it, itself if there is none."""
     owner = np.full(len(lo), -1, np.int64)
     for box in np.argsort(-np.prod(hi - lo, axis=1), kind="stable"):
         if owner[box] < 0:

@@ -154,7 +154,7 @@ def test_many_shells_are_measured_in_short_time_and_overlaps_still_count_once():
 
 def test_where_too_many_shells_overlap_that_is_said(monkeypatch):
     for module in (shells_module, solids_module):
-        monkeypatch.setattr(module, "MOST_UNITED", 1)
+        monkeypatch.setattr(module, "MAX_UNITED", 1)
     repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
     assert repaired.volume == pytest.approx(2.0)
     assert "counts overlaps repeatedly" in repaired.notes[0]
@@ -181,7 +181,7 @@ def test_a_gap_wider_than_the_tolerance_is_not_closed():
         (CUBE[0], CUBE[1][1:], "3 edges border an odd number of triangles"),
         (CUBE[0], np.vstack([CUBE[1][:1, ::-1], CUBE[1][1:]]), "triangles that face opposite ways"),
         (CUBE[0], CUBE[1][:0], "no triangles"),
-        (CUBE[0], np.array([[0, 0, 1]]), "without area"),
+        (CUBE[0], np.array([[0, 0, 1]]), "zero area"),
         (CUBE[0] * [1, 1, np.nan], CUBE[1], "NaN"),
         (CUBE[0] + [0, 0, np.inf], CUBE[1], "infinite"),
         (CUBE[0], CUBE[1] + 1, "a vertex that does not exist"),
