@@ -1,5 +1,6 @@
 """Every hook has a test and a page; every key of a job file is documented with its default."""
 
+import ast
 import re
 from dataclasses import MISSING, fields
 from pathlib import Path
@@ -26,6 +27,12 @@ SECTIONS = {
     "Printers": PrinterProfile,
 }
 BY_OTHER_KEYS = {"stacking", "enabled", "strut_angle_deg", "volume_params"}
+
+
+def python_blocks(page):
+    """The Python examples of a page."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
 
 
 def section(name):
@@ -82,19 +89,79 @@ def test_the_job_file_in_the_page_is_a_job_file(tmp_path):
     assert (job.packing.clearance_mm, job.supports.overhang_angle_deg, job.inputs[0].quantity) == (3, 40, 4)
 
 
-@pytest.mark.parametrize("kind", ["packer", "cell"])
-def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
-    from amprep.testing.conformance import try_plugin
+TETRAHEDRON = "0 0 0 0 9 0 9 0 0\n0 0 0 9 0 0 0 0 9\n0 0 0 0 0 9 0 9 0\n9 0 0 0 9 0 0 0 9\n"
 
-    blocks = re.findall(
-        r"```python\n(.*?)```", (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8"), re.DOTALL
-    )
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_the_plugins_in_the_page_keep_every_promise(tmp_path, kind):
+    from amprep.testing import try_plugin
+
     hook = KINDS[kind].hook
-    (source,) = [block for block in blocks if f"def {hook}" in block and "return" in block]
+    (source,) = [
+        block for block in python_blocks("plugins.md") if f"def {hook}" in block and "return" in block
+    ]
     path = tmp_path / f"page_{kind}.py"
     path.write_text(source, encoding="utf-8")
-    (trial,) = try_plugin(str(path))
-    assert (trial.kind, trial.violations) == (kind, ())
+    sample = tmp_path / "sample.tri"
+    sample.write_text(TETRAHEDRON, encoding="utf-8")
+    (report,) = try_plugin(str(path), samples=[sample])
+    assert (report.kind, report.violations) == (kind, ())
+
+
+def test_the_example_of_the_page_about_python_runs(tmp_path, monkeypatch):
+    import shutil
+
+    for name in ("table.stl", "two-balls.stl"):
+        shutil.copy(ROOT / "fixtures" / name, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in python_blocks("python.md"):
+        exec(compile(block, "docs/python.md", "exec"), names)
+    assert (tmp_path / "out" / "example.build-1.3mf").is_file()
+
+
+PUBLIC = {"amprep", "amprep.testing", "amprep.hookspecs", "amprep.model", "amprep.cells", "amprep.errors"}
+
+
+def public_sources():
+    """Name -> Python code that may use the public modules only: plugins, templates, and examples in pages."""
+    for path in [*(ROOT / "plugins").rglob("*.py"), *(ROOT / "src/amprep/templates").glob("*.py.template")]:
+        yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8").replace("${module}", "own")
+    for page in ("plugins.md", "python.md"):
+        for number, block in enumerate(python_blocks(page)):
+            yield f"docs/{page}, example {number + 1}", block
+
+
+@pytest.mark.parametrize("name", sorted(dict(public_sources())))
+def test_plugins_templates_and_examples_import_public_modules_only(name):
+    imported, source = set(), dict(public_sources())[name]
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            imported |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            imported |= (
+                {f"amprep.{alias.name}" for alias in node.names if f"amprep.{alias.name}" in PUBLIC}
+                if node.module == "amprep"
+                else {node.module}
+            )
+    assert {module for module in imported if module.split(".")[0] == "amprep"} <= PUBLIC
+
+
+def test_the_page_about_python_names_the_stable_modules_and_every_function():
+    import amprep
+
+    text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^\| `(amprep[.\w]*)` \|", text, re.MULTILINE)) == PUBLIC
+    functions = {name for name in amprep.__all__ if name[0].islower()}
+    assert set(re.findall(r"^\| `(\w+)\(", text, re.MULTILINE)) == functions
+
+
+def test_every_name_that_the_page_about_plugins_gives_to_a_public_module_exists():
+    import importlib
+
+    text = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
+    for module, name in re.findall(r"`(amprep(?:\.\w+)*)\.(\w+)(?:\(\w*\))?`", text):
+        assert f"{module}.{name}" in PUBLIC or hasattr(importlib.import_module(module), name)
 
 
 def test_the_declared_cells_in_the_page_can_be_printed_and_emptied(tmp_path):

@@ -20,12 +20,23 @@ from amprep.model.control import Progress, Stop, silent
 from amprep.model.mesh import Mesh
 from amprep.model.packing import Item, Objective, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Appearance, Orientations, Overrides, Part, Region
-from amprep.model.supports import SupportPlan, SupportProblem, Unconnected, Voxel
+from amprep.model.supports import (
+    CAPACITY,
+    ENCLOSED,
+    OUT_OF_TIME,
+    SupportPlan,
+    SupportProblem,
+    Unconnected,
+    Voxel,
+)
 from amprep.model.supports.edges import DIRECTIONS, SupportEdges
 
 __all__ = [
+    "CAPACITY",
     "CONTACT_TOLERANCE",
     "DIRECTIONS",
+    "ENCLOSED",
+    "OUT_OF_TIME",
     "TARGETS",
     "Appearance",
     "Beams",
