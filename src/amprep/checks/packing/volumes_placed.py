@@ -11,7 +11,7 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
-from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes
+from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
 from amprep.geometry.meshes.distance import box_distance, box_solids, convex_solid, near_pairs, solid_distance
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.bounding_volume import Boxes, ConvexPieces
@@ -258,7 +258,7 @@ def _fits(problem: PackingProblem, index: int) -> bool:
     turned = (
         rotated_boxes(item.volume.lo, item.volume.hi, rotation) for rotation in item.orientations.matrices
     )
-    return any(find_home(lo, hi, space) is not None for lo, hi in turned)
+    return any(find_feasible_position(lo, hi, space) is not None for lo, hi in turned)
 
 
 def _claims(problem: PackingProblem, packing: Packing) -> list[Violation]:

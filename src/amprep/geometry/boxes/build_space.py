@@ -58,7 +58,7 @@ def union_volume(lo: Floats, hi: Floats) -> float:
     return float(covered)
 
 
-def find_home(lo: Floats, hi: Floats, space: Space) -> Floats | None:
+def find_feasible_position(lo: Floats, hi: Floats, space: Space) -> Floats | None:
     """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build; None if there is none.
 
     Exact: whenever a place exists, there is one among the crossings of the curves that bound the

@@ -27,7 +27,7 @@ from amprep.kernels.blocks.records import (
     Blocks,
     States,
 )
-from amprep.kernels.boxes.places import helper
+from amprep.kernels.helper import helper
 
 TRIAL, FIRST = 0, 1
 """Rows of the states: the state being completed, and the start of the beam."""

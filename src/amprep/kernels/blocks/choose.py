@@ -6,7 +6,7 @@ The score follows Araya, Guerrero and Nunez 2017 (doi:10.1016/j.cor.2017.01.002)
 from amprep.arrays import Int32s, Int64s
 from amprep.kernels.blocks.maximal_spaces import neighbours, put, touching_fraction
 from amprep.kernels.blocks.records import MAX_ITEM_TYPES, PLACED, WORK, BeamScratch, BeamSearch, Blocks
-from amprep.kernels.boxes.places import helper
+from amprep.kernels.helper import helper
 
 # Strategy. A search spends nearly all its time here, scanning the blocks for one space. Three bounds keep
 # the scan short. Blocks are sorted by an upper bound of their score, so the scan ends at the first block

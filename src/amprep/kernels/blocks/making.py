@@ -5,7 +5,7 @@ from numba import njit
 
 from amprep.arrays import Int64s
 from amprep.kernels.blocks.records import MAX_ITEM_TYPES, BlockTable, OrientedBoxes
-from amprep.kernels.boxes.places import helper
+from amprep.kernels.helper import helper
 
 GRID = -1
 """Marks in `BlockTable.made` a grid of one oriented box. Joined blocks have their axis (0, 1, 2) there."""

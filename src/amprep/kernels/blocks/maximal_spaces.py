@@ -8,7 +8,7 @@ distance, corner``. ``corner`` is the corner of the space that is nearest to the
 import numpy as np
 
 from amprep.arrays import Int64s
-from amprep.kernels.boxes.places import helper
+from amprep.kernels.helper import helper
 
 DISTANCE, CORNER = 6, 7
 """Columns of a space after the coordinates of its corners."""

@@ -1,55 +1,65 @@
-"""Extreme points, compiled: one pass that packs items of boxes into builds in a given order.
+"""Extreme points, compiled: one constructive pass that packs items of boxes into builds in a given ordering.
 
 After Crainic, Perboli and Tadei, *Extreme point-based heuristics for three-dimensional bin packing*,
-INFORMS Journal on Computing 20 (2008), doi:10.1287/ijoc.1070.0250. A build is filled with every remaining
-item that still fits, in order, before the next one is opened, which is first fit over the builds; within a
-build the item takes the candidate place of least merit. Added to the paper: items of several boxes (every
-box's corner is tried at a point), obstacles, builds without stacking, and candidates for a round plate, where
-extreme points alone are poor.
-
-Clearance is in the data: each box is longer by it at its upper sides, and the walls and obstacles are moved
-to match, so that boxes which touch here keep it there. Boxes touch exactly (`PAIR_SLACK` absorbs rounding, so
-that errors do not add up); walls and obstacles, which do not move, give by the room's slack.
+INFORMS Journal on Computing 20 (2008), doi:10.1287/ijoc.1070.0250. Added to the paper: items of several boxes,
+obstacles, builds without stacking, and more candidates for round plates, where extreme points alone are poor.
 """
 
 import numpy as np
 from numba import njit
 
-from amprep.kernels.boxes.places import (
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.boxes.positions import (
     BUILD,
-    FINISHED,
-    FLAT,
-    GAVE_UP,
-    GRID,
     INDEX,
     LAST,
-    LEAST,
     LEFT,
     LINES,
     MERIT,
     MOVED,
-    PAIR_SLACK,
-    PAUSED,
-    PLACE,
+    ORIENTATION,
     PLACED,
     POINTS,
+    POSITION,
+    WORK,
+    PassState,
+    Point,
+    add_crossings,
+    add_round_positions,
+    choose,
+)
+from amprep.kernels.boxes.records import (
+    FLAT,
+    GRID,
+    LEAST,
+    PAIR_SLACK,
     RADIUS,
     SLACK,
-    VARIANT,
-    WORK,
-    choose,
-    crossings,
-    helper,
-    round_places,
+    Arrangement,
+    BoxInstance,
 )
+from amprep.kernels.helper import helper
+
+FINISHED, PAUSED, GAVE_UP = 0, 1, 2
+"""Results of `pack`: all items are placed; the work is used up, call again; more builds are needed than allowed."""
+
+# Strategy. Known: the instance, an ordering of the items, a placement rule. First fit: a build is filled with every
+# remaining item that still fits, in order, before the next build is opened. Within a build the item takes the
+# candidate position of least merit. Candidates are the extreme points: projections of box corners onto the nearest
+# box or wall below them, along each axis. Every new box shortens the residual spaces of the points and removes the
+# points that it covers or that are of no use to any item; a single box that is longer than the residual space of a
+# point cannot lie there and is not tested. Every box of an item of several boxes is tried at each point.
+# Boxes touch exactly (`PAIR_SLACK` absorbs rounding, so errors do not add up); walls and obstacles do not move and
+# give by the slack of the room. Time: for each item the number of points times the number of placed boxes.
 
 
 @helper
-def _shortened(x, y, z, space_x, space_y, space_z, x0, y0, z0, x1, y1, z1):
-    """Return the residual space of a point beside a box; the first is -1 when the box covers the point.
+def _residual_space(point: Point, space: Point, lo: Point, hi: Point) -> Point:
+    """Return the residual space of a point beside a box; its first length is -1 when the box covers the point.
 
-    Numbers only: called for each point and box, it has to be inlined.
+    The arguments are tuples of numbers: the function is called for each point and box and has to be inlined.
     """
+    (x, y, z), (space_x, space_y, space_z), (x0, y0, z0), (x1, y1, z1) = point, space, lo, hi
     px, py, pz = x + PAIR_SLACK, y + PAIR_SLACK, z + PAIR_SLACK
     in_x, in_y, in_z = x0 <= px < x1, y0 <= py < y1, z0 <= pz < z1
     if in_y and in_z:
@@ -65,15 +75,17 @@ def _shortened(x, y, z, space_x, space_y, space_z, x0, y0, z0, x1, y1, z1):
 
 
 @helper
-def _prune(points, new, placed, room, cursor):
-    """Shorten the residual spaces by a new box; drop points it covers or leaves too little (in place)."""
-    x0, y0, z0 = placed[new, 0], placed[new, 1], placed[new, 2]
-    x1, y1, z1 = placed[new, 3], placed[new, 4], placed[new, 5]
+def _shorten_points(room: Floats, state: PassState) -> None:
+    """Shorten the residual spaces by the newest box; drop points that it covers or that are of no more use."""
+    points, placed, cursor = state.points, state.placed, state.cursor
+    new = cursor[PLACED] - 1
+    lo = placed[new, 0], placed[new, 1], placed[new, 2]
+    hi = placed[new, 3], placed[new, 4], placed[new, 5]
     kept = 0
     for p in range(cursor[POINTS]):
         x, y, z, last = points[p, 0], points[p, 1], points[p, 2], points[p, LAST]
-        space_x, space_y, space_z = _shortened(
-            x, y, z, points[p, 3], points[p, 4], points[p, 5], x0, y0, z0, x1, y1, z1
+        space_x, space_y, space_z = _residual_space(
+            (x, y, z), (points[p, 3], points[p, 4], points[p, 5]), lo, hi
         )
         if space_x >= room[LEAST] and space_y >= room[LEAST + 1] and space_z >= room[LEAST + 2]:
             points[kept, 0], points[kept, 1], points[kept, 2], points[kept, LAST] = x, y, z, last
@@ -83,8 +95,9 @@ def _prune(points, new, placed, room, cursor):
 
 
 @helper
-def _fall(x, y, z, axis, room, placed, count):
-    """Return where a point comes to rest that moves down `axis`: on a box or the wall."""
+def _projection(point: Point, axis: int, room: Floats, placed: Floats, count: int) -> float:
+    """Return the coordinate at which a point that moves down `axis` meets a box or the wall."""
+    x, y, z = point
     rest = room[axis]
     start = (x if axis == 0 else y if axis == 1 else z) + PAIR_SLACK
     for j in range(count):
@@ -94,12 +107,13 @@ def _fall(x, y, z, axis, room, placed, count):
             over_z = axis == 2 or placed[j, 2] <= z + PAIR_SLACK < placed[j, 5]
             if over_x and over_y and over_z:
                 rest = placed[j, axis + 3]
-    return rest
+    return float(rest)
 
 
 @helper
-def _add_point(x, y, z, room, placed, points, cursor):
-    """Add a point and its residual space, unless it is covered or known (modified in place)."""
+def _add_point(x: float, y: float, z: float, room: Floats, state: PassState) -> None:
+    """Add a point with its residual space, unless a box covers it or it is known."""
+    points, placed, cursor = state.points, state.placed, state.cursor
     known = cursor[POINTS]
     for p in range(known):
         if abs(points[p, 0] - x) + abs(points[p, 1] - y) + abs(points[p, 2] - z) <= PAIR_SLACK:
@@ -108,10 +122,12 @@ def _add_point(x, y, z, room, placed, points, cursor):
     for j in range(cursor[PLACED]):
         if space_x < room[LEAST] or space_y < room[LEAST + 1] or space_z < room[LEAST + 2]:
             return
-        space_x, space_y, space_z = _shortened(
-            x, y, z, space_x, space_y, space_z,
-            placed[j, 0], placed[j, 1], placed[j, 2], placed[j, 3], placed[j, 4], placed[j, 5],
-        )  # fmt: skip
+        space_x, space_y, space_z = _residual_space(
+            (x, y, z),
+            (space_x, space_y, space_z),
+            (placed[j, 0], placed[j, 1], placed[j, 2]),
+            (placed[j, 3], placed[j, 4], placed[j, 5]),
+        )
     if space_x < room[LEAST] or space_y < room[LEAST + 1] or space_z < room[LEAST + 2]:
         return
     points[known, 0], points[known, 1], points[known, 2], points[known, LAST] = x, y, z, -1.0
@@ -120,30 +136,9 @@ def _add_point(x, y, z, room, placed, points, cursor):
 
 
 @helper
-def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
-    """Put box b, moved, into the build: prune points, add its projections and lines (modified in place)."""
-    new = cursor[PLACED]
-    for axis in range(3):
-        shift = x if axis == 0 else y if axis == 1 else z
-        placed[new, axis], placed[new, axis + 3] = boxes[b, axis] + shift, boxes[b, axis + 3] + shift
-    cursor[PLACED] = new + 1
-    _prune(points, new, placed, room, cursor)
-    cursor[WORK] += 7 * cursor[POINTS] + 12 * new
-    flat = room[FLAT] != 0.0
-    for axis in range(2 if flat else 3):
-        for fall in range(3):
-            if fall != axis:
-                px = placed[new, 3] if axis == 0 else placed[new, 0]
-                py = placed[new, 4] if axis == 1 else placed[new, 1]
-                pz = placed[new, 5] if axis == 2 else placed[new, 2]
-                rest = _fall(px, py, pz, fall, room, placed, new)
-                if fall == 0:
-                    px = rest
-                elif fall == 1:
-                    py = rest
-                else:
-                    pz = rest
-                _add_point(px, py, room[2] if flat else pz, room, placed, points, cursor)
+def _add_lines(new: int, state: PassState) -> None:
+    """Note the sides of a box in x and in y as lines, unless they are known."""
+    placed, lines, cursor = state.placed, state.lines, state.cursor
     for side in range(6):
         if side % 3 < 2:
             axis, known = side % 3, False
@@ -155,118 +150,176 @@ def _add_box(b, boxes, x, y, z, room, placed, points, lines, cursor):
 
 
 @helper
-def _open(standing, room, obstacles, placed, points, lines, cursor):
-    """Start a build: the least corner as first point, the walls as first lines, then the obstacles."""
-    cursor[PLACED], cursor[POINTS], cursor[MOVED] = 0, 0, 0
-    cursor[LINES], cursor[LINES + 1] = 1, 1
-    lines[0, 0], lines[1, 0] = room[0], room[1]
-    _add_point(room[0], room[1], room[2], room, placed, points, cursor)
-    for j in range(standing):
-        _add_box(j, obstacles, 0.0, 0.0, 0.0, room, placed, points, lines, cursor)
+def _add_box(b: int, boxes: Floats, position: Point, room: Floats, state: PassState) -> None:
+    """Add box b, moved to a position, to the build: shorten points, add its extreme points and its lines."""
+    placed, cursor = state.placed, state.cursor
+    x, y, z = position
+    new = cursor[PLACED]
+    for axis in range(3):
+        shift = x if axis == 0 else y if axis == 1 else z
+        placed[new, axis], placed[new, axis + 3] = boxes[b, axis] + shift, boxes[b, axis + 3] + shift
+    cursor[PLACED] = new + 1
+    _shorten_points(room, state)
+    cursor[WORK] += 7 * cursor[POINTS] + 12 * new
+    flat = room[FLAT] != 0.0
+    for axis in range(2 if flat else 3):
+        for down in range(3):
+            if down != axis:
+                px = placed[new, 3] if axis == 0 else placed[new, 0]
+                py = placed[new, 4] if axis == 1 else placed[new, 1]
+                pz = placed[new, 5] if axis == 2 else placed[new, 2]
+                rest = _projection((px, py, pz), down, room, placed, new)
+                if down == 0:
+                    px = rest
+                elif down == 1:
+                    py = rest
+                else:
+                    pz = rest
+                _add_point(px, py, room[2] if flat else pz, room, state)
+    _add_lines(new, state)
 
 
 @helper
-def _look(zones, placed, count, build, looks):
-    """Note a build's height and the area of the rectangle around its boxes (looks modified in place)."""
+def _open_build(standing: int, instance: BoxInstance, state: PassState) -> None:
+    """Open a build: the least corner is its first point, the walls are its first lines; add the obstacles."""
+    room, cursor, lines = instance.room, state.cursor, state.lines
+    cursor[PLACED], cursor[POINTS], cursor[MOVED] = 0, 0, 0
+    cursor[LINES], cursor[LINES + 1] = 1, 1
+    lines[0, 0], lines[1, 0] = room[0], room[1]
+    _add_point(room[0], room[1], room[2], room, state)
+    for j in range(standing):
+        _add_box(j, instance.obstacles, (0.0, 0.0, 0.0), room, state)
+
+
+@helper
+def _measure_build(build: int, zones: int, state: PassState) -> None:
+    """Note the height of a build and the area of the rectangle around its boxes in `state.extents`."""
+    placed = state.placed
     x0 = y0 = np.inf
     x1 = y1 = z1 = 0.0
-    for j in range(zones, count):
+    for j in range(zones, state.cursor[PLACED]):
         x0, y0 = min(x0, placed[j, 0]), min(y0, placed[j, 1])
         x1, y1, z1 = max(x1, placed[j, 3]), max(y1, placed[j, 4]), max(z1, placed[j, 5])
-    looks[build, 0], looks[build, 1] = z1, max(0.0, x1 - x0) * max(0.0, y1 - y0)
+    state.extents[build, 0], state.extents[build, 1] = z1, max(0.0, x1 - x0) * max(0.0, y1 - y0)
+
+
+@helper
+def _add_candidates(orientation: int, instance: BoxInstance, state: PassState) -> int:
+    """Write the candidates of an orientation at the extreme points; return how many there are.
+
+    In an empty build its known feasible position is a candidate too.
+    """
+    points, candidates, cursor = state.points, state.candidates, state.cursor
+    room, boxes, orientations = instance.room, instance.boxes, instance.orientations
+    found, first, last = 0, instance.first_box[orientation], instance.first_box[orientation + 1]
+    # a single box that is longer than the residual space of a point cannot lie there
+    least = -room[SLACK] if last - first == 1 else -np.inf
+    flat = room[FLAT] != 0.0
+    size_x, size_y, size_z = (
+        orientations[orientation, 0],
+        orientations[orientation, 1],
+        orientations[orientation, 2],
+    )
+    count = cursor[POINTS]
+    cursor[WORK] += count
+    for p in range(count):
+        over_x, over_y, over_z = points[p, 3] - size_x, points[p, 4] - size_y, points[p, 5] - size_z
+        if over_x >= least and over_y >= least and over_z >= least:
+            for k in range(first, last):
+                candidates[found, 0] = points[p, 0] - boxes[k, 0]
+                candidates[found, 1] = points[p, 1] - boxes[k, 1]
+                candidates[found, 2] = room[2] if flat else points[p, 2] - boxes[k, 2]
+                candidates[found, 3] = over_x + over_y + over_z
+                candidates[found, 4] = p
+                found += 1
+    if cursor[MOVED] == 0 and not np.isnan(orientations[orientation, 3]):
+        for i in range(3):
+            candidates[found, i] = orientations[orientation, 3 + i]
+        candidates[found, 3], candidates[found, 4] = 1e9, -1.0
+        found += 1
+    return found
+
+
+@helper
+def _place_item(item: int, standing: int, instance: BoxInstance, rule: Floats, state: PassState) -> bool:
+    """Write the best position of an item in the open build to `state.best`; return whether there is one."""
+    cursor, best = state.cursor, state.best
+    best[MERIT] = np.inf
+    grid = cursor[LINES] * cursor[LINES + 1] <= rule[GRID]
+    item_type = instance.type_of[item]
+    for orientation in range(
+        instance.first_orientation[item_type], instance.first_orientation[item_type + 1]
+    ):
+        found = _add_candidates(orientation, instance, state)
+        fixed_height = found
+        if instance.room[RADIUS] > 0.0:
+            found = add_round_positions(orientation, instance, rule, state, found)
+        if grid:
+            own = (instance.first_box[orientation], instance.first_box[orientation + 1])
+            found = add_crossings(own, instance, state, found)
+        if found:
+            cursor[WORK] += found
+            choose(orientation, fixed_height, found, standing, instance, rule, state)
+    return bool(best[MERIT] < np.inf)
 
 
 @njit(cache=True)
-def pack(order, shapes, room, obstacles, zones, style, most_builds, work, answer, scratch):
+def pack(
+    order: Int64s,
+    instance: BoxInstance,
+    rule: Floats,
+    most_builds: int,
+    work: float,
+    arrangement: Arrangement,
+    state: PassState,
+) -> int:
     """Pack the items of `order` into at most `most_builds` builds; pause after `work` comparisons.
 
-    Start with the cursor all 0 but LEFT = len(order), `failed` and `answer.build` all -1; to go on after
-    PAUSED call again with the same arguments. Several items of one kind cost one failed search a build.
+    Begin with a cursor of 0 but LEFT = len(order), with `failed` and `arrangement.build` all -1. To go on after
+    PAUSED, call again with the same arguments. Several items of one type cost one failed search per build.
 
     Parameters
     ----------
     order
         ``(m,)`` int64 items.
-    room
-        ``(15,)`` mm: corners, then what `AXIS_X` and so on name.
-    obstacles, zones
-        ``(m, 6)`` mm corners; the first `zones` stand in every build, the others in the first one.
-    style
-        ``(6,)`` how places are chosen, see `KIND`.
+    rule
+        ``(6,)`` placement rule, see `MERIT_OF`.
+    arrangement, state
+        Modified in place.
 
     Returns
     -------
     int
-        FINISHED, PAUSED or GAVE_UP; `answer` and `scratch` are modified in place.
+        FINISHED, PAUSED or GAVE_UP.
     """
-    kinds, first_variant, first_box, variants, boxes = shapes
-    placed, points, lines, candidates, failed, cursor, best = scratch
+    cursor, best, failed = state.cursor, state.best, state.failed
     cursor[WORK] = 0
-    slack, flat, is_round = room[SLACK], room[FLAT] != 0.0, room[RADIUS] > 0.0
     while cursor[BUILD] < most_builds:
         build = cursor[BUILD]
-        standing = obstacles.shape[0] if build == 0 else zones
+        standing = instance.obstacles.shape[0] if build == 0 else instance.zones
         if cursor[INDEX] == 0:
-            _open(standing, room, obstacles, placed, points, lines, cursor)
+            _open_build(standing, instance, state)
         while cursor[INDEX] < order.size:
             if cursor[WORK] > work:
                 return PAUSED
             item = order[cursor[INDEX]]
-            kind = kinds[item]
+            item_type = instance.type_of[item]
             cursor[INDEX] += 1
-            if answer.build[item] >= 0 or failed[kind] == build:
+            if arrangement.build[item] >= 0 or failed[item_type] == build:
                 continue
-            best[MERIT] = np.inf
-            empty = cursor[MOVED] == 0
-            grid = cursor[LINES] * cursor[LINES + 1] <= style[GRID]
-            for v in range(first_variant[kind], first_variant[kind + 1]):
-                found, first, last = 0, first_box[v], first_box[v + 1]
-                # a single box that is longer than a point's residual space cannot lie there
-                least = -slack if last - first == 1 else -np.inf
-                count, size_x, size_y, size_z = cursor[POINTS], variants[v, 0], variants[v, 1], variants[v, 2]
-                cursor[WORK] += count
-                for p in range(count):
-                    over_x, over_y, over_z = (
-                        points[p, 3] - size_x,
-                        points[p, 4] - size_y,
-                        points[p, 5] - size_z,
-                    )
-                    if over_x >= least and over_y >= least and over_z >= least:
-                        for k in range(first, last):
-                            candidates[found, 0] = points[p, 0] - boxes[k, 0]
-                            candidates[found, 1] = points[p, 1] - boxes[k, 1]
-                            candidates[found, 2] = room[2] if flat else points[p, 2] - boxes[k, 2]
-                            candidates[found, 3] = over_x + over_y + over_z
-                            candidates[found, 4] = p
-                            found += 1
-                if empty and not np.isnan(variants[v, 3]):
-                    for i in range(3):
-                        candidates[found, i] = variants[v, 3 + i]
-                    candidates[found, 3], candidates[found, 4] = 1e9, -1.0
-                    found += 1
-                known = found
-                if is_round:
-                    found = round_places(v, variants, room, style, lines, cursor, candidates, found)
-                if grid:
-                    found = crossings(first, last, boxes, room, lines, cursor, candidates, found)
-                if found:
-                    cursor[WORK] += found
-                    choose(
-                        v, known, found, shapes, room, style, placed, points, cursor, standing, candidates, best
-                    )  # fmt: skip
-            if best[MERIT] == np.inf:
-                failed[kind] = build
+            if not _place_item(item, standing, instance, rule, state):
+                failed[item_type] = build
                 continue
-            chosen = int(best[VARIANT])
-            answer.build[item], answer.variant[item] = build, chosen
+            chosen = int(best[ORIENTATION])
+            arrangement.build[item], arrangement.orientation[item] = build, chosen
             for i in range(3):
-                answer.place[item, i] = best[PLACE + i]
-            for k in range(first_box[chosen], first_box[chosen + 1]):
-                x, y, z = best[PLACE], best[PLACE + 1], best[PLACE + 2]
-                _add_box(k, boxes, x, y, z, room, placed, points, lines, cursor)
+                arrangement.position[item, i] = best[POSITION + i]
+            position = (best[POSITION], best[POSITION + 1], best[POSITION + 2])
+            for k in range(instance.first_box[chosen], instance.first_box[chosen + 1]):
+                _add_box(k, instance.boxes, position, instance.room, state)
             cursor[MOVED] += 1
             cursor[LEFT] -= 1
-        _look(zones, placed, cursor[PLACED], build, answer.looks)
+        _measure_build(build, instance.zones, state)
         cursor[BUILD] += 1
         cursor[INDEX] = 0
         if cursor[LEFT] == 0:

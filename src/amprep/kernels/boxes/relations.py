@@ -1,10 +1,8 @@
-"""Do a few boxes fit one room, compiled and exact: by which of two boxes is before the other along which axis.
+"""Decide exactly whether a few boxes of fixed orientation fit one room together, compiled.
 
-Boxes of fixed orientation can be packed exactly when every pair can be told apart by one axis, so that along
-each axis the longest chain of boxes is no longer than the room (Fekete and Schepers, *A combinatorial
-characterization of higher-dimensional orthogonal packing*, Mathematics of Operations Research 29 (2004),
-doi:10.1287/moor.1030.0079; Martello, Pisinger, Vigo, den Boef and Korst, ACM TOMS 33 (2007),
-doi:10.1145/1206040.1206047).
+After Fekete and Schepers, *A combinatorial characterization of higher-dimensional orthogonal packing*, Mathematics
+of Operations Research 29 (2004), doi:10.1287/moor.1030.0079, and Martello, Pisinger, Vigo, den Boef and Korst, ACM
+TOMS 33 (2007), doi:10.1145/1206040.1206047.
 """
 
 from typing import NamedTuple
@@ -13,13 +11,13 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.boxes.places import helper
+from amprep.kernels.helper import helper
 
 IMPOSSIBLE, POSSIBLE, UNKNOWN = 0, 1, 2
-"""Verdicts of `fit_together`: no packing; there is one; not settled within the limit."""
+"""Verdicts of `fit_together`: there is no packing; there is one; the limit ended the search."""
 
 FIRST, SECOND, OPTION, AXES = 0, 1, 2, 3
-"""Places in the trail: the pair decided, its option, and a bit for each axis that had a relation before."""
+"""Columns of the trail: the two boxes of a decision, its option, and a bit for each axis that had a relation before."""
 
 
 class RelationScratch(NamedTuple):
@@ -28,9 +26,9 @@ class RelationScratch(NamedTuple):
     Attributes
     ----------
     head, tail
-        ``(m (m - 1) / 2 + 1, 3, m)`` mm: the longest chain before, and behind, each box along each axis.
+        ``(m (m - 1) / 2 + 1, 3, m)`` mm: lengths of the longest chains before and behind each box along each axis.
     axis
-        ``(m, m)`` the axis along which the first is before the second; -1: not decided so.
+        ``(m, m)`` the axis along which the first box is before the second one; -1: not decided.
     trail
         ``(m (m - 1) / 2 + 1, 4)`` decisions.
     """
@@ -50,9 +48,16 @@ def relation_scratch(most: int) -> RelationScratch:
     )
 
 
+# Strategy. Boxes of fixed orientation fit exactly when for every pair an axis and an order can be chosen such that
+# along each axis no chain of boxes is longer than the room. The search decides one pair at a time, the pair with the
+# fewest options first, and lengthens the chains through it; a pair without an option makes it go back. Of the two
+# orders along an axis without relations only one is tried, because the mirrored packing is as good. Each decision
+# takes time in the square of the number of boxes; their number is exponential at worst and limited.
+
+
 @helper
-def _open_pair(count, size, room, depth, scratch):
-    """Note the undecided pair with the fewest possible relations in the trail; return how many it has."""
+def _open_pair(count: int, size: Floats, room: Floats, depth: int, scratch: RelationScratch) -> int:
+    """Write the undecided pair with the fewest options to the trail; return how many it has."""
     head, tail, axis, trail = scratch
     fewest = 7
     for i in range(count):
@@ -73,8 +78,8 @@ def _open_pair(count, size, room, depth, scratch):
 
 
 @helper
-def _lengthen(count, a, size, axis, chain, forward):
-    """Let chains along axis `a` grow along the relations (modified in place); false when there is a cycle."""
+def _lengthen(count: int, a: int, size: Floats, axis: Int64s, chain: Floats, forward: bool) -> bool:
+    """Lengthen the chains along axis `a` by its relations (in place); return False when there is a cycle."""
     for _ in range(count + 1):
         grown = False
         for p in range(count):
@@ -88,8 +93,10 @@ def _lengthen(count, a, size, axis, chain, forward):
 
 
 @helper
-def _relate(count, i, j, a, size, room, depth, scratch):
-    """Put i before j along `a` and work out the chains of the next depth; say whether all fit still."""
+def _relate(
+    count: int, i: int, j: int, a: int, size: Floats, room: Floats, depth: int, scratch: RelationScratch
+) -> bool:
+    """Put box i before box j along axis `a`, compute the chains of the next depth; return whether all fit."""
     head, tail, axis, _ = scratch
     for b in range(3):
         for k in range(count):
@@ -106,16 +113,27 @@ def _relate(count, i, j, a, size, room, depth, scratch):
 
 
 @njit(cache=True, nogil=True)
-def fit_together(count, size, room, limit, scratch):
-    """Tell whether boxes ``(count, 3)`` of fixed orientation fit a room ``(3,)`` together.
+def fit_together(
+    count: int, size: Floats, room: Floats, limit: int, scratch: RelationScratch
+) -> tuple[int, int]:
+    """Decide whether boxes of fixed orientation fit a room together.
 
-    Along an axis the first relation has one direction only: the mirrored packing is as good.
+    Parameters
+    ----------
+    count, size
+        Number of boxes, and ``(count or more, 3)`` mm their sizes.
+    room
+        ``(3,)`` mm.
+    limit
+        Greatest number of decisions.
+    scratch
+        Work arrays, modified in place.
 
     Returns
     -------
     (int, int)
-        IMPOSSIBLE, POSSIBLE, or UNKNOWN after `limit` decisions; and how many decisions it took. After
-        POSSIBLE the places of the boxes are ``scratch.head[count (count - 1) / 2, :, :count]``.
+        IMPOSSIBLE, POSSIBLE, or UNKNOWN after `limit` decisions; and the number of decisions made. After
+        POSSIBLE the positions of the boxes are ``scratch.head[count (count - 1) / 2, :, :count]``.
     """
     head, tail, axis, trail = scratch
     pairs = count * (count - 1) // 2

@@ -1,4 +1,6 @@
-"""Boxes in rows, rows in layers, layers in builds, first fit, compiled."""
+"""Boxes in rows, rows in layers, layers in builds, compiled."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -8,6 +10,27 @@ from amprep.arrays import Floats, Int64s
 ROUNDING = 1e-9
 
 
+class RowScratch(NamedTuple):
+    """Work arrays of `fill_rows` for m boxes.
+
+    Attributes
+    ----------
+    rows
+        ``(m, 6)`` of each row: free length, depth, height, start across, start up, build.
+    layers
+        ``(m, 4)`` of each layer: free depth, height, start up, build.
+    left
+        ``(m,)`` free height of each build.
+    """
+
+    rows: Floats
+    layers: Floats
+    left: Floats
+
+
+# Strategy. First fit on three levels: each box goes into the first row with enough length, depth and height; else it
+# starts a row in the first layer with enough depth and height; else a layer in the first build with enough height;
+# else a build. A row is as deep, and a layer as high, as the box that starts it. Time: boxes times rows.
 @njit(cache=True)
 def fill_rows(
     order: Int64s,
@@ -16,31 +39,29 @@ def fill_rows(
     flat: bool,
     builds: int,
     build: Int64s,
-    place: Floats,
-    rows: Floats,
-    layers: Floats,
-    left: Floats,
+    position: Floats,
+    scratch: RowScratch,
 ) -> None:
     """Put each box first fit into a row, else a row into a layer, else a layer into a build.
 
     Parameters
     ----------
     order
-        ``(m,)`` which boxes, in this order.
-    size, place
-        ``(n, 3)`` mm: along a row, across it, up; `place` is filled for what is placed.
+        ``(m,)`` the boxes, in this order.
+    size, position
+        ``(n, 3)`` mm: along a row, across it, up. `position` is filled for the boxes that are placed.
     room
-        ``(3,)`` mm, in the same order.
+        ``(3,)`` mm, in the same order of axes.
     flat
-        Whether there is one layer a build.
+        Whether a build has one layer only.
     builds
-        Most builds.
+        Greatest number of builds.
     build
-        ``(n,)`` filled for what is placed.
-    rows, layers, left
-        ``(m, 6)``, ``(m, 4)`` and ``(m,)`` work arrays. Of each row: free length, depth, height, start across and
-        up, build; of each layer: free depth, height, start up, build; of each build its free height.
+        ``(n,)`` filled for the boxes that are placed.
+    scratch
+        Modified in place.
     """
+    rows, layers, left = scratch
     row_count, layer_count, build_count = 0, 0, 0
     for item in order:
         long, deep, high = size[item, 0] - ROUNDING, size[item, 1] - ROUNDING, size[item, 2] - ROUNDING
@@ -70,5 +91,9 @@ def fill_rows(
             layers[layer, 0] -= size[item, 1]
             row_count += 1
         build[item] = int(rows[row, 5])
-        place[item, 0], place[item, 1], place[item, 2] = room[0] - rows[row, 0], rows[row, 3], rows[row, 4]
+        position[item, 0], position[item, 1], position[item, 2] = (
+            room[0] - rows[row, 0],
+            rows[row, 3],
+            rows[row, 4],
+        )
         rows[row, 0] -= size[item, 0]

@@ -15,9 +15,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from amprep.arrays import Bytes, Int32s, Int64s
-from amprep.kernels.boxes.places import helper
 from amprep.kernels.flow.residual import Carried, Room, shift
 from amprep.kernels.flow.shortest_paths import Network
+from amprep.kernels.helper import helper
 
 Potentials = NDArray[np.int16] | NDArray[np.int32]
 

@@ -3,9 +3,9 @@
 from numba import njit
 
 from amprep.arrays import Bytes, Int32s, Int64s
-from amprep.kernels.boxes.places import helper
 from amprep.kernels.flow.residual import Carried, Room, shift
 from amprep.kernels.flow.shortest_paths import Network
+from amprep.kernels.helper import helper
 
 UNSEEN, OPEN, CLOSED = 0, 1, 2
 """A state that no search has come to; that is on a way that was found; that a search has left in vain."""

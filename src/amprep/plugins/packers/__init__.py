@@ -31,14 +31,14 @@ def amprep_packers() -> Iterable[Packer]:
     """Yield the built-in packers."""
     yield Packer(
         name="extreme-points",
-        summary="The best of many sortings, each item at its best extreme point (Crainic, Perboli, Tadei).",
+        summary="The best of many orderings, each item at its best extreme point (Crainic, Perboli, Tadei).",
         run=later("amprep.plugins.packers.extreme_points:pack_extreme_points"),
         accepts=_ALL,
         params=ExtremePointsParams,
     )
     yield Packer(
         name="auto",
-        summary="Extreme points at once, then a search that packs a few builds anew until one is saved.",
+        summary="Extreme points first, then ruin and recreate over builds, with a proven bound.",
         run=later("amprep.plugins.packers.auto:pack_auto"),
         accepts=_ALL,
         params=AutoParams,
@@ -66,7 +66,7 @@ def amprep_packers() -> Iterable[Packer]:
     )
     yield Packer(
         name="ip",
-        summary="The thesis's integer program, by HiGHS or any solver of pulp, after extreme points.",
+        summary="The thesis's integer program after extreme points, by HiGHS or any solver of pulp.",
         run=later("amprep.plugins.packers.integer_program:pack_ip"),
         accepts=replace(_BOXES, objectives=_BUILDS | _FILL, zones=True, fixed=True),
         params=IpParams,

@@ -1,24 +1,24 @@
-"""Packings of layers of rows: nothing is quicker, and most of the room is used when boxes are small."""
+"""The packer `sweep`: builds sliced into layers of rows; fast, and dense when the boxes are small."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.boxes.rows import fill_rows
+from amprep.kernels.boxes.records import Arrangement
+from amprep.kernels.boxes.rows import RowScratch, fill_rows
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packers.instance.orders import Pass
-from amprep.plugins.packers.instance.prepare import Scene, prepare
-from amprep.plugins.packers.instance.solution import Solution, as_packing
+from amprep.plugins.packers.bounds.combinatorial import packing_bound
+from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
+from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
 from amprep.plugins.packers.params import SweepParams
 
 
 class Slicing(NamedTuple):
-    """Axes along which boxes stand in a row, rows in a layer, layers in a build; and the order of boxes."""
+    """Axes along which boxes form a row, rows a layer, layers a build; and the order of the boxes."""
 
     along: int
     across: int
@@ -26,86 +26,11 @@ class Slicing(NamedTuple):
     order: Int64s
 
 
-def slicings(scene: Scene, items: Int64s) -> Iterator[Slicing]:
-    """Yield the choices of axes; for `fill` boxes worth much for their volume come first, or high ones."""
-    value = np.array([item.value for item in scene.problem.items])
-    for along, across, up in permutations(range(3)):
-        if scene.space.flat and up != 2:
-            continue
-        size, _ = _turned(scene, across, up)
-        by_height = (items, -size[items, along], -size[items, across], -size[items, up])
-        yield Slicing(along, across, up, items[np.lexsort(by_height)])
-        if scene.problem.objective == "fill":
-            density = value[items] / np.maximum(size[items].prod(axis=1), 1e-12)
-            yield Slicing(along, across, up, items[np.lexsort((*by_height, -density))])
+class SlicedPacking(NamedTuple):
+    """The packing of one slicing; its rank is smaller for a better one."""
 
-
-def _turned(scene: Scene, across: int, up: int) -> tuple[Floats, Int64s]:
-    """Return each item's size ``(n, 3)`` with clearance, and its variant: the lowest that fits."""
-    variants = [variant for kind in scene.kinds for variant in kind]
-    first = np.cumsum([0, *(len(kind) for kind in scene.kinds)])
-    owner = np.repeat(np.arange(len(scene.kinds)), np.diff(first))
-    size = np.array([variant.size for variant in variants]).reshape(-1, 3)
-    unfit = np.array([not np.isfinite(variant.home[0]) for variant in variants], np.bool_)
-    order = np.lexsort((size[:, across], size[:, up], unfit, owner))
-    chosen = order[first[:-1]]
-    return (size[chosen] + scene.problem.clearance)[scene.kind], (chosen - first[:-1])[scene.kind]
-
-
-def pack_rows(scene: Scene, slicing: Slicing) -> Solution:
-    """Return the packing of one slicing, first fit over rows, layers and builds.
-
-    Rank is by builds (or value), then by the sum of the boxes' heights in their builds.
-    """
-    axes, order = list(slicing[:3]), slicing.order
-    size, variant = _turned(scene, slicing.across, slicing.up)
-    room = scene.space.hi + scene.problem.clearance - scene.space.lo + scene.space.slack
-    n, m = len(scene.kind), len(order)
-    build, place = np.full(n, -1, np.int64), np.zeros((n, 3))
-    turned = np.zeros((n, 3))
-    most = 1 if scene.problem.objective == "fill" else n
-    work = np.zeros((m, 6)), np.zeros((m, 4)), np.zeros(m)
-    fill_rows(order, size[:, axes], room[axes], scene.space.flat, most, build, turned, *work)
-    place[:, axes] = turned
-    place[build >= 0] += scene.space.lo
-    return Solution(Pass(order, np.empty(0)), _rank(scene, build, place + size), True, build, variant, place)
-
-
-def _rank(scene: Scene, build: Int64s, far: Floats) -> tuple[float, ...]:
-    """Return what is smaller for a better packing: fewer builds or more value, then lower builds."""
-    placed = build >= 0
-    height = float(far[placed, 2].sum())
-    if scene.problem.objective == "fill":
-        return (-sum(scene.problem.items[i].value for i in np.flatnonzero(placed).tolist()), height)
-    return (float(build.max(initial=-1)), height)
-
-
-def best_rows(scene: Scene, items: Int64s) -> Solution:
-    """Return the best of all slicings of these items."""
-    return min((pack_rows(scene, each) for each in slicings(scene, items)), key=lambda found: found.rank)
-
-
-def with_rows(scene: Scene, found: Solution) -> Solution:
-    """Complete a pass that had to end early: rows of what it left, or of everything where that takes fewer builds.
-
-    A round plate, zones, or a build to be filled leave it as it is.
-    """
-    space, fixed = scene.space, scene.problem.fixed
-    if scene.problem.objective == "fill" or space.radius or len(space.zone_lo):
-        return found
-    loose = np.flatnonzero(scene.free & (found.build < 0))
-    rows = best_rows(scene, loose)
-    begun = max(int(found.build.max(initial=-1)) + 1, 1 if fixed else 0)
-    new = rows.build >= 0
-    build = np.where(new, rows.build + begun, found.build)
-    variant = np.where(new, rows.variant, found.variant)
-    place = np.where(new[:, None], rows.place, found.place)
-    if not fixed:
-        whole = best_rows(scene, np.flatnonzero(scene.free))
-        if whole.build.max(initial=-1) < build.max(initial=-1):
-            build, variant, place = whole.build, whole.variant, whole.place
-    rank = (0.0, float(build.max(initial=-1) + 1), np.inf, np.inf)
-    return replace(found, rank=rank, complete=True, build=build, variant=variant, place=place)
+    arrangement: Arrangement
+    rank: tuple[float, ...]
 
 
 def pack_sweep(
@@ -113,18 +38,100 @@ def pack_sweep(
 ) -> Packing:
     """Pack by slicing builds along two axes, which leaves one-dimensional packing (Sweep 2003, thesis 2.2).
 
-    Boxes come by decreasing height; each goes first fit into a row that is deep and high enough, else starts
-    a row in the first layer that is high enough, else a layer in the first build with room, else a build. All
-    choices of axes are tried (without stacking there is one layer, on the plate), and the best packing is
-    kept. An item of several boxes takes the room of the box around it. No random numbers are drawn.
+    The boxes are sorted by decreasing height. Each goes first fit into a row with enough depth and height, else it
+    starts a row in the first layer with enough height, else a layer in the first build with room, else a build. All
+    choices of axes are tried and the best packing is kept. Without stacking there is one layer, on the plate. An
+    item of several boxes takes the room of its enclosing box. No random numbers are drawn.
     """
     del rng
-    scene = prepare(problem)
-    chosen = list(slicings(scene, np.flatnonzero(scene.free)))[: params.slicings or None]
-    best = pack_rows(scene, chosen[0])
+    instance = prepare(problem)
+    chosen = list(slicings(instance, np.flatnonzero(instance.free)))[: params.slicings or None]
+    best, reason = pack_rows(instance, chosen[0]), "finished"
     for number, slicing in enumerate(chosen[1:], start=1):
         if stop():
-            return as_packing(scene, best, stop.reason)
+            reason = stop.reason
+            break
         progress(number / len(chosen), "trying slicings")
-        best = min(best, pack_rows(scene, slicing), key=lambda solution: solution.rank)
-    return as_packing(scene, best, "finished")
+        best = min(best, pack_rows(instance, slicing), key=lambda found: found.rank)
+    return as_packing(instance, PackerResult(best.arrangement, packing_bound(instance), reason))
+
+
+def slicings(instance: PreparedInstance, items: Int64s) -> Iterator[Slicing]:
+    """Yield the choices of axes; in a fill problem the boxes are sorted by value per volume, and by height."""
+    value = np.array([item.value for item in instance.problem.items])
+    for along, across, up in permutations(range(3)):
+        if instance.space.flat and up != 2:
+            continue
+        size, _ = _turned(instance, across, up)
+        by_height = (items, -size[items, along], -size[items, across], -size[items, up])
+        yield Slicing(along, across, up, items[np.lexsort(by_height)])
+        if instance.filling:
+            density = value[items] / np.maximum(size[items].prod(axis=1), 1e-12)
+            yield Slicing(along, across, up, items[np.lexsort((*by_height, -density))])
+
+
+def _turned(instance: PreparedInstance, across: int, up: int) -> tuple[Floats, Int64s]:
+    """Return each item's size ``(n, 3)`` mm with clearance, and its orientation: the lowest that fits."""
+    first = instance.first_orientation
+    owner = np.repeat(np.arange(len(instance.types)), np.diff(first))
+    size = np.array([orientation.size for orientation in instance.orientations]).reshape(-1, 3)
+    unfit = np.array([not orientation.fits for orientation in instance.orientations], np.bool_)
+    chosen = np.lexsort((size[:, across], size[:, up], unfit, owner))[first[:-1]]
+    return (size[chosen] + instance.problem.clearance)[instance.type_of], chosen[instance.type_of]
+
+
+def pack_rows(instance: PreparedInstance, slicing: Slicing) -> SlicedPacking:
+    """Return the packing of one slicing, first fit over rows, layers and builds.
+
+    It is ranked by builds (or value), then by the sum of the heights that the boxes reach in their builds.
+    """
+    axes, order = list(slicing[:3]), slicing.order
+    size, orientation = _turned(instance, slicing.across, slicing.up)
+    space = instance.space
+    room = space.hi + instance.problem.clearance - space.lo + space.slack
+    n, m = len(instance.type_of), len(order)
+    build, position = np.full(n, -1, np.int64), np.zeros((n, 3))
+    turned = np.zeros((n, 3))
+    most = 1 if instance.filling else n
+    scratch = RowScratch(np.zeros((m, 6)), np.zeros((m, 4)), np.zeros(m))
+    fill_rows(order, size[:, axes], room[axes], space.flat, most, build, turned, scratch)
+    position[:, axes] = turned
+    position[build >= 0] += space.lo
+    return SlicedPacking(Arrangement(build, orientation, position), _rank(instance, build, position + size))
+
+
+def _rank(instance: PreparedInstance, build: Int64s, far: Floats) -> tuple[float, ...]:
+    """Return the rank: fewer builds or more value first, then lower builds."""
+    placed = build >= 0
+    height = float(far[placed, 2].sum())
+    if instance.filling:
+        return (-sum(instance.problem.items[i].value for i in np.flatnonzero(placed).tolist()), height)
+    return (float(build.max(initial=-1)), height)
+
+
+def best_rows(instance: PreparedInstance, items: Int64s) -> Arrangement:
+    """Return the best of all slicings of these items."""
+    packed = (pack_rows(instance, slicing) for slicing in slicings(instance, items))
+    return min(packed, key=lambda found: found.rank).arrangement
+
+
+def with_rows(instance: PreparedInstance, found: Arrangement) -> Arrangement | None:
+    """Complete an arrangement: rows of its unassigned items, or of all items where that takes fewer builds.
+
+    The result is None on a round plate, beside forbidden zones, and in a fill problem, where rows are not packed.
+    """
+    space, fixed = instance.space, instance.problem.fixed
+    if instance.filling or space.radius or len(space.zone_lo):
+        return None
+    rows = best_rows(instance, np.flatnonzero(instance.free & (found.build < 0)))
+    begun = max(found.builds, 1 if fixed else 0)
+    new = rows.build >= 0
+    completed = Arrangement(
+        np.where(new, rows.build + begun, found.build),
+        np.where(new, rows.orientation, found.orientation),
+        np.where(new[:, None], rows.position, found.position),
+    )
+    if fixed:
+        return completed
+    whole = best_rows(instance, np.flatnonzero(instance.free))
+    return whole if whole.builds < completed.builds else completed

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes, union_volume
+from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes, union_volume
 
 
 def space(size=(20.0, 20.0, 10.0), *, radius=0.0, zones=(), flat=False):
@@ -37,33 +37,33 @@ def test_overlaps_count_once_in_a_union():
 
 
 def test_a_box_that_is_exactly_as_large_fits():
-    assert find_home(*box(20, 20, 10), space()) is not None
-    assert find_home(*box(20.001, 20, 10), space()) is None
+    assert find_feasible_position(*box(20, 20, 10), space()) is not None
+    assert find_feasible_position(*box(20.001, 20, 10), space()) is None
 
 
 def test_a_box_fits_a_circle_up_to_its_diagonal():
     room = space(radius=10.0)
-    assert find_home(*box(12, 16, 1), room) is not None
-    assert find_home(*box(12.01, 16, 1), room) is None
+    assert find_feasible_position(*box(12, 16, 1), room) is not None
+    assert find_feasible_position(*box(12.01, 16, 1), room) is None
 
 
 def test_an_item_of_two_boxes_may_fit_a_circle_although_its_enclosing_box_does_not():
     # a cross of two bars of 19 x 2: the enclosing square of 19 has a diagonal of 26.9
     cross = np.array([[0, 8.5, 0], [8.5, 0, 0]]), np.array([[19, 10.5, 1], [10.5, 19, 1]])
-    assert find_home(*cross, space(radius=10.0)) is not None
-    assert find_home(*box(19, 19, 1), space(radius=10.0)) is None
+    assert find_feasible_position(*cross, space(radius=10.0)) is not None
+    assert find_feasible_position(*box(19, 19, 1), space(radius=10.0)) is None
 
 
 def test_an_item_off_the_middle_of_its_enclosing_box_is_still_found_in_a_circle():
     # a bar with a bump: the least circle around it is not centred on the enclosing box
     shape = np.array([[0, 0, 0], [8, 0, 0]], float), np.array([[19.5, 2, 1], [12, 9, 1]], float)
-    assert find_home(*shape, space(radius=10.0)) is not None
+    assert find_feasible_position(*shape, space(radius=10.0)) is not None
 
 
 def test_without_stacking_the_item_must_stand_on_the_plate():
     below = [(0, 0, 0, 20, 20, 3)]
-    assert find_home(*box(5, 5, 5), space(zones=below))[2] == 3.0
-    assert find_home(*box(5, 5, 5), space(zones=below, flat=True)) is None
+    assert find_feasible_position(*box(5, 5, 5), space(zones=below))[2] == 3.0
+    assert find_feasible_position(*box(5, 5, 5), space(zones=below, flat=True)) is None
 
 
 @examples(60)
@@ -90,5 +90,5 @@ def test_whatever_dense_sampling_finds_is_found(data):
             allowed &= np.hypot(*away.T) <= 10
         for zone in zones:
             allowed &= (far <= np.array(zone[:2])).any(axis=1) | (near >= np.array(zone[3:5])).any(axis=1)
-    home = find_home(lo, hi, room)
+    home = find_feasible_position(lo, hi, room)
     assert home is not None or not allowed.any()

@@ -9,7 +9,7 @@ from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers.auto import pack_auto
-from amprep.plugins.packers.auto.ruin_and_recreate import _nothing_seen
+from amprep.plugins.packers.auto.ruin_and_recreate import no_builds
 from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.params import AutoParams, ExtremePointsParams
 
@@ -30,8 +30,8 @@ def test_three_rooms_cut_up_without_waste_are_put_together_again():
     assert (packing.status, packing.stop_reason) == ("optimal", "bound met")
 
 
-def test_the_search_saves_builds_that_the_sortings_do_not():
-    # class 1 of Martello, Pisinger, Vigo, n = 50, instances 2 and 3: sortings alone need one build more
+def test_the_search_saves_builds_that_the_orderings_do_not():
+    # class 1 of Martello, Pisinger, Vigo, n = 50, instances 2 and 3: orderings alone need one build more
     from amprep.testing.packing_instances import mpv_instance
 
     for index, builds in ((2, 14), (3, 14)):
@@ -71,7 +71,7 @@ def test_filling_ends_when_all_is_placed():
     assert (packing.status, packing.stop_reason, packing.bound) == ("optimal", "bound met", 1000.0)
 
 
-def test_filling_is_never_worse_than_by_the_sortings():
+def test_filling_is_never_worse_than_by_the_orderings():
     task = problem(np.random.default_rng(6).integers(2, 7, (40, 3)).tolist(), objective="fill")
     start = pack_extreme_points(
         task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), progress=silent
@@ -94,7 +94,7 @@ def test_a_proof_that_ends_after_the_search_is_the_reason_too():
 
 
 def test_many_small_boxes_in_few_builds_need_no_memory_for_every_build_met():
-    held = _nothing_seen(200_000, 100_000)
+    held = no_builds(200_000, 100_000)
     assert held.item.size == 8_000_000
 
 
@@ -108,7 +108,7 @@ def test_stopped_at_once_it_says_so_and_nothing_to_pack_is_packed():
 
 
 def test_parameters_out_of_bounds_are_refused():
-    for params in ({"most_ruined": 0}, {"heat": -1.0}, {"patience": -1}, {"work": float("nan")}):
+    for params in ({"ruin_size": 0}, {"temperature": -1.0}, {"patience": -1}, {"work": float("nan")}):
         with pytest.raises(ValueError, match=next(iter(params))):
             AutoParams(**params)
 

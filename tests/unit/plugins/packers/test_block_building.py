@@ -14,6 +14,7 @@ from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers.block_building import fill_by_blocks, pack_block_building
 from amprep.plugins.packers.block_building.blocks import build_blocks
 from amprep.plugins.packers.block_building.integer_instance import integer_instance
+from amprep.plugins.packers.instance.arrangement import value_of
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import BlockBuildingParams
 
@@ -88,8 +89,9 @@ def test_boxes_keep_the_clearance_to_fixed_boxes_and_forbidden_zones():
 
 def test_fixed_items_count_in_the_value_of_a_packing():
     task = problem([(4, 4, 4)] * 5, fixed=(Placement(0, np.eye(3), np.zeros(3)),))
-    found, _ = fill_by_blocks(prepare(task), BlockBuildingParams(work=10.0), Stop(), silent)
-    assert found.rank == (-5 * 64.0,)
+    instance = prepare(task)
+    found = fill_by_blocks(instance, BlockBuildingParams(work=10.0), Stop(), silent)
+    assert value_of(instance, found.arrangement) == 5 * 64.0
 
 
 def test_a_single_box_is_pushed_into_the_lower_corner():

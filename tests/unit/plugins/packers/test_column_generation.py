@@ -13,10 +13,9 @@ from amprep.plugins.packers.column_generation import pack_column_generation, pri
 from amprep.plugins.packers.column_generation.columns import (
     Column,
     arrangement_from,
-    demand_of,
     single_columns,
 )
-from amprep.plugins.packers.column_generation.master import fractional_cover, whole_cover
+from amprep.plugins.packers.column_generation.master import fractional_cover, integer_cover
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.integer_program import pack_ip
 from amprep.plugins.packers.params import ColumnGenerationParams, IpParams
@@ -35,9 +34,9 @@ def run(given_problem, stop=None, **params):
     return packing
 
 
-def stacked(*kinds):
-    """A column of given kinds; where they stand is of no matter to a cover."""
-    return Column(np.array(kinds), np.zeros(len(kinds), np.int64), np.zeros((len(kinds), 3)))
+def column(*types):
+    """A column of given item types; positions do not matter to a cover."""
+    return Column(np.array(types), np.zeros(len(types), np.int64), np.zeros((len(types), 3)))
 
 
 side = st.integers(1, 4)
@@ -62,32 +61,32 @@ def test_pricing_proves_what_volume_does_not():
 
 def test_a_fractional_cover_of_a_triangle_prices_each_item_at_a_half():
     # builds hold any two of three items: half of each build is enough, so each item costs a half
-    cover = fractional_cover([stacked(0, 1), stacked(1, 2), stacked(0, 2)], np.ones(3, int), IpParams())
-    assert np.allclose(cover.share, 0.5)
+    cover = fractional_cover([column(0, 1), column(1, 2), column(0, 2)], np.ones(3, int), IpParams())
+    assert np.allclose(cover.fraction, 0.5)
     assert np.allclose(cover.price, 0.5)
 
 
-def test_a_whole_cover_counts_items_of_a_kind():
-    # five of a kind in builds of two: three builds, whatever the single ones
-    chosen = whole_cover([stacked(0), stacked(0, 0)], np.array([5]), IpParams(), Stop())
+def test_an_integer_cover_counts_items_of_a_type():
+    # five items of one type in builds of two: three builds, however many builds with one item there are
+    chosen = integer_cover([column(0), column(0, 0)], np.array([5]), IpParams(), Stop())
     assert len(chosen) == 3
-    assert sum(len(column.kind) for column in chosen) >= 5
+    assert sum(len(each.type_of) for each in chosen) >= 5
 
 
-def test_what_is_covered_twice_is_placed_once_and_idle_builds_are_dropped():
-    scene = prepare(problem([(1, 1, 1), (2, 1, 1), (3, 1, 1)]))
-    columns = [stacked(0, 1), stacked(1), stacked(1, 2)]
-    assert [column.kind.tolist() for column in useful(scene, columns)] == [[0, 1], [1, 2]]
-    assert arrangement_from(scene, columns).build.tolist() == [0, 0, 1]
+def test_an_item_that_is_covered_twice_is_placed_once_and_superfluous_builds_are_dropped():
+    instance = prepare(problem([(1, 1, 1), (2, 1, 1), (3, 1, 1)]))
+    columns = [column(0, 1), column(1), column(1, 2)]
+    assert [each.type_of.tolist() for each in useful(instance, columns)] == [[0, 1], [1, 2]]
+    assert arrangement_from(instance, columns).build.tolist() == [0, 0, 1]
 
 
-def test_prices_of_one_build_each_leave_nothing_worth_more_than_it_costs():
-    # items that exclude each other, each at price 1: no build is worth more than 1, and pricing proves it
-    scene = prepare(problem([(3, 3, 3), (3, 3, 4), (4, 3, 3)]))
-    cover = fractional_cover(single_columns(scene), demand_of(scene), ColumnGenerationParams())
+def test_no_build_has_a_value_above_its_cost_when_each_item_has_the_price_of_one_build():
+    # items that exclude each other, each at price 1: no build has a value above 1, and pricing proves it
+    instance = prepare(problem([(3, 3, 3), (3, 3, 4), (4, 3, 3)]))
+    cover = fractional_cover(single_columns(instance), instance.demand, ColumnGenerationParams())
     assert np.allclose(cover.price, 1.0)
     rng = np.random.default_rng(1)
-    priced = price_builds(scene, cover.price, ColumnGenerationParams(effort=1.0), rng, Stop())
+    priced = price_builds(instance, cover.price, ColumnGenerationParams(effort=1.0), rng, Stop())
     assert priced.columns == []
     assert 1.0 <= priced.bound <= 1.0 + 1e-5
 

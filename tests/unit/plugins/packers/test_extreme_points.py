@@ -204,8 +204,8 @@ def test_the_same_problem_gives_the_same_packing():
 def test_more_restarts_are_never_worse():
     rng = np.random.default_rng(6)
     problem = boxes_problem(rng.integers(10, 60, (60, 3)).tolist(), (100,) * 3)
-    few = pack(problem, params=ExtremePointsParams(sortings=1))
-    many = pack(problem, params=ExtremePointsParams(sortings=1, restarts=50))
+    few = pack(problem, params=ExtremePointsParams(orderings=1))
+    many = pack(problem, params=ExtremePointsParams(orderings=1, restarts=50))
     assert len(many.builds) <= len(few.builds)
 
 
@@ -233,7 +233,7 @@ def test_progress_rises_and_stays_below_one():
 
 
 @pytest.mark.parametrize(
-    ("bad", "value"), [("sortings", -1), ("restarts", -1), ("disturbance", 0.0), ("work", float("nan"))]
+    ("bad", "value"), [("orderings", -1), ("restarts", -1), ("disturbance", 0.0), ("work", float("nan"))]
 )
 def test_a_parameter_out_of_bounds_is_refused_with_rule_and_value(bad, value):
     with pytest.raises(ValueError, match=rf"{bad} must be .*{value}"):
@@ -262,11 +262,12 @@ def fits_one_build(sizes, room, placed=()):
     if not sizes:
         return True
     size = sizes[0]
-    for place in itertools.product(*(range(r - s + 1) for r, s in zip(room, size, strict=True))):
+    for position in itertools.product(*(range(r - s + 1) for r, s in zip(room, size, strict=True))):
         clear = all(
-            any(place[a] >= p[a] + s[a] or p[a] >= place[a] + size[a] for a in range(3)) for p, s in placed
+            any(position[a] >= p[a] + s[a] or p[a] >= position[a] + size[a] for a in range(3))
+            for p, s in placed
         )
-        if clear and fits_one_build(sizes[1:], room, (*placed, (place, size))):
+        if clear and fits_one_build(sizes[1:], room, (*placed, (position, size))):
             return True
     return False
 
@@ -318,11 +319,12 @@ def test_the_fill_bound_is_no_less_than_the_brute_force_optimum(sizes, data):
 
 
 def test_with_many_boxes_the_slow_passes_come_last():
-    from amprep.kernels.boxes.places import TOUCHING
-    from amprep.plugins.packers.instance.orders import passes
+    from amprep.kernels.boxes.records import MERIT_OF, TOUCHING
+    from amprep.plugins.packers.extreme_points import constructive_passes
     from amprep.plugins.packers.instance.prepare import prepare
 
     sizes = np.random.default_rng(0).integers(1, 9, (600, 3)).tolist()
-    slow = [plan.style[0] == TOUCHING for plan in passes(prepare(boxes_problem(sizes, (100, 100, 100))))]
+    instance = prepare(boxes_problem(sizes, (100, 100, 100)))
+    slow = [each.rule[MERIT_OF] == TOUCHING for each in constructive_passes(instance)]
     assert slow == sorted(slow)
     assert any(slow)

@@ -27,30 +27,32 @@ def test_the_sub_heuristic_puts_a_box_where_it_touches_most():
         prepare(problem([(10, 10, 4), (10, 6, 6), (10, 4, 6)])), TabuParams(start="heuristic")
     )
     assert search.current.build.tolist() == [0, 0, 0]
-    assert search.current.place.tolist() == [[0, 0, 0], [0, 0, 4], [0, 6, 4]]
+    assert search.current.position.tolist() == [[0, 0, 0], [0, 0, 4], [0, 6, 4]]
 
 
-def test_a_box_never_stands_where_nothing_is_below_left_and_behind():
+def test_every_box_has_a_wall_or_a_box_below_left_and_behind():
     rng = np.random.default_rng(2)
     task = problem(rng.integers(1, 6, (25, 3)).tolist())
     search = TabuSearch(prepare(task), TabuParams(start="heuristic"))
-    sizes, place, build = (
+    sizes, position, build = (
         [item.volume.hi[0] for item in task.items],
-        search.current.place,
+        search.current.position,
         search.current.build,
     )
     for i, size in enumerate(sizes):
         for axis in range(3):
             across = [a for a in range(3) if a != axis]
-            touched = place[i, axis] == 0.0
+            touched = position[i, axis] == 0.0
             for j, other in enumerate(sizes):
-                shared = np.minimum(place[i] + size, place[j] + other) - np.maximum(place[i], place[j])
-                meets = place[j, axis] + other[axis] == place[i, axis] and (shared[across] > 0).all()
+                shared = np.minimum(position[i] + size, position[j] + other) - np.maximum(
+                    position[i], position[j]
+                )
+                meets = position[j, axis] + other[axis] == position[i, axis] and (shared[across] > 0).all()
                 touched |= bool(build[j] == build[i] and meets)
             assert touched
 
 
-def test_it_starts_with_every_item_in_a_build_of_its_own():
+def test_it_starts_with_every_item_in_its_own_build():
     search = TabuSearch(prepare(problem([(5, 5, 5)] * 4)), TabuParams())
     assert sorted(search.current.build.tolist()) == [0, 1, 2, 3]
 
@@ -67,7 +69,7 @@ def test_one_search_moves_one_item_out_of_the_emptiest_build():
 def test_diversifying_aims_at_the_next_emptiest_build_and_at_last_takes_the_emptier_half_apart():
     # nothing fits beside anything else
     search = TabuSearch(
-        prepare(problem([(9, 9, 9), (8, 8, 8), (7, 7, 7), (6, 6, 6)])), TabuParams(most_diversify=2)
+        prepare(problem([(9, 9, 9), (8, 8, 8), (7, 7, 7), (6, 6, 6)])), TabuParams(max_diversifications=2)
     )
     targets = [search.target]
     for _ in range(2):
@@ -86,9 +88,14 @@ def test_halves_are_brought_together_and_the_bound_proves_it():
 
 def test_options_are_kept_and_bad_ones_refused():
     task = problem(np.random.default_rng(5).integers(2, 8, (20, 3)).tolist())
-    for params in ({"start": "heuristic"}, {"most_tuple": 1}, {"tenure": 0}, {"count_weight": 0.2}):
+    for params in ({"start": "heuristic"}, {"max_tuple_size": 1}, {"tenure": 0}, {"count_weight": 0.2}):
         assert run(task, work=5.0, **params).status in {"optimal", "feasible"}
-    for params in ({"start": "x"}, {"most_tuple": 0}, {"most_diversify": -1}, {"work": float("nan")}):
+    for params in (
+        {"start": "x"},
+        {"max_tuple_size": 0},
+        {"max_diversifications": -1},
+        {"work": float("nan")},
+    ):
         with pytest.raises(ValueError, match=next(iter(params))):
             TabuParams(**params)
 

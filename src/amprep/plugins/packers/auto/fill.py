@@ -1,72 +1,72 @@
-"""The `fill` half of `auto`: sorted orders at once, then blocks of boxes, then disturbed orders."""
+"""The part of `auto` for fill problems: sorted orderings, then blocks of boxes, then disturbed orderings."""
 
 import numpy as np
 
 from amprep.model.control import Progress, Stop
-from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.block_building import fill_by_blocks
 from amprep.plugins.packers.block_building.integer_instance import is_of_single_boxes
-from amprep.plugins.packers.bounds.volume import fill_bound
-from amprep.plugins.packers.extreme_points import Runner
-from amprep.plugins.packers.instance.orders import Pass, passes
-from amprep.plugins.packers.instance.prepare import Scene, prepare
-from amprep.plugins.packers.instance.solution import Solution, as_packing
+from amprep.plugins.packers.bounds.combinatorial import fill_bound
+from amprep.plugins.packers.extreme_points import ConstructivePass, PassRunner, constructive_passes, disturbed
+from amprep.plugins.packers.instance.arrangement import PackerResult, value_of
+from amprep.plugins.packers.instance.prepare import PreparedInstance
 from amprep.plugins.packers.params import AutoParams, BlockBuildingParams
 
 DISTURBANCE = 0.1
-"""How far an item moves in a disturbed order, as a share of the number of items."""
+"""Greatest distance by which an item moves in a disturbed ordering, as a fraction of the number of items."""
 
-ORDERS_SHARE = 0.05
-"""Share of the time and work that goes into orders before blocks are built."""
+ORDERINGS_FRACTION = 0.05
+"""Fraction of the time and work for orderings before blocks are built."""
 
 
-def pack_fill(
-    problem: PackingProblem, *, params: AutoParams, rng: np.random.Generator, stop: Stop, progress: Progress
-) -> Packing:
-    """Fill one build: by the sortings of `extreme-points`, by `block-building`, then by disturbed orders.
+def fill_build(
+    instance: PreparedInstance,
+    *,
+    params: AutoParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> PackerResult:
+    """Fill one build: by the passes of `extreme-points`, by `block-building`, then by disturbed orderings.
 
-    Blocks are built when every item is one box and the build volume is no cylinder. The first pass is always
-    begun, so that a late stop still gives an answer.
+    Blocks are built when every item is one box and the build volume is no cylinder.
     """
-    scene = prepare(problem)
-    if not is_of_single_boxes(scene):
-        orders = Orders(scene, params, rng, stop)
-        return as_packing(scene, orders.best, orders.run(stop, params.work))
-    early = stop.within(None if stop.deadline is None else ORDERS_SHARE * stop.remaining())
-    orders = Orders(scene, params, rng, early)
-    reason, best = orders.run(early, ORDERS_SHARE * params.work), orders.best
-    if reason != "bound met" and not stop():
-        work = params.work * (1.0 - ORDERS_SHARE)
-        found, reason = fill_by_blocks(scene, BlockBuildingParams(work=work), stop, progress)
-        best = min(best, found, key=_worth)
-        if reason == "no better one found":
-            reason = orders.run(stop, params.work)
-            best = min(best, orders.best, key=_worth)
-    return as_packing(scene, best, reason)
+    if not is_of_single_boxes(instance):
+        orderings = OrderingSearch(instance, params, rng, stop)
+        return orderings.result(orderings.run(stop, params.work))
+    early = stop.within(None if stop.deadline is None else ORDERINGS_FRACTION * stop.remaining())
+    orderings = OrderingSearch(instance, params, rng, early)
+    best = orderings.result(orderings.run(early, ORDERINGS_FRACTION * params.work))
+    if best.stop_reason == "bound met" or stop():
+        return best
+    blocks = BlockBuildingParams(work=params.work * (1.0 - ORDERINGS_FRACTION))
+    found = fill_by_blocks(instance, blocks, stop, progress)
+    reason, results = found.stop_reason, [best, found]
+    if reason == "no better one found":
+        reason = orderings.run(stop, params.work)
+        results.append(orderings.result(reason))
+    best = max(results, key=lambda result: value_of(instance, result.arrangement))
+    return best._replace(stop_reason=reason)
 
 
-def _worth(solution: Solution) -> float:
-    """Return what is smaller for a better one."""
-    return solution.rank[0]
-
-
-class Orders:
-    """Packs one order of items after the other by extreme points: the sortings, then disturbed copies.
+class OrderingSearch:
+    """Packs one ordering after another by extreme points: the sorted ones, then disturbed copies of the best.
 
     Attributes
     ----------
     best
-        The best packing so far; the first order is packed at once.
+        The best result so far; the first ordering is packed at once.
     """
 
-    def __init__(self, scene: Scene, params: AutoParams, rng: np.random.Generator, stop: Stop) -> None:
-        self.runner, self.rng, self.plans = Runner(scene), rng, passes(scene)
-        self.bound = fill_bound(scene)
-        self.number, self.last = 1, len(self.plans) + params.patience
-        self.best = self.runner.run(self.plans[0], None, stop)
+    def __init__(
+        self, instance: PreparedInstance, params: AutoParams, rng: np.random.Generator, stop: Stop
+    ) -> None:
+        self.runner, self.rng, self.passes = PassRunner(instance), rng, constructive_passes(instance)
+        self.bound = fill_bound(instance)
+        self.number, self.last = 1, len(self.passes) + params.patience
+        self.best = self.runner.run(self.passes[0], None, stop)
 
     def run(self, stop: Stop, work: float) -> str:
-        """Go on until the bound is met, or the work, the time or the patience is used up; return which."""
+        """Go on until the bound is met, or the work, the time or the patience is used up; return the reason."""
         while not self._met():
             if stop():
                 return stop.reason
@@ -74,19 +74,21 @@ class Orders:
                 return "work used up"
             if self.number >= self.last:
                 return "no better one found"
-            plan = self.plans[self.number] if self.number < len(self.plans) else self._disturbed()
-            self.best = min(self.best, self.runner.run(plan, self.best, stop), key=lambda found: found.rank)
+            tried = self.passes[self.number] if self.number < len(self.passes) else self._disturbed()
+            self.best = min(self.best, self.runner.run(tried, self.best, stop), key=lambda found: found.rank)
             self.number += 1
         return "bound met"
 
+    def result(self, reason: str) -> PackerResult:
+        """Return the best result so far."""
+        return PackerResult(self.best.arrangement, self.bound, reason, self.best.complete)
+
     def _met(self) -> bool:
-        """Whether nothing can be better."""
+        """Return whether the bound is met."""
         return self.best.complete and -self.best.rank[0] >= self.bound - 1e-9 * abs(self.bound)
 
-    def _disturbed(self) -> Pass:
-        """Return the best order with each item moved a little at random, under the style of some pass."""
-        order, style = self.best.plan
-        n = len(order)
-        order = order[np.argsort(np.arange(n) + self.rng.uniform(0.0, DISTURBANCE * n, n))]
-        other = self.plans[int(self.rng.integers(len(self.plans)))].style
-        return Pass(order, style if self.rng.random() < 0.5 else other)
+    def _disturbed(self) -> ConstructivePass:
+        """Return a disturbed copy of the best ordering, with its own placement rule or that of a random pass."""
+        tried = disturbed(self.best.source, DISTURBANCE, self.rng)
+        other = self.passes[int(self.rng.integers(len(self.passes)))].rule
+        return tried if self.rng.random() < 0.5 else tried._replace(rule=other)

@@ -1,4 +1,4 @@
-"""Set partitioning over every build a search has met: fewest of them that together hold everything."""
+"""Set covering over all builds that a search has met: the fewest that together hold every item."""
 
 from typing import NamedTuple
 
@@ -8,57 +8,57 @@ from amprep.arrays import Floats, Int64s
 from amprep.model.control import Stop
 
 MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
-"""Builds the whole-number program chooses from; builds added in a round of pricing, and such rounds."""
+"""Greatest number of builds in the integer program; of builds added in a round of pricing; of such rounds."""
 
 NODES = 300
-"""Nodes of the branch and bound after which it ends, so that the answer does not depend on the clock."""
+"""Nodes after which the branch and bound ends, so that the result does not depend on the clock."""
 
-MOST_KINDS = 400
-"""Kinds beyond which fractional covers take too long to be of use."""
+MOST_TYPES = 400
+"""With more item types, fractional covers take too long to be of use."""
 
 MARGIN = 1e-6
 
 
 class Pool(NamedTuple):
-    """Builds by kinds: ``(p + 1,)`` where each begins in `kind` ``(t,)``."""
+    """Builds as sets of item types: ``(p + 1,)`` index at which each begins in `type_of` ``(t,)``."""
 
     start: Int64s
-    kind: Int64s
+    type_of: Int64s
 
-    def worth(self, price: Floats) -> Floats:
+    def value(self, price: Floats) -> Floats:
         """Return the total price of each build, ``(p,)``."""
-        return np.asarray(np.add.reduceat(price[self.kind], self.start[:-1]))
+        return np.asarray(np.add.reduceat(price[self.type_of], self.start[:-1]))
 
-    def counts(self, rows: Int64s, kinds: int) -> Floats:
-        """Return how many of each kind the builds hold, ``(kinds, r)``."""
-        held = [self.kind[self.start[row] : self.start[row + 1]] for row in rows.tolist()]
-        return np.array([np.bincount(kind, minlength=kinds) for kind in held], np.float64).T
+    def counts(self, rows: Int64s, types: int) -> Floats:
+        """Return how many items of each type the builds hold, ``(types, r)``."""
+        held = [self.type_of[self.start[row] : self.start[row + 1]] for row in rows.tolist()]
+        return np.array([np.bincount(types_held, minlength=types) for types_held in held], np.float64).T
 
 
 def choose_builds(pool: Pool, demand: Int64s, first: Int64s, most: int, stop: Stop) -> Int64s | None:
-    """Return at most `most` builds of the pool that hold every item, or None if none are found.
+    """Return at most `most` builds of the pool that together hold every item, or None if none are found.
 
-    The fractional cover over the whole pool comes first: where it needs more builds, no choice does with
-    fewer. Then the builds nearest to being part of it go into the whole-number program (HiGHS).
+    The fractional cover over the whole pool comes first: its value is a lower bound on every choice. Then the builds
+    with the least reduced costs go into the integer program (HiGHS).
 
     Parameters
     ----------
     demand
-        ``(kinds,)`` items of each kind to be held, each at least 1.
+        ``(types,)`` number of items of each type, each at least 1.
     first
-        Builds that together hold every item, numbers in the pool.
+        Numbers of builds of the pool that together hold every item.
     """
     rows, price, total = _fractional(pool, demand, first, stop)
     if total > most + MARGIN or stop():
         return None
-    nearest = np.argsort(-pool.worth(price), kind="stable")[:MOST_COLUMNS]
+    nearest = np.argsort(-pool.value(price), kind="stable")[:MOST_COLUMNS]
     chosen = np.unique(np.concatenate((rows, nearest)))
-    found = _whole(pool.counts(chosen, len(demand)), demand, stop.remaining())
+    found = _integer_cover(pool.counts(chosen, len(demand)), demand, stop.remaining())
     return None if found is None or found.sum() > most + 0.5 else np.repeat(chosen, found)
 
 
 def _fractional(pool: Pool, demand: Int64s, first: Int64s, stop: Stop) -> tuple[Int64s, Floats, float]:
-    """Return the builds used, prices and value of the best fractional cover; builds are priced in as needed."""
+    """Return builds, dual values and value of the least fractional cover; pricing adds builds to it as needed."""
     from scipy.optimize import linprog
 
     rows = np.unique(first)
@@ -68,17 +68,17 @@ def _fractional(pool: Pool, demand: Int64s, first: Int64s, stop: Stop) -> tuple[
         if not solved.success:
             return rows, np.zeros(len(demand)), np.inf
         price = np.maximum(-solved.ineqlin.marginals, 0.0)
-        worth = pool.worth(price)
-        new = np.argsort(-worth, kind="stable")[:ADDED]
-        new = new[worth[new] > 1.0 + MARGIN]
+        value = pool.value(price)
+        new = np.argsort(-value, kind="stable")[:ADDED]
+        new = new[value[new] > 1.0 + MARGIN]
         if not len(new) or stop():
             break
         rows = np.unique(np.concatenate((rows, new)))
     return rows, price, float(price @ demand)
 
 
-def _whole(counts: Floats, demand: Int64s, seconds: float) -> Int64s | None:
-    """Return how often each build is used in the best whole cover found; None without one."""
+def _integer_cover(counts: Floats, demand: Int64s, seconds: float) -> Int64s | None:
+    """Return how often each build is used in the best integer cover found, or None."""
     from scipy.optimize import Bounds, LinearConstraint, milp
 
     columns = counts.shape[1]

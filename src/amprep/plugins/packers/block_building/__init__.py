@@ -7,13 +7,14 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from amprep.kernels.blocks import records
+from amprep.kernels.boxes.records import Arrangement
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.block_building.beam_search import PackedBoxes, SearchSettings, Worker
 from amprep.plugins.packers.block_building.integer_instance import IntegerInstance, integer_instance
-from amprep.plugins.packers.instance.orders import Pass
-from amprep.plugins.packers.instance.prepare import Scene, prepare
-from amprep.plugins.packers.instance.solution import Solution, as_packing, value_of
+from amprep.plugins.packers.bounds.combinatorial import fill_bound
+from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
+from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
 from amprep.plugins.packers.params import BlockBuildingParams
 
 WORKERS = (SearchSettings(), SearchSettings(min_fill=1.0, power=3, margin=0.0, density=1.0))
@@ -52,15 +53,14 @@ def pack_block_building(
         Checked and called about a hundred times a second.
     """
     del rng
-    scene = prepare(problem)
-    found, reason = fill_by_blocks(scene, params, stop, progress)
-    return as_packing(scene, found, reason)
+    prepared = prepare(problem)
+    return as_packing(prepared, fill_by_blocks(prepared, params, stop, progress))
 
 
 def fill_by_blocks(
-    scene: Scene, params: BlockBuildingParams, stop: Stop, progress: Progress
-) -> tuple[Solution, str]:
-    """Return the best packing found and the reason why the search ended.
+    prepared: PreparedInstance, params: BlockBuildingParams, stop: Stop, progress: Progress
+) -> PackerResult:
+    """Return the best packing found, its bound and the reason why the search ended.
 
     The course of each worker depends on its own work alone. Among packings of equal value, the one found with
     less work counts, then that of the first worker. So the answer does not depend on time unless time ends the
@@ -68,21 +68,22 @@ def fill_by_blocks(
 
     Parameters
     ----------
-    scene
+    prepared
         The prepared problem.
     params
         Number of blocks and work limit; each worker gets an equal part of the work.
     stop, progress
         As in `pack_block_building`.
     """
-    instance = integer_instance(scene)
-    work, flat = params.work / len(WORKERS), scene.space.flat
+    instance = integer_instance(prepared)
+    work, flat = params.work / len(WORKERS), prepared.space.flat
     workers = [Worker(instance, each, blocks=params.blocks, work=work, flat=flat) for each in WORKERS]
     if len(instance.boxes.size):
         _run(workers, stop, progress)
     best = min(workers, key=lambda worker: (-worker.packed.value, worker.found_at))
     packed = best.compacted() if len(instance.boxes.size) else best.packed
-    return as_solution(scene, instance, packed), _reason(workers, best, stop)
+    found = _arrangement(prepared, instance, packed)
+    return PackerResult(found, fill_bound(prepared), _reason(workers, best, stop))
 
 
 def _run(workers: Sequence[Worker], stop: Stop, progress: Progress) -> None:
@@ -124,14 +125,12 @@ def _reason(workers: Sequence[Worker], best: Worker, stop: Stop) -> str:
     return "no better one found" if all(worker.finished for worker in workers) else "work used up"
 
 
-def as_solution(scene: Scene, instance: IntegerInstance, packed: PackedBoxes) -> Solution:
-    """Return the packed boxes with an item assigned to each, in the form of the other packers."""
-    n = len(scene.kind)
-    build, variant, place = np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3))
+def _arrangement(prepared: PreparedInstance, instance: IntegerInstance, packed: PackedBoxes) -> Arrangement:
+    """Return the packed boxes with an item assigned to each."""
+    found = Arrangement.empty(len(prepared.type_of))
     left = [list(items) for items in instance.items]
     for box, corners in zip(packed.box.tolist(), packed.corners, strict=True):
         item = left[instance.boxes.item_type[box]].pop(0)
-        build[item], variant[item] = 0, instance.orientation[box]
-        place[item] = scene.space.lo + corners[:3] * instance.unit
-    order = Pass(np.flatnonzero(build >= 0), np.zeros(6))
-    return Solution(order, (-value_of(scene, build),), True, build, variant, place)
+        found.build[item], found.orientation[item] = 0, instance.orientation[box]
+        found.position[item] = prepared.space.lo + corners[:3] * instance.unit
+    return found

@@ -6,8 +6,8 @@ import numpy as np
 
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.blocks.records import OrientedBoxes
-from amprep.plugins.packers.bounds.volume import fill_bound
-from amprep.plugins.packers.instance.prepare import Scene
+from amprep.plugins.packers.bounds.combinatorial import fill_bound
+from amprep.plugins.packers.instance.prepare import PreparedInstance
 
 RESOLUTION = 1e-6
 """Smallest unit of length (mm)."""
@@ -48,27 +48,27 @@ class IntegerInstance:
     goal: float
 
 
-def is_of_single_boxes(scene: Scene) -> bool:
+def is_of_single_boxes(prepared: PreparedInstance) -> bool:
     """Return whether every item is one box and the build volume is a box, as block building requires."""
-    return scene.space.radius == 0.0 and all(len(v.lo) == 1 for kind in scene.kinds for v in kind)
+    return prepared.space.radius == 0.0 and all(len(each.lo) == 1 for each in prepared.orientations)
 
 
-def integer_instance(scene: Scene) -> IntegerInstance:
+def integer_instance(prepared: PreparedInstance) -> IntegerInstance:
     """Return the problem in whole numbers; rounding only makes boxes larger and the container smaller."""
-    gap, space, values = scene.problem.clearance, scene.space, _values(scene)
-    groups, items = _groups(scene, values)
+    gap, space, values = prepared.problem.clearance, prepared.space, _values(prepared)
+    groups, items = _groups(prepared, values)
     rows = [
         (group, number)
-        for group, kind in enumerate(groups)
-        for number, variant in enumerate(scene.kinds[kind])
-        if np.isfinite(variant.home[0])
+        for group, item_type in enumerate(groups)
+        for number in range(*prepared.first_orientation[item_type : item_type + 2].tolist())
+        if prepared.orientations[number].fits
     ]
-    sizes = np.array([scene.kinds[groups[g]][v].size + gap for g, v in rows]).reshape(-1, 3)
-    lo = np.concatenate((space.zone_lo + gap, scene.standing_lo)) - space.lo
-    hi = np.concatenate((space.zone_hi, scene.standing_hi + gap)) - space.lo
+    sizes = np.array([prepared.orientations[number].size + gap for _, number in rows]).reshape(-1, 3)
+    lo = np.concatenate((space.zone_lo + gap, prepared.fixed_lo)) - space.lo
+    hi = np.concatenate((space.zone_hi, prepared.fixed_hi + gap)) - space.lo
     far = space.hi + gap - space.lo
     unit = _unit(sizes, lo, hi, float(far.max()))
-    fixed = sum(values[placement.item] for placement in scene.problem.fixed)
+    fixed = sum(values[placement.item] for placement in prepared.problem.fixed)
     least = 1e-9 * max(float(values.max(initial=0.0)), 1e-3)
     boxes = OrientedBoxes(
         size=np.maximum(_up(sizes, unit), 1),
@@ -81,23 +81,25 @@ def integer_instance(scene: Scene) -> IntegerInstance:
         container=np.concatenate((np.zeros(3, np.int64), _down(far + space.slack, unit))),
         obstacles=np.hstack((_down(lo + space.slack, unit), _up(hi - space.slack, unit))),
         boxes=boxes,
-        orientation=np.array([variant for _, variant in rows], dtype=np.int64),
+        orientation=np.array([number for _, number in rows], dtype=np.int64),
         items=tuple(items),
-        goal=(fill_bound(scene) - float(fixed)) * (1.0 - 1e-9),
+        goal=(fill_bound(prepared) - float(fixed)) * (1.0 - 1e-9),
     )
 
 
-def _values(scene: Scene) -> Floats:
-    return np.array([item.value for item in scene.problem.items], dtype=np.float64)
+def _values(prepared: PreparedInstance) -> Floats:
+    return np.array([item.value for item in prepared.problem.items], dtype=np.float64)
 
 
-def _groups(scene: Scene, values: Floats) -> tuple[list[int], list[Int64s]]:
+def _groups(prepared: PreparedInstance, values: Floats) -> tuple[list[int], list[Int64s]]:
     """Return for each pair of item type and value the item type and its free items."""
-    free = np.flatnonzero(scene.free)
+    free = np.flatnonzero(prepared.free)
     members: dict[tuple[int, float], list[int]] = {}
     for item in free.tolist():
-        members.setdefault((int(scene.kind[item]), float(values[item])), []).append(item)
-    return [kind for kind, _ in members], [np.array(found, dtype=np.int64) for found in members.values()]
+        members.setdefault((int(prepared.type_of[item]), float(values[item])), []).append(item)
+    return [item_type for item_type, _ in members], [
+        np.array(found, dtype=np.int64) for found in members.values()
+    ]
 
 
 def _unit(sizes: Floats, lo: Floats, hi: Floats, longest: float) -> int:

@@ -1,8 +1,8 @@
-"""Conservative scales: lengths measured so that in no build their products add up to more than 1.
+"""Bounds by conservative scales, which are products of dual feasible functions of the box sides.
 
-A dual feasible function u maps [0, 1] to [0, 1] so that numbers that add up to at most 1 keep doing so. Lengths
-along each axis may be measured by such functions, each axis by its own: the boxes of a build then still have a
-total volume of at most 1 (Fekete and Schepers, *A general framework for bounds for higher-dimensional
+A dual feasible function u maps [0, 1] to [0, 1] so that numbers whose sum is at most 1 are mapped to numbers whose sum
+is at most 1. When the sides along each axis are measured by such a function, the boxes of a build still have a total
+volume of at most 1 (Fekete and Schepers, *A general framework for bounds for higher-dimensional
 orthogonal packing problems*, Mathematical Methods of Operations Research 60 (2004),
 doi:10.1007/s001860400376).
 """
@@ -15,14 +15,15 @@ from amprep.arrays import Floats, Int64s
 
 ROUNDING = 1e-12
 MOST_CUTS, FEWEST_CUTS, MANY = 20, 3, 1000
-"""Thresholds tried an axis, and the kinds beyond which they get fewer: many small boxes are bounded by volume."""
+"""Most and fewest thresholds per axis, and the number of item types from which there are fewer of them: volume bounds
+many small boxes well."""
 
 MULTIPLES = np.arange(2.0, 7.0)
-"""k + 1 of u^(k)."""
+"""The values of k + 1 for the functions u^(k)."""
 
 
 def measures(length: Floats) -> Floats:
-    """Return lengths ``(k,)``, as shares of the room, under each dual feasible function tried, ``(f, k)``.
+    """Return lengths ``(k,)``, as fractions of the room, under each dual feasible function, ``(f, k)``.
 
     The functions are the identity, u^(k) and U^(e) of the paper, and f_2 of Carlier, Clautiaux and Moukrim,
     *New reduction procedures and lower bounds for the two-dimensional bin packing problem with fixed
@@ -37,7 +38,7 @@ def measures(length: Floats) -> Floats:
 
 
 def _cuts(length: Floats) -> Floats:
-    """Return thresholds up to a half at which something changes, evenly chosen."""
+    """Return thresholds up to 1/2 at which the functions change, evenly chosen when there are too many."""
     cuts = np.concatenate((length, 1.0 - length))
     cuts = cuts[np.unique(np.round(cuts, 12), return_index=True)[1]]
     cuts = cuts[(cuts > 1e-6) & (cuts <= 0.5 + ROUNDING)]
@@ -48,9 +49,9 @@ def _cuts(length: Floats) -> Floats:
 
 
 def _rounded(length: Floats, cut: Floats) -> Floats:
-    """Return f_2 for each cut ``(c, 1)``: small lengths in whole cuts, large ones as what they leave.
+    """Return f_2 for each cut ``(c, 1)``: small lengths in whole cuts, large lengths by the cuts beside them.
 
-    What limits is rounded up from further below than what is limited, so that rounding never proves too much.
+    The two sides of the inequality are rounded with different tolerances, so that rounding never proves too much.
     """
     cuts = np.floor(1.0 / cut + 1e-7)
     large = 2.0 * (cuts - np.floor((1.0 - length) / cut + 1e-7))
@@ -59,36 +60,36 @@ def _rounded(length: Floats, cut: Floats) -> Floats:
     return np.asarray(np.where(half, cuts, np.where(length > 0.5, large, small)) / (2.0 * cuts))
 
 
-def heaviest_scale(share: Floats, demand: Int64s) -> float:
-    """Return the greatest total of boxes under a conservative scale: no fewer builds can hold them.
+def greatest_scale(fraction: Floats, demand: Int64s) -> float:
+    """Return the greatest total of the boxes under a conservative scale, a lower bound on the builds.
 
     Parameters
     ----------
-    share
-        ``(k, 3)`` sides of each kind as shares of the room, at most 1.
+    fraction
+        ``(k, 3)`` sides of each item type as fractions of the room, at most 1.
     demand
-        ``(k,)`` how many there are.
+        ``(k,)`` number of items of each type.
     """
-    return float(_weights([measures(share[:, axis]) for axis in range(3)], demand).max(initial=0.0))
+    return float(_weights([measures(fraction[:, axis]) for axis in range(3)], demand).max(initial=0.0))
 
 
-def heavy_scales(share: Floats, demand: Int64s, most: int) -> Floats:
-    """Return the volume and the scales that weigh most, ``(k, s)``.
+def greatest_scales(fraction: Floats, demand: Int64s, most: int) -> Floats:
+    """Return the volume and the scales of greatest total, ``(k, s)``.
 
     Parameters
     ----------
-    share, demand
-        As in `heaviest_scale`.
+    fraction, demand
+        As in `greatest_scale`.
     most
-        Scales returned, at most; any two differ by more than 0.08 for some kind.
+        Greatest number of scales; any two differ by more than 0.08 for some item type.
     """
-    x, y, z = (measures(share[:, axis]) for axis in range(3))
+    x, y, z = (measures(fraction[:, axis]) for axis in range(3))
     weight = _weights([x, y, z], demand)
-    kept = [share.prod(axis=1)]
-    for place in np.argsort(-weight, axis=None, kind="stable")[: 400 * most]:
+    kept = [fraction.prod(axis=1)]
+    for flat in np.argsort(-weight, axis=None, kind="stable")[: 400 * most]:
         if len(kept) == most:
             break
-        i, j, k = np.unravel_index(place, weight.shape)
+        i, j, k = np.unravel_index(flat, weight.shape)
         scale = x[i] * y[j] * z[k]
         if all(np.abs(scale - other).max(initial=0.0) > 0.08 for other in kept):
             kept.append(scale)
@@ -96,6 +97,6 @@ def heavy_scales(share: Floats, demand: Int64s, most: int) -> Floats:
 
 
 def _weights(measured: Sequence[Floats], demand: Int64s) -> Floats:
-    """Return the total under each triple of functions."""
+    """Return the total of the boxes under each triple of functions."""
     x, y, z = measured
     return np.array([(row * demand * y) @ z.T for row in x])

@@ -1,30 +1,30 @@
-"""Martello, Pisinger and Vigo's lower bound L2 for bin packing in space, with clearance between boxes."""
+"""The lower bound L2 of Martello, Pisinger and Vigo for three-dimensional bin packing, with clearance."""
 
 import numpy as np
 
 from amprep.arrays import Floats
 
 MOST_THRESHOLDS, FEWEST_THRESHOLDS, MANY = 200, 20, 2000
-"""Lengths tried as p and q, at most, and how many there are to choose from when it gets fewer.
+"""Most and fewest lengths tried as p and q, and the number of boxes from which fewer are tried.
 
-Fewer give a weaker bound, but one in time for thousands of sizes.
+Fewer lengths give a weaker bound, in reasonable time for thousands of boxes.
 """
 
 
 def l2_bound(size: Floats, room: Floats, gap: float) -> int:
-    """Return a lower bound on the number of rooms that boxes of fixed orientation need.
+    """Return a lower bound on the number of builds for boxes of fixed orientation.
 
     After *The three-dimensional bin packing problem*, Operations Research 48 (2000), bounds L1 and L2,
-    doi:10.1287/opre.48.2.256.12386. Two boxes that together are wider and deeper than the room stand
-    `gap` apart along the third axis, so lengths count with the gap there, and volumes are those of boxes
+    doi:10.1287/opre.48.2.256.12386. Two boxes that together are wider and deeper than the room are
+    `gap` apart along the third axis. So lengths along it include the gap, and volumes are those of boxes
     grown by a ball of half the gap.
 
     Parameters
     ----------
     size
-        ``(n, 3)`` mm.
+        ``(n, 3)`` mm sides of the boxes.
     room
-        ``(3,)`` mm.
+        ``(3,)`` mm sides of the room.
     gap
         Least distance between two boxes, mm.
     """
@@ -34,7 +34,7 @@ def l2_bound(size: Floats, room: Floats, gap: float) -> int:
 
 
 def _along(size: Floats, room: Floats, gap: float) -> int:
-    """Return the bound from boxes that can only be lined up along the third axis."""
+    """Return the bound from the boxes that can be beside each other along the third axis only."""
     width, height = size[:, 0], size[:, 1]
     length, whole = size[:, 2] + gap, float(room[2] + gap)
     both = (width > room[0] / 2.0) & (height > room[1] / 2.0)
@@ -53,7 +53,7 @@ def _along(size: Floats, room: Floats, gap: float) -> int:
 
 
 def _thresholds(length: Floats) -> Floats:
-    """Return the different lengths, evenly chosen when they are too many."""
+    """Return the different lengths, evenly chosen when there are too many."""
     found = np.unique(length)
     most = max(FEWEST_THRESHOLDS, min(MOST_THRESHOLDS, MOST_THRESHOLDS * MANY // max(len(length), 1)))
     if len(found) > most:
@@ -69,7 +69,7 @@ def grown_volume(size: Floats, radius: float) -> Floats:
 
 
 def _one_dimensional(length: Floats, whole: float) -> int:
-    """Return the bound L1: how many bins of length `whole` pieces need that can only be lined up."""
+    """Return the bound L1: bins of length `whole` for items of one dimension."""
     large, small = length[length > whole / 2.0], length[length <= whole / 2.0]
     if not len(small):
         return len(large)

@@ -1,70 +1,75 @@
-"""A solution as arrays, to and from a packing, and to the values of a program's variables."""
+"""The result of a packer on a prepared instance, and the packing that it means."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
-from amprep.model.packing import Packing, Placement, Unplaced
-from amprep.plugins.packers.instance.prepare import Scene, placements
+from amprep.kernels.boxes.records import Arrangement
+from amprep.model.packing import Packing, Placement, Status, Unplaced
+from amprep.plugins.packers.instance.prepare import PreparedInstance
 
 
-@dataclass(frozen=True, eq=False)
-class Arrangement:
-    """Where the items that are not fixed stand.
+class PackerResult(NamedTuple):
+    """An arrangement, and the facts about it that a packing states.
 
     Attributes
     ----------
-    build, variant
-        ``(n,)`` int64, -1 for items in no build.
-    place
-        ``(n, 3)`` mm, least corners.
+    bound
+        Proven bound: fewest builds, or greatest value of one build.
+    complete
+        False when items are unplaced because the packer had to stop.
     """
 
-    build: Int64s
-    variant: Int64s
-    place: Floats
+    arrangement: Arrangement
+    bound: float
+    stop_reason: str
+    complete: bool = True
 
 
-def nothing_placed(scene: Scene) -> Arrangement:
-    """Return the arrangement without any item."""
-    n = len(scene.kind)
-    return Arrangement(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.zeros((n, 3)))
-
-
-def arrangement_of(scene: Scene, packing: Packing) -> Arrangement:
-    """Return a packing of this scene as arrays."""
-    found, fixed = nothing_placed(scene), {placement.item for placement in scene.problem.fixed}
-    for number, build in enumerate(packing.builds):
-        for placement in build:
-            if placement.item not in fixed:
-                kind = scene.kinds[scene.kind[placement.item]]
-                variant = [np.array_equal(v.rotation, placement.rotation) for v in kind].index(True)
-                found.build[placement.item], found.variant[placement.item] = number, variant
-                found.place[placement.item] = placement.translation - kind[variant].shift
-    return found
-
-
-def builds_of(scene: Scene, arrangement: Arrangement) -> tuple[tuple[Placement, ...], ...]:
-    """Return the builds, the fixed placements first, then by item; without empty ones."""
-    builds = []
-    for number in range(max(int(arrangement.build.max(initial=-1)) + 1, 1)):
-        items = np.flatnonzero(arrangement.build == number)
-        placed = placements(
-            scene, items.tolist(), arrangement.variant[items].tolist(), arrangement.place[items]
-        )
-        builds.append((*(scene.problem.fixed if number == 0 else ()), *placed))
-    return tuple(build for build in builds if build)
-
-
-def left_out(scene: Scene, arrangement: Arrangement, reason: str) -> tuple[Unplaced, ...]:
-    """Return the items in no build, with `reason` where they are not too large."""
-    out = np.flatnonzero((scene.free & (arrangement.build < 0)) | scene.too_large).tolist()
-    return tuple(Unplaced(item, "too large" if scene.too_large[item] else reason) for item in out)
-
-
-def value_of(scene: Scene, arrangement: Arrangement) -> float:
-    """Return the value of what is placed, fixed items included."""
-    fixed = [placement.item for placement in scene.problem.fixed]
+def value_of(instance: PreparedInstance, arrangement: Arrangement) -> float:
+    """Return the total value of the placed items, fixed items included."""
+    fixed = [placement.item for placement in instance.problem.fixed]
     items = [*np.flatnonzero(arrangement.build >= 0).tolist(), *fixed]
-    return float(sum(scene.problem.items[item].value for item in items))
+    return float(sum(instance.problem.items[item].value for item in items))
+
+
+def builds_used(instance: PreparedInstance, arrangement: Arrangement) -> int:
+    """Return the number of builds; fixed items always take the first one."""
+    return max(arrangement.builds, 1 if instance.problem.fixed else 0)
+
+
+def status_of(instance: PreparedInstance, result: PackerResult) -> Status:
+    """Return ``optimal`` when the bound is met, ``infeasible`` when an item to be built fits no build."""
+    if instance.filling:
+        reached = value_of(instance, result.arrangement)
+        return "optimal" if reached >= result.bound - 1e-9 * abs(result.bound) else "feasible"
+    if instance.too_large.any():
+        return "infeasible"
+    met = builds_used(instance, result.arrangement) <= result.bound
+    return "optimal" if result.complete and met else "feasible"
+
+
+def as_packing(instance: PreparedInstance, result: PackerResult) -> Packing:
+    """Return a result as a packing, with a reason for every unplaced item."""
+    build = result.arrangement.build
+    left = "out of time" if not result.complete else "no room left" if instance.filling else "too large"
+    out = np.flatnonzero((instance.free & (build < 0)) | instance.too_large).tolist()
+    return Packing(
+        builds=_builds(instance, result.arrangement),
+        unplaced=tuple(Unplaced(item, "too large" if instance.too_large[item] else left) for item in out),
+        bound=result.bound,
+        status=status_of(instance, result),
+        stop_reason=result.stop_reason,
+    )
+
+
+def _builds(instance: PreparedInstance, arrangement: Arrangement) -> tuple[tuple[Placement, ...], ...]:
+    """Return the placements of each build: the fixed ones first, then by item."""
+    builds = []
+    for number in range(builds_used(instance, arrangement)):
+        placed = list(instance.problem.fixed if number == 0 else ())
+        for item in np.flatnonzero(arrangement.build == number).tolist():
+            chosen = instance.orientations[arrangement.orientation[item]]
+            placed.append(Placement(item, chosen.rotation, arrangement.position[item] + chosen.shift))
+        builds.append(tuple(placed))
+    return tuple(builds)

@@ -1,75 +1,186 @@
-"""A packing problem as flat arrays: volumes in each orientation, the room, what stands in it already."""
+"""Prepare a packing problem as arrays, once for all packers."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.errors import AmprepError
-from amprep.geometry.boxes.build_space import Space, find_home, rotated_boxes
+from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
+from amprep.kernels.boxes.records import PAIR_SLACK, BoxInstance
 from amprep.model.bounding_volume import BoundingVolume, Boxes
-from amprep.model.packing import Item, PackingProblem, Placement
+from amprep.model.packing import Item, Objective, PackingProblem
 
 SAME = 1e-8
-"""mm by which the boxes of two orientations may differ to count as one."""
+"""mm by which the boxes of two orientations may differ to count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
-class Variant:
-    """A volume in one orientation: boxes ``(k, 3)`` relative to their least corner, without clearance.
+class Orientation:
+    """A bounding volume in one orientation: boxes ``(k, 3)`` mm relative to their least corner, without clearance.
 
     Attributes
     ----------
+    rotation
+        ``(3, 3)``.
     shift
-        ``(3,)`` from the least corner to the turned volume's origin.
-    home
-        ``(3,)`` a place of the least corner in an empty build; NaN when there is none.
+        ``(3,)`` mm from the least corner to the origin of the turned volume.
+    feasible_position
+        ``(3,)`` mm a position of the least corner in an empty build; NaN when there is none.
     """
 
     rotation: Floats
     lo: Floats
     hi: Floats
     shift: Floats
-    home: Floats
+    feasible_position: Floats
 
     @cached_property
     def size(self) -> Floats:
         """The enclosing box, ``(3,)`` mm."""
         return np.asarray(self.hi.max(axis=0))
 
+    @property
+    def fits(self) -> bool:
+        """Whether it has a position in an empty build."""
+        return bool(np.isfinite(self.feasible_position[0]))
+
+
+ItemType = tuple[Orientation, ...]
+"""The different orientations of items with the same bounding volume and the same allowed rotations."""
+
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """A problem prepared for packing.
+class PreparedInstance:
+    """A packing problem prepared for box packers.
 
     Attributes
     ----------
-    kind
-        ``(n,)`` int64 kind of each item; items of a kind share volume and orientations.
-    kinds
-        The variants of each kind.
+    type_of
+        ``(n,)`` int64 type of each item.
     free
-        ``(n,)`` bool: items to be placed, that is not fixed and not too large.
+        ``(n,)`` bool: items to be placed, which are neither fixed nor too large.
     too_large
-        ``(n,)`` bool: items that fit no empty build.
-    standing_lo, standing_hi
-        ``(m, 3)`` boxes of the fixed placements, without clearance.
+        ``(n,)`` bool: items without a position in an empty build.
+    fixed_lo, fixed_hi
+        ``(m, 3)`` mm boxes of the fixed placements, without clearance.
     """
 
     problem: PackingProblem
     space: Space
-    kind: Int64s
-    kinds: tuple[tuple[Variant, ...], ...]
+    type_of: Int64s
+    types: tuple[ItemType, ...]
     free: Bools
     too_large: Bools
-    standing_lo: Floats
-    standing_hi: Floats
+    fixed_lo: Floats
+    fixed_hi: Floats
+
+    @cached_property
+    def orientations(self) -> ItemType:
+        """The orientations of all types, which `Arrangement.orientation` counts."""
+        return tuple(orientation for item_type in self.types for orientation in item_type)
+
+    @cached_property
+    def first_orientation(self) -> Int64s:
+        """Index of the first orientation of each type, ``(types + 1,)``."""
+        return _starts([len(item_type) for item_type in self.types])
+
+    @cached_property
+    def boxes(self) -> BoxInstance:
+        """The instance as the kernels read it, with clearance in the data."""
+        gap, orientations = self.problem.clearance, self.orientations
+        return BoxInstance(
+            type_of=self.type_of,
+            first_orientation=self.first_orientation,
+            first_box=_starts([len(orientation.lo) for orientation in orientations]),
+            orientations=np.array([[*(o.size + gap), *o.feasible_position] for o in orientations]).reshape(
+                -1, 6
+            ),
+            boxes=np.array(
+                [[*lo, *(hi + gap)] for o in orientations for lo, hi in zip(o.lo, o.hi, strict=True)]
+            ).reshape(-1, 6),
+            room=_room(self),
+            obstacles=_obstacles(self),
+            zones=len(self.space.zone_lo),
+        )
+
+    @property
+    def filling(self) -> bool:
+        """Whether one build is filled with the greatest value; else few builds are wanted."""
+        return self.problem.objective == "fill"
+
+    @property
+    def demand(self) -> Int64s:
+        """Number of free items of each type, ``(types,)``."""
+        return np.bincount(self.type_of[self.free], minlength=len(self.types))
+
+
+def prepare(problem: PackingProblem) -> PreparedInstance:
+    """Return the problem as arrays.
+
+    Raises
+    ------
+    AmprepError
+        If a volume is not made of boxes, or a value is negative.
+    """
+    for item in problem.items:
+        if not item.value >= 0.0:
+            raise AmprepError(
+                f"part {item.part}: the value must be at least 0, got {item.value:g}; correct it in the job file"
+            )
+    space = empty_space(problem)
+    known: dict[tuple[bytes, ...], int] = {}
+    types: list[ItemType] = []
+    type_of = np.empty(len(problem.items), dtype=np.int64)
+    for i, item in enumerate(problem.items):
+        boxes = boxes_of(item.volume)
+        key = (boxes.lo.tobytes(), boxes.hi.tobytes(), _rotations(item).tobytes())
+        if key not in known:
+            known[key] = len(types)
+            types.append(_orientations(boxes, _rotations(item), space))
+        type_of[i] = known[key]
+    fits = np.array([any(o.fits for o in item_type) for item_type in types], dtype=bool)[type_of]
+    free = np.ones(len(type_of), dtype=bool)
+    free[[placement.item for placement in problem.fixed]] = False
+    return PreparedInstance(
+        problem, space, type_of, tuple(types), free & fits, free & ~fits, *_fixed_boxes(problem)
+    )
+
+
+def restrict(
+    instance: PreparedInstance, items: Int64s, objective: Objective, values: Floats | None = None
+) -> PreparedInstance:
+    """Return the instance of some free items alone, without anything fixed.
+
+    Parameters
+    ----------
+    items
+        ``(m,)`` items to be kept; they become the items 0 to m - 1.
+    values
+        ``(types,)`` new values of the items by their type; None keeps the old ones.
+    """
+    kept = [instance.problem.items[item] for item in items.tolist()]
+    if values is not None:
+        new = values[instance.type_of[items]].tolist()
+        kept = [replace(item, value=value) for item, value in zip(kept, new, strict=True)]
+    numbers: dict[int, int] = {}
+    type_of = [numbers.setdefault(old, len(numbers)) for old in instance.type_of[items].tolist()]
+    return PreparedInstance(
+        replace(instance.problem, items=tuple(kept), objective=objective, fixed=()),
+        instance.space,
+        np.array(type_of, np.int64),
+        tuple(instance.types[old] for old in numbers),
+        np.ones(len(items), dtype=bool),
+        np.zeros(len(items), dtype=bool),
+        np.empty((0, 3)),
+        np.empty((0, 3)),
+    )
 
 
 def empty_space(problem: PackingProblem) -> Space:
-    """Return where boxes without clearance may be in an empty build."""
+    """Return the space in which boxes without clearance may be in an empty build."""
     size, gap = problem.space.size, problem.clearance
     return Space(
         lo=np.array([gap, gap, problem.lift]),
@@ -79,7 +190,7 @@ def empty_space(problem: PackingProblem) -> Space:
         zone_lo=problem.space.zone_lo,
         zone_hi=problem.space.zone_hi,
         flat=not problem.stacking,
-        slack=CONTACT_TOLERANCE + 1e-9,  # rounding does not decide what just fits
+        slack=CONTACT_TOLERANCE + 1e-9,  # rounding must not decide whether a box just fits
     )
 
 
@@ -98,43 +209,14 @@ def boxes_of(volume: BoundingVolume) -> Boxes:
     )
 
 
-def prepare(problem: PackingProblem) -> Scene:
-    """Return the problem as arrays.
-
-    Raises
-    ------
-    AmprepError
-        If a volume is not of boxes, or a value is negative.
-    """
-    for item in problem.items:
-        if not item.value >= 0.0:
-            raise AmprepError(f"part {item.part}: its value must be at least 0, got {item.value:g}")
-    space = empty_space(problem)
-    known: dict[tuple[bytes, ...], int] = {}
-    kinds: list[tuple[Variant, ...]] = []
-    kind = np.empty(len(problem.items), dtype=np.int64)
-    for i, item in enumerate(problem.items):
-        boxes = boxes_of(item.volume)
-        key = (boxes.lo.tobytes(), boxes.hi.tobytes(), _rotations(item).tobytes())
-        if key not in known:
-            known[key] = len(kinds)
-            kinds.append(_variants(boxes, _rotations(item), space))
-        kind[i] = known[key]
-    fits = np.array([any(np.isfinite(v.home[0]) for v in variants) for variants in kinds], dtype=bool)[kind]
-    free = np.ones(len(kind), dtype=bool)
-    free[[placement.item for placement in problem.fixed]] = False
-    standing_lo, standing_hi = _standing(problem)
-    return Scene(problem, space, kind, tuple(kinds), free & fits, free & ~fits, standing_lo, standing_hi)
-
-
 def _rotations(item: Item) -> Floats:
-    """Return the allowed rotations ``(k, 3, 3)``; of a continuous freedom only the part as it stands."""
+    """Return the allowed rotations ``(k, 3, 3)``; for a continuous freedom the present orientation alone."""
     return item.orientations.matrices if item.orientations.freedom == "list" else np.eye(3)[None]
 
 
-def _variants(boxes: Boxes, rotations: Floats, space: Space) -> tuple[Variant, ...]:
-    """Return one variant per rotation that gives different boxes."""
-    found: list[Variant] = []
+def _orientations(boxes: Boxes, rotations: Floats, space: Space) -> ItemType:
+    """Return one orientation for each rotation that gives different boxes."""
+    found: list[Orientation] = []
     seen: set[bytes] = set()
     for rotation in rotations:
         lo, hi = rotated_boxes(boxes.lo, boxes.hi, rotation)
@@ -144,13 +226,15 @@ def _variants(boxes: Boxes, rotations: Floats, space: Space) -> tuple[Variant, .
         if key in seen:
             continue
         seen.add(key)
-        home = find_home(lo, hi, space)
-        found.append(Variant(rotation, lo, hi, -least, np.full(3, np.nan) if home is None else home))
+        position = find_feasible_position(lo, hi, space)
+        found.append(
+            Orientation(rotation, lo, hi, -least, np.full(3, np.nan) if position is None else position)
+        )
     return tuple(found)
 
 
-def _standing(problem: PackingProblem) -> tuple[Floats, Floats]:
-    """Return the boxes of the fixed placements in build coordinates, each ``(m, 3)``."""
+def _fixed_boxes(problem: PackingProblem) -> tuple[Floats, Floats]:
+    """Return the boxes of the fixed placements in build coordinates, each ``(m, 3)`` mm."""
     corners = [np.empty((0, 3))], [np.empty((0, 3))]
     for placement in problem.fixed:
         boxes = boxes_of(problem.items[placement.item].volume)
@@ -159,12 +243,31 @@ def _standing(problem: PackingProblem) -> tuple[Floats, Floats]:
     return np.concatenate(corners[0]), np.concatenate(corners[1])
 
 
-def placements(
-    scene: Scene, items: Sequence[int], variant: Sequence[int], place: Floats
-) -> tuple[Placement, ...]:
-    """Return the placements of `items`, whose variants' least corners lie at `place` ``(n, 3)``."""
-    chosen = [scene.kinds[scene.kind[item]][v] for item, v in zip(items, variant, strict=True)]
-    return tuple(
-        Placement(int(item), v.rotation, at + v.shift)
-        for item, v, at in zip(items, chosen, place, strict=True)
-    )
+def _starts(lengths: Sequence[int]) -> Int64s:
+    return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
+
+
+def _room(instance: PreparedInstance) -> Floats:
+    """Return the room of the kernels: items are longer by the clearance, so the upper walls are moved by it."""
+    space, gap = instance.space, instance.problem.clearance
+    corners, rules = (*space.lo, *(space.hi + gap)), (gap, space.slack, float(space.flat))
+    return np.array([*corners, *space.axis, space.radius, *rules, *_least_space(instance)])
+
+
+def _least_space(instance: PreparedInstance) -> Floats:
+    """Return the least residual space of a useful point, ``(3,)`` mm; with items of several boxes any is useful."""
+    orientations = instance.orientations
+    if not orientations or any(len(orientation.lo) > 1 for orientation in orientations):
+        return np.full(3, PAIR_SLACK)
+    least = np.min([orientation.size for orientation in orientations], axis=0)
+    return np.asarray(np.maximum(least + instance.problem.clearance - instance.space.slack, PAIR_SLACK))
+
+
+def _obstacles(instance: PreparedInstance) -> Floats:
+    """Return forbidden zones and fixed boxes ``(m, 6)`` mm.
+
+    Zones need no clearance: their lower sides are moved up by it, which cancels the clearance of the items.
+    """
+    gap = instance.problem.clearance
+    zones = np.hstack((instance.space.zone_lo + gap, instance.space.zone_hi))
+    return np.concatenate((zones, np.hstack((instance.fixed_lo, instance.fixed_hi + gap))))

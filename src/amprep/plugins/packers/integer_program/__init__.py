@@ -1,25 +1,25 @@
-"""The packer `ip`: the thesis's integer program, after a heuristic's packing."""
+"""The packer `ip`: the integer program of the thesis, after a heuristic's packing."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
+from amprep.kernels.boxes.records import Arrangement
 from amprep.model.control import Progress, Stop
-from amprep.model.packing import Packing, PackingProblem, Status
-from amprep.plugins.packers.bounds.volume import builds_bound, fill_bound
-from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.model.packing import Packing, PackingProblem
+from amprep.plugins.packers.bounds.combinatorial import packing_bound
+from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import (
-    Arrangement,
-    arrangement_of,
-    builds_of,
-    left_out,
+    PackerResult,
+    as_packing,
+    builds_used,
+    status_of,
     value_of,
 )
-from amprep.plugins.packers.instance.prepare import Scene, prepare
-from amprep.plugins.packers.integer_program.data import Ground, count_directions, prepare_ground
+from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
+from amprep.plugins.packers.integer_program.constraints import make_program
+from amprep.plugins.packers.integer_program.data import ModelData, count_directions, prepare_model_data
 from amprep.plugins.packers.integer_program.decode import read_arrangement, start_values
-from amprep.plugins.packers.integer_program.model import make_program, value_unit
 from amprep.plugins.packers.integer_program.solver import TOLERANCE, Outcome, solve
 from amprep.plugins.packers.params import ExtremePointsParams, IpParams
 
@@ -32,104 +32,106 @@ def pack_ip(
     stop: Stop,
     progress: Progress,
 ) -> Packing:
-    """Pack by the integer program of thesis 2.2, boxes of one item by substitution (2.3).
+    """Pack by the integer program of thesis 2.2; the boxes of one item are substituted as in 2.3."""
+    instance = prepare(problem)
+    return as_packing(
+        instance, solve_instance(instance, params=params, rng=rng, stop=stop, progress=progress)
+    )
 
-    The packing by extreme points comes first. In a fill problem the solver starts from it; in a builds
-    problem it is asked for one build fewer, so that *infeasible* is the proof. Bounds of the program are
-    passed on without clearance only, for with it the program asks for more than the judge does at corners.
-    Proofs hold to within the solver's tolerances.
+
+def solve_instance(
+    instance: PreparedInstance,
+    *,
+    params: IpParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> PackerResult:
+    """Return the better one of the heuristic's arrangement and that of the integer program.
+
+    In a fill problem the solver starts from the heuristic's arrangement. In a builds problem it gets one build fewer,
+    so that *infeasible* is the proof. Bounds of the program count without clearance only, because with clearance the
+    program demands more distance at corners than the judge. Proofs hold to within the tolerances of the solver.
     """
-    known = pack_extreme_points(problem, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
-    scene = prepare(problem)
-    if settled(scene, known, stop):
+    known = construct(instance, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
+    if is_final(instance, known, stop):
         return known
-    filling = problem.objective == "fill"
-    directions = count_directions(scene, params)
+    directions = count_directions(instance, params)
     if directions > params.directions:
-        return replace(known, stop_reason=too_many(directions, params))
+        return known._replace(stop_reason=too_many(directions, params))
     progress(0.0, "building the model")
-    ground = prepare_ground(scene, 1 if filling else len(known.builds) - 1, params)
-    program, variables = make_program(ground, params)
-    arrangement = arrangement_of(scene, known)
+    builds = 1 if instance.filling else builds_used(instance, known.arrangement) - 1
+    data = prepare_model_data(instance, builds, params)
+    program, variables = make_program(data, params)
     outcome = solve(
         program,
         params,
         nodes=node_budget(directions, params),
         stop=stop,
         progress=progress,
-        start=start_values(ground, variables, arrangement) if filling else None,
+        start=start_values(data, variables, known.arrangement) if instance.filling else None,
     )
-    found = read_arrangement(ground, variables) if outcome.solved else None
-    if found is not None and better(scene, found, arrangement):
+    arrangement = known.arrangement
+    found = read_arrangement(data, variables) if outcome.solved else None
+    if found is not None and _is_better(instance, found, arrangement):
         arrangement = found
-    packing = as_packing(scene, arrangement, proved_bound(ground, outcome), outcome.stop_reason)
-    progress(1.0, f"gap {gap_of(packing, problem):.1%}")
-    return packing
+    bound = proved_bound(data, outcome)
+    result = PackerResult(arrangement, closed_bound(instance, arrangement, bound), outcome.stop_reason)
+    progress(1.0, f"gap {gap_of(instance, result):.1%}")
+    return result
 
 
-def settled(scene: Scene, known: Packing, stop: Stop) -> bool:
-    """Whether a heuristic's packing is all there is: the best one, nothing to pack, or no time left."""
-    in_time = all(unplaced.reason != "out of time" for unplaced in known.unplaced)
-    filling = scene.problem.objective == "fill"
-    # one build cannot become fewer; that of the fixed items alone is there anyway
-    least = not filling and len(known.builds) <= 1
-    return known.status == "optimal" or stop() or not scene.free.any() or not in_time or least
+def is_final(instance: PreparedInstance, known: PackerResult, stop: Stop) -> bool:
+    """Return whether a heuristic's result stays: it is optimal, nothing is to be packed, or no time is left."""
+    # one build cannot become fewer, and the build of fixed items is always there
+    least = not instance.filling and builds_used(instance, known.arrangement) <= 1
+    optimal = status_of(instance, known) == "optimal"
+    return optimal or stop() or not instance.free.any() or not known.complete or least
 
 
 def too_many(directions: int, params: IpParams) -> str:
-    """Return the stop reason of a program too large to build."""
+    """Return the stop reason for a program that is too large to build."""
     return f"model too large: {directions} direction variables, at most {params.directions}"
 
 
 def node_budget(directions: int, params: IpParams) -> int:
-    """Return how many branch-and-bound nodes the effort allows."""
+    """Return the number of branch-and-bound nodes that the effort allows."""
     return math.ceil(params.effort * 1e6 / max(directions, 1))
 
 
-def better(scene: Scene, found: Arrangement, known: Arrangement) -> bool:
-    """Whether an arrangement beats another one that is valid."""
-    if scene.problem.objective == "fill":
-        return value_of(scene, found) > value_of(scene, known)
-    return int(found.build.max(initial=-1)) < int(known.build.max(initial=-1))
+def _is_better(instance: PreparedInstance, found: Arrangement, known: Arrangement) -> bool:
+    """Return whether an arrangement is better than a known valid one."""
+    if instance.filling:
+        return value_of(instance, found) > value_of(instance, known)
+    return found.builds < known.builds
 
 
-def proved_bound(ground: Ground, outcome: Outcome) -> float:
-    """Return what no packing can beat, by the combinatorial bound and what the solver proved."""
-    scene, filling = ground.scene, ground.filling
-    plain = fill_bound(scene) if filling else float(max(builds_bound(scene), 1))
-    if scene.problem.clearance > 0.0:
+def proved_bound(data: ModelData, outcome: Outcome) -> float:
+    """Return the better one of the combinatorial bound and the bound of the solver."""
+    instance = data.instance
+    plain = packing_bound(instance) if instance.filling else max(packing_bound(instance), 1.0)
+    if instance.problem.clearance > 0.0:
         return plain
-    if filling:
-        fixed = sum(scene.problem.items[placement.item].value for placement in scene.problem.fixed)
-        return plain if outcome.bound is None else min(plain, outcome.bound * value_unit(ground) + fixed)
+    if instance.filling:
+        fixed = sum(instance.problem.items[placement.item].value for placement in instance.problem.fixed)
+        return plain if outcome.bound is None else min(plain, outcome.bound * data.value_unit + fixed)
     if outcome.status == "infeasible":
-        return float(ground.builds + 1)
+        return float(data.builds + 1)
     return max(plain, math.ceil((outcome.bound or 0.0) - 10.0 * TOLERANCE))
 
 
-def as_packing(scene: Scene, arrangement: Arrangement, bound: float, stop_reason: str) -> Packing:
-    """Return an arrangement with its bound as a packing; a gap within the solver's tolerance is closed."""
-    builds, unplaced = builds_of(scene, arrangement), left_out(scene, arrangement, "no room left")
-    status: Status = "feasible"
-    if scene.problem.objective == "fill":
-        value = value_of(scene, arrangement)
-        if bound <= value * (1.0 + TOLERANCE):
-            bound, status = value, "optimal"
-    elif scene.too_large.any():
-        status = "infeasible"
-    elif len(builds) <= bound:
-        status = "optimal"
-    return Packing(builds, unplaced, bound, status, stop_reason)
+def closed_bound(instance: PreparedInstance, arrangement: Arrangement, bound: float) -> float:
+    """Return the bound of a fill problem, or the value reached where the gap is within the solver's tolerance."""
+    value = value_of(instance, arrangement) if instance.filling else -math.inf
+    return value if bound <= value * (1.0 + TOLERANCE) else bound
 
 
-def gap_of(packing: Packing, problem: PackingProblem) -> float:
-    """Return how far the packing may be from the best one, as a share of the bound."""
-    if packing.bound is None or packing.bound == 0.0:
+def gap_of(instance: PreparedInstance, result: PackerResult) -> float:
+    """Return the gap between the result and its bound, as a fraction of the bound."""
+    if result.bound == 0.0:
         return 0.0
-    placed = [placement.item for build in packing.builds for placement in build]
-    reached = (
-        sum(problem.items[item].value for item in placed)
-        if problem.objective == "fill"
-        else float(len(packing.builds))
-    )
-    return abs(packing.bound - reached) / abs(packing.bound)
+    if instance.filling:
+        reached = value_of(instance, result.arrangement)
+    else:
+        reached = float(builds_used(instance, result.arrangement))
+    return abs(result.bound - reached) / abs(result.bound)

@@ -1,4 +1,4 @@
-"""Solving a program by HiGHS or any other solver that pulp knows, with bound, budget and cancellation."""
+"""Solve a program by HiGHS or any other solver of pulp, with bound, budget and cancellation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,23 +14,25 @@ from amprep.plugins.packers.params import IpParams
 Proof = Literal["optimal", "infeasible", "stopped"]
 
 TOLERANCE = 1e-6
-"""Integers and constraints are met, and gaps closed, to within this."""
+"""Tolerance of integers, constraints and gaps."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a solver said.
+    """The result of a solver.
 
     Attributes
     ----------
     status
-        ``optimal``, ``infeasible``, or ``stopped`` when it ended without proof.
+        ``optimal``, ``infeasible``, or ``stopped`` when it ended without a proof.
     bound
-        Proved bound of the objective in the program's own sense; None when the solver tells none.
+        Proven bound of the objective; None when the solver reports none.
     solved
         Whether the variables hold a solution.
     stop_reason
-        Why it ended.
+        Why the solver ended.
+    nodes
+        Branch-and-bound nodes used.
     """
 
     status: Proof
@@ -49,14 +51,14 @@ def solve(
     progress: Progress,
     start: Mapping[Any, float] | None = None,
 ) -> Outcome:
-    """Solve, and leave the solution in the variables.
+    """Solve a program; its variables hold the solution afterwards.
 
     Parameters
     ----------
     nodes
-        Of the branch-and-bound tree, at most.
+        Greatest number of branch-and-bound nodes.
     start
-        Values of variables in a known solution; a wrong one is no matter.
+        Warm start: values of the variables; an infeasible one is ignored.
 
     Raises
     ------
@@ -78,10 +80,10 @@ def _solve_by_highs(
     progress: Progress,
     start: Mapping[Any, float],
 ) -> Outcome:
-    """Solve by HiGHS, step by step, for pulp passes on neither a start nor the bound."""
-    kinds = highspy.cb.HighsCallbackType
+    """Solve by HiGHS through its own interface, because pulp passes on neither a warm start nor the bound."""
+    callbacks = highspy.cb.HighsCallbackType
 
-    def look(_kind: Any, _words: str, at: Any, answer: Any, _own: Any) -> None:
+    def inspect(_type: Any, _message: str, at: Any, answer: Any, _own: Any) -> None:
         progress(min(at.mip_node_count / max(nodes, 1), 1.0), f"gap {at.mip_gap:.1%}")
         if stop():
             answer.user_interrupt = True
@@ -93,11 +95,11 @@ def _solve_by_highs(
         gapAbs=TOLERANCE,
         timeLimit=None if stop.deadline is None else max(stop.remaining(), 0.0),
         random_seed=params.seed,
-        mip_allow_restart=False,  # a restart may take longer than all nodes of a small budget
+        mip_allow_restart=False,  # a restart may take longer than a small budget of nodes
         mip_max_nodes=nodes,
         mip_feasibility_tolerance=TOLERANCE / 100.0,
-        callbackTuple=(look, None),
-        callbacksToActivate=[kinds.kCallbackMipInterrupt],
+        callbackTuple=(inspect, None),
+        callbacksToActivate=[callbacks.kCallbackMipInterrupt],
     )
     solver.createAndConfigureSolver(program)
     solver.buildSolverModel(program)
@@ -112,7 +114,7 @@ def _solve_by_highs(
 
 
 def _outcome_of_highs(program: pulp.LpProblem, variables: list[Any], stop: Stop) -> Outcome:
-    """Read status, bound and solution; HiGHS was given the negative of what is to be maximised."""
+    """Return the outcome; HiGHS minimises, so a maximised objective was negated for it."""
     highs, statuses = program.solverModel, highspy.HighsModelStatus
     status, info = highs.getModelStatus(), highs.getInfo()
     reasons = {
@@ -141,7 +143,7 @@ def _outcome_of_highs(program: pulp.LpProblem, variables: list[Any], stop: Stop)
 
 
 def _solve_by_name(program: pulp.LpProblem, name: str, stop: Stop) -> Outcome:
-    """Solve by any solver of pulp; only an optimum tells a bound."""
+    """Solve by any solver of pulp; only an optimum gives a bound."""
     limit = None if stop.deadline is None else max(stop.remaining(), 1.0)
     try:
         status = program.solve(installed_solver(name, limit))
@@ -158,17 +160,17 @@ def _solve_by_name(program: pulp.LpProblem, name: str, stop: Stop) -> Outcome:
 
 
 def installed_solver(name: str, time_limit: float | None = None, **options: Any) -> Any:
-    """Return pulp's solver of that name, silent; `options` are its own.
+    """Return the silent solver of that name; `options` are passed on to it.
 
     Raises
     ------
     AmprepError
-        If pulp does not know it, or its program is not installed.
+        If pulp does not know the solver, or it is not installed.
     """
     if name not in pulp.listSolvers():
         raise AmprepError(f"pulp knows no solver {name!r}{nearest_hint(name, pulp.listSolvers())}")
     solver = pulp.getSolver(name, msg=False, timeLimit=time_limit, **options)
     if not solver.available():
         known = ", ".join(pulp.listSolvers(onlyAvailable=True))
-        raise AmprepError(f"the solver {name} is not installed; installed: {known}")
+        raise AmprepError(f"the solver {name} is not installed; choose one of {known}")
     return solver

@@ -1,11 +1,12 @@
-"""The variables of the packing program, and the sums of them that the constraints speak of."""
+"""The variables of the packing program, and the expressions in them that the constraints use."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import pulp
 
-from amprep.plugins.packers.integer_program.data import Ground, Pair, Piece
+from amprep.plugins.packers.integer_program.data import ModelBox, ModelData, Pair
+from amprep.plugins.packers.params import IpParams
 
 Variable = Any
 """A pulp variable."""
@@ -13,24 +14,27 @@ Variable = Any
 Expression = Any
 """A pulp expression, or a number."""
 
+Constraint = Any
+"""A pulp constraint."""
+
 
 @dataclass(frozen=True, eq=False)
 class Variables:
-    """The unknowns.
+    """The variables.
 
     Attributes
     ----------
     inside
-        Per body and build, 1 when it is there; the thesis's *used*.
+        Per copy and build: 1 when the copy is in the build; the thesis's *used*.
     turned
-        Per body and variant, 1 when it has that orientation; empty for bodies that have one.
+        Per copy and orientation: 1 when the copy has that orientation; empty for copies with one orientation.
     position
-        Per body the coordinates of the least corner.
+        Per copy: the coordinates of the least corner.
     direction
-        Per pair: right, left, up, down, front, back; 0 when the second piece is on that side of the first,
-        1 when it need not be; None where there is no room for it.
+        Per pair: right, left, up, down, front, back; 0 when the second box is on that side of the first, 1 when it
+        need not be; None where there is no room for it.
     opened
-        Per build, 1 when it holds an item; empty in a fill problem.
+        Per build: 1 when it holds an item; empty in a fill problem.
     """
 
     inside: list[list[Variable]]
@@ -39,31 +43,40 @@ class Variables:
     direction: list[list[Variable | None]]
     opened: list[Variable]
 
-    def used(self, body: int) -> Expression:
-        """Return 1 when the body is in some build."""
-        return pulp.lpSum(self.inside[body])
+    def used(self, copy: int) -> Expression:
+        """Return 1 when the copy is in some build."""
+        return pulp.lpSum(self.inside[copy])
 
 
-def make_variables(problem: pulp.LpProblem, ground: Ground) -> Variables:
-    """Return new variables of `problem`, over `ground`."""
-    bodies = range(len(ground.bodies))
+@dataclass(frozen=True, eq=False)
+class Program:
+    """Data, variables and parameters, from which constraints are made."""
+
+    data: ModelData
+    variables: Variables
+    params: IpParams
+
+
+def make_variables(problem: pulp.LpProblem, data: ModelData) -> Variables:
+    """Return new variables of `problem`."""
+    copies = range(len(data.copies))
     return Variables(
-        inside=[[_binary(problem, f"inside_{a}_{b}") for b in range(ground.builds)] for a in bodies],
+        inside=[[_binary(problem, f"inside_{a}_{b}") for b in range(data.builds)] for a in copies],
         turned=[
-            [_binary(problem, f"turned_{a}_{v}") for v in range(len(body.variants))]
-            if len(body.variants) > 1
+            [_binary(problem, f"turned_{a}_{v}") for v in range(len(copy.orientations))]
+            if len(copy.orientations) > 1
             else []
-            for a, body in enumerate(ground.bodies)
+            for a, copy in enumerate(data.copies)
         ],
         position=[
             [
                 problem.add_variable(f"{axis}_{a}", float(least), float(most))
-                for axis, least, most in zip("xyz", body.least, body.most, strict=True)
+                for axis, least, most in zip("xyz", copy.least, copy.most, strict=True)
             ]
-            for a, body in enumerate(ground.bodies)
+            for a, copy in enumerate(data.copies)
         ],
-        direction=[_directions(problem, number, pair) for number, pair in enumerate(ground.pairs)],
-        opened=[] if ground.filling else [_binary(problem, f"opened_{b}") for b in range(ground.builds)],
+        direction=[_directions(problem, number, pair) for number, pair in enumerate(data.pairs)],
+        opened=[] if data.filling else [_binary(problem, f"opened_{b}") for b in range(data.builds)],
     )
 
 
@@ -79,20 +92,20 @@ def _binary(problem: pulp.LpProblem, name: str) -> Variable:
     return problem.add_variable(name, cat=pulp.LpBinary)
 
 
-def corner(ground: Ground, variables: Variables, piece: Piece, axis: int, *, upper: bool) -> Expression:
-    """Return a piece's lower or upper corner: its body's position plus its place within the body.
+def corner(data: ModelData, variables: Variables, box: ModelBox, axis: int, *, upper: bool) -> Expression:
+    """Return a coordinate of a box's lower or upper corner: the position of its copy plus its offset in the copy.
 
     This is the substitution of thesis 2.3: the boxes of one item share its three coordinates.
     """
-    if piece.body < 0:
-        return float((piece.least_hi if upper else piece.least_lo)[axis])
-    body = ground.bodies[piece.body]
-    offsets = (body.hi if upper else body.lo)[:, piece.box, axis].tolist()
-    return variables.position[piece.body][axis] + within(variables, piece.body, offsets)
+    if box.copy < 0:
+        return float((box.least_hi if upper else box.least_lo)[axis])
+    copy = data.copies[box.copy]
+    offsets = (copy.hi if upper else copy.lo)[:, box.number, axis].tolist()
+    return variables.position[box.copy][axis] + offset_of(variables, box.copy, offsets)
 
 
-def within(variables: Variables, body: int, offsets: list[float]) -> Expression:
-    """Return the one of a body's `offsets`, one for each variant, that its orientation chooses."""
+def offset_of(variables: Variables, copy: int, offsets: list[float]) -> Expression:
+    """Return that one of the offsets, one for each orientation, which the orientation of the copy selects."""
     if len(offsets) == 1:
         return offsets[0]
-    return pulp.LpAffineExpression(list(zip(variables.turned[body], offsets, strict=True)))
+    return pulp.LpAffineExpression(list(zip(variables.turned[copy], offsets, strict=True)))

@@ -13,18 +13,17 @@ from amprep.kernels.boxes.relations import IMPOSSIBLE, POSSIBLE, UNKNOWN, fit_to
 from amprep.model import Stop, silent
 from amprep.plugins.packers.auto import pack_auto
 from amprep.plugins.packers.auto.set_covering import Pool, choose_builds
-from amprep.plugins.packers.bounds.dual_feasible import heaviest_scale, heavy_scales, measures
-from amprep.plugins.packers.bounds.fractional_cover import CoverBound
-from amprep.plugins.packers.bounds.relaxation import relaxed_boxes
-from amprep.plugins.packers.bounds.volume import builds_bound
+from amprep.plugins.packers.bounds.combinatorial import builds_bound, relaxed_boxes
+from amprep.plugins.packers.bounds.dual_feasible import greatest_scale, greatest_scales, measures
+from amprep.plugins.packers.bounds.fractional_cover import CoveringBound
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import AutoParams
 from amprep.testing.packing_instances import mpv_instance
 
 
 def proved(task, work=50e6):
-    scene = prepare(task)
-    bound = CoverBound(scene, builds_bound(scene))
+    instance = prepare(task)
+    bound = CoveringBound(instance, builds_bound(instance))
     bound.prove(lambda: 10**9, work, Stop())
     return bound.builds
 
@@ -37,7 +36,7 @@ def test_lengths_that_fit_a_row_keep_fitting_under_every_measure(lengths):
 
 
 def fits_by_trial(sizes, room):
-    """Whether small whole boxes fit: every place on the whole-number grid is tried."""
+    """Whether small whole boxes fit: every position on the integer grid is tried."""
     taken = np.zeros(room, bool)
 
     def place(rest):
@@ -57,16 +56,18 @@ def fits_by_trial(sizes, room):
 
 @examples(150)
 @given(st.lists(st.tuples(*[st.integers(1, 4)] * 3), min_size=1, max_size=5))
-def test_relations_agree_with_trying_every_place(sizes):
+def test_relations_agree_with_trying_every_position(sizes):
     room, scratch = (4, 4, 3), relation_scratch(5)
     boxes = np.array(sizes, float)
     verdict, _ = fit_together(len(boxes), boxes, np.array(room, float), 10**6, scratch)
     assert (verdict == POSSIBLE) == fits_by_trial(sizes, room)
     if verdict == POSSIBLE:
-        place = scratch.head[len(boxes) * (len(boxes) - 1) // 2, :, : len(boxes)].T
-        assert (place + boxes <= np.array(room)).all()
+        position = scratch.head[len(boxes) * (len(boxes) - 1) // 2, :, : len(boxes)].T
+        assert (position + boxes <= np.array(room)).all()
         for one, other in itertools.combinations(range(len(boxes)), 2):
-            apart = (place[one] + boxes[one] <= place[other]) | (place[other] + boxes[other] <= place[one])
+            apart = (position[one] + boxes[one] <= position[other]) | (
+                position[other] + boxes[other] <= position[one]
+            )
             assert apart.any()
 
 
@@ -79,14 +80,14 @@ def test_a_search_that_is_cut_off_settles_nothing_and_three_long_boxes_do_not_sh
 def test_nine_boxes_of_which_two_share_a_build_need_five_where_the_volume_says_two():
     # sides over half count 1, a side of half counts a half
     task = problem([(3, 3, 2)] * 9, (5, 5, 4))
-    assert heaviest_scale(np.array([[0.6, 0.6, 0.5]]), np.array([9])) == pytest.approx(4.5)
+    assert greatest_scale(np.array([[0.6, 0.6, 0.5]]), np.array([9])) == pytest.approx(4.5)
     assert builds_bound(prepare(task)) == 5
 
 
 def test_the_first_scale_is_the_volume_and_no_two_are_alike():
-    share = np.random.default_rng(1).uniform(0.1, 0.9, (20, 3))
-    found = heavy_scales(share, np.ones(20, np.int64), 6)
-    assert np.allclose(found[:, 0], share.prod(axis=1))
+    fraction = np.random.default_rng(1).uniform(0.1, 0.9, (20, 3))
+    found = greatest_scales(fraction, np.ones(20, np.int64), 6)
+    assert np.allclose(found[:, 0], fraction.prod(axis=1))
     for one, other in itertools.combinations(found.T, 2):
         assert np.abs(one - other).max() > 0.08
 
@@ -119,7 +120,7 @@ def test_clearance_and_tolerance_are_relaxed_and_whole_lengths_stay_whole():
 
 
 def test_builds_are_chosen_from_the_pool_or_not_at_all():
-    # kinds 0 to 3 once each; two builds hold them all, the first three builds waste one
+    # item types 0 to 3 once each; two builds hold them all, the first three take one build more
     pool = Pool(np.array([0, 1, 3, 4, 6, 8]), np.array([0, 1, 2, 3, 0, 1, 2, 3]))
     demand = np.ones(4, np.int64)
     chosen = choose_builds(pool, demand, np.array([0, 1, 2]), 2, Stop())

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from tests.shared.examples import examples
 
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem
+from amprep.plugins.packers.bounds.combinatorial import builds_bound, fill_bound
 from amprep.plugins.packers.bounds.l2 import l2_bound
-from amprep.plugins.packers.bounds.volume import builds_bound, fill_bound
 from amprep.plugins.packers.instance.prepare import prepare
 
 # mean L2 of ten instances each, n = 50, 100, 150, 200 (Martello, Pisinger, Vigo; see docs/algorithms.md)

@@ -9,14 +9,14 @@ from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Stop, silent
-from amprep.plugins.packers.extreme_points import pack_extreme_points
-from amprep.plugins.packers.instance.arrangement import arrangement_of
+from amprep.plugins.packers.extreme_points import construct
+from amprep.plugins.packers.instance.arrangement import value_of
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.integer_program import pack_ip
-from amprep.plugins.packers.integer_program.data import prepare_ground
+from amprep.plugins.packers.integer_program.constraints import make_program
+from amprep.plugins.packers.integer_program.data import prepare_model_data
 from amprep.plugins.packers.integer_program.decode import start_values
 from amprep.plugins.packers.integer_program.local_search import neighbourhood, pack_ip_local_search
-from amprep.plugins.packers.integer_program.model import make_program
 from amprep.plugins.packers.integer_program.solver import solve
 from amprep.plugins.packers.params import ExtremePointsParams, IpLocalSearchParams, IpParams
 
@@ -29,11 +29,10 @@ def value(given_problem, packing):
     return sum(given_problem.items[p.item].value for build in packing.builds for p in build)
 
 
-def start(given_problem):
+def start(instance):
     rng = np.random.default_rng(1)
-    return pack_extreme_points(
-        given_problem, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent
-    )
+    found = construct(instance, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent)
+    return found.arrangement
 
 
 def search(given_problem, stop=None, **params):
@@ -53,19 +52,19 @@ some_sizes = st.lists(st.tuples(side, side, side), min_size=2, max_size=6)
 @given(some_sizes, st.integers(1, 3), st.integers(0, 12), st.booleans())
 def test_one_step_changes_no_more_than_the_distances_allow(sizes, used_distance, direction_distance, tighten):
     given_problem = problem(sizes, 5)
-    params, scene = IpLocalSearchParams(tighten=tighten), prepare(given_problem)
-    ground, old = prepare_ground(scene, 1, params), arrangement_of(scene, start(given_problem))
-    near = neighbourhood(ground, old, used_distance, direction_distance)
-    program, variables = make_program(ground, params, (near.used_near, near.directions_near))
-    values = start_values(ground, variables, old)
+    params, instance = IpLocalSearchParams(tighten=tighten), prepare(given_problem)
+    data, old = prepare_model_data(instance, 1, params), start(instance)
+    near = neighbourhood(data, old, used_distance, direction_distance)
+    program, variables = make_program(data, params, (near.used_near, near.directions_near))
+    values = start_values(data, variables, old)
     outcome = solve(program, params, nodes=2000, stop=Stop(), progress=silent, start=values)
     assert outcome.solved
 
     used = [round(inside[0].varValue) for inside in variables.inside]
     assert sum(new != was for new, was in zip(used, near.used, strict=True)) <= used_distance
     moved = 0
-    for pair, held, directions in zip(ground.pairs, near.holding, variables.direction, strict=True):
-        if near.used[pair.one.body] and near.used[pair.other.body]:
+    for pair, held, directions in zip(data.pairs, near.holding, variables.direction, strict=True):
+        if near.used[pair.one.copy] and near.used[pair.other.copy]:
             old_values = [1 - int(h) for h in held]
             new_values = [1 if v is None else round(v.varValue) for v in directions]
             moved += sum(new != was for new, was in zip(new_values, old_values, strict=True))
@@ -91,7 +90,8 @@ def test_the_thesis_distances_never_lose_value(used_distance, direction_distance
     packing = search(
         given_problem, used_distance=used_distance, direction_distance=direction_distance, effort=0.01
     )
-    assert value(given_problem, packing) >= value(given_problem, start(given_problem))
+    instance = prepare(given_problem)
+    assert value(given_problem, packing) >= value_of(instance, start(instance))
     assert packing.bound >= value(given_problem, packing)
 
 

@@ -11,14 +11,15 @@ from tests.shared.examples import examples
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
+from amprep.kernels.boxes.records import Arrangement
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
-from amprep.plugins.packers.extreme_points import pack_extreme_points
-from amprep.plugins.packers.instance.arrangement import arrangement_of
+from amprep.plugins.packers.extreme_points import construct
+from amprep.plugins.packers.instance.arrangement import PackerResult
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.integer_program import gap_of, pack_ip
-from amprep.plugins.packers.integer_program.data import count_directions, prepare_ground
+from amprep.plugins.packers.integer_program.constraints import make_program
+from amprep.plugins.packers.integer_program.data import count_directions, prepare_model_data
 from amprep.plugins.packers.integer_program.decode import start_values
-from amprep.plugins.packers.integer_program.model import make_program
 from amprep.plugins.packers.params import ExtremePointsParams, IpParams
 
 ROOM = 4
@@ -111,7 +112,7 @@ def test_a_builds_problem_is_solved_to_the_fewest_builds_whatever_the_options(si
 
 @pytest.mark.parametrize("sharing", [True, False])
 def test_alternative_copies_turn_an_item_that_fits_only_turned(sharing):
-    # three bars of 4 x 1 in a room of 3 x 4: all must be turned; a fourth of 2 x 1 finds no place
+    # three bars of 4 x 1 in a room of 3 x 4: all must be turned; a fourth of 2 x 1 finds no position
     bars = [Item(i, 0, box(4, 1, 1), 4.0, TURNS) for i in range(3)] + [Item(3, 0, box(2, 1, 1), 1.0)]
     given_problem = PackingProblem(tuple(bars), BuildVolume(np.array([3.0, 4.0, 1.0])), "fill")
     packing = run(given_problem, sharing=sharing, effort=10.0)
@@ -130,7 +131,7 @@ def test_boxes_of_one_item_keep_their_relative_position():
 
 
 def test_a_zone_takes_its_room_away():
-    # a zone over half the plate, up to the lid: of two halves only one finds a place
+    # a zone over half the plate, up to the lid: of two halves only one finds a position
     half = [(2, 4, 4), (2, 4, 4)]
     items = problem(half).items
     space = BuildVolume(np.full(3, 4.0), "box", np.array([[2.0, 0, 0]]), np.array([[4.0, 4, 9]]))
@@ -141,7 +142,7 @@ def test_a_zone_takes_its_room_away():
 
 @pytest.mark.parametrize("objective", ["fill", "builds"])
 def test_what_stands_already_stays_in_the_first_build(objective):
-    # a cube of 2 fixed in the middle of a room of 4 leaves no place for a slab of 4 x 4 x 2
+    # a cube of 2 fixed in the middle of a room of 4 leaves no position for a slab of 4 x 4 x 2
     sizes = [(2, 2, 2), (4, 4, 2), (1, 1, 1)]
     fixed = (Placement(0, np.eye(3), np.ones(3)),)
     packing = run(problem(sizes, objective, fixed=fixed), effort=10.0)
@@ -184,9 +185,9 @@ def test_a_model_beyond_the_limit_is_not_built():
 
 def test_the_plain_model_has_the_size_that_the_thesis_counts():
     # 4n + 6 C(n, 2) variables and 7 C(n, 2) constraints; once() adds one for each item
-    scene, n = prepare(problem([(1, 2, 3), (2, 2, 3), (3, 2, 1), (1, 1, 4), (2, 3, 3)])), 5
+    instance, n = prepare(problem([(1, 2, 3), (2, 2, 3), (3, 2, 1), (1, 1, 4), (2, 3, 3)])), 5
     params = IpParams(sharing=False, symmetry=False, tighten=False)
-    program, _ = make_program(prepare_ground(scene, 1, params), params)
+    program, _ = make_program(prepare_model_data(instance, 1, params), params)
     assert program.numVariables() == 4 * n + 6 * 10
     assert program.numConstraints() == 7 * 10 + n
 
@@ -195,14 +196,12 @@ def test_the_plain_model_has_the_size_that_the_thesis_counts():
 @given(some_sizes, switches, st.booleans())
 def test_a_heuristics_packing_satisfies_the_program_as_its_start(sizes, options, equal):
     given_problem = problem(sizes * 2 if equal else sizes)
-    params, scene = IpParams(**options), prepare(given_problem)
+    params, instance = IpParams(**options), prepare(given_problem)
     rng = np.random.default_rng(1)
-    known = pack_extreme_points(
-        given_problem, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent
-    )
-    ground = prepare_ground(scene, 1, params)
-    program, variables = make_program(ground, params)
-    for variable, number in start_values(ground, variables, arrangement_of(scene, known)).items():
+    known = construct(instance, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent)
+    data = prepare_model_data(instance, 1, params)
+    program, variables = make_program(data, params)
+    for variable, number in start_values(data, variables, known.arrangement).items():
         variable.varValue = number
     assert [c.name for c in program.constraints() if not c.valid(1e-6)] == []
 
@@ -234,10 +233,11 @@ def test_the_same_problem_gives_the_same_packing_within_a_budget_of_nodes():
     assert one.bound == other.bound >= value(given_problem, one)
 
 
-def test_a_gap_is_the_distance_to_the_bound_as_a_share_of_it():
-    given_problem = problem([(4, 4, 3), (4, 4, 3)], "builds")
-    packing = run(given_problem)
-    assert gap_of(packing, given_problem) == 0.0
+def test_a_gap_is_the_distance_to_the_bound_as_a_fraction_of_it():
+    instance = prepare(problem([(4, 4, 3), (4, 4, 3)], "builds"))
+    one_in_each = Arrangement(np.array([0, 1]), np.array([0, 0]), np.zeros((2, 3)))
+    assert gap_of(instance, PackerResult(one_in_each, 2.0, "finished")) == 0.0
+    assert gap_of(instance, PackerResult(one_in_each, 1.0, "finished")) == 1.0
 
 
 @pytest.mark.parametrize("wrong", [{"effort": -1.0}, {"threads": 0}, {"directions": -1}, {"seed": -1}])
