@@ -43,7 +43,7 @@ SECTIONS_OF = {
 """Sections that a file or folder may cite, because it implements just these."""
 
 USED_TWICE: set[str] = {
-    "Bins", "Body", "Choice", "Part", "Prices", "Search", "Variant",
+    "Prices",
 }  # fmt: skip
 """Class names that still mean two things; the list may only shrink."""
 
