@@ -1,4 +1,4 @@
-"""The promises of each stage as functions; each returns the violations it found."""
+"""Independent checks of the results of each stage; each returns the violations that it found."""
 
 from amprep.checks.violation import Violation
 

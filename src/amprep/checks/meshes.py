@@ -1,4 +1,4 @@
-"""The promise of mesh readers: finite, indexed in range, oriented, a solid of the volume stated."""
+"""Check the mesh reader's promise: valid triangles, outward orientation, and the volume of the record."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from amprep.model.part import Part
 
 
 def check_part(part: Part) -> list[Violation]:
-    """Check that a part is what its record says.
+    """Return the violations of the mesh reader's promise.
 
-    The mesh is finite, indexed in range and not empty. If `is_solid`, manifold3d accepts it as it is, no
-    shell is inside out, and `volume_mm3` is the volume where the winding number is positive. Quantity is at
-    least 1; region triangles and triangle colours belong to the mesh.
+    The mesh must be finite, not empty, and its indices in range. If `is_solid`, manifold3d must accept it
+    unchanged, no shell may be inside out, and `volume_mm3` must be the volume where the winding number is
+    positive. The quantity must be at least 1, and the triangles of regions and colours must exist.
     """
     vertices, triangles = part.mesh.vertices, part.mesh.triangles
     defect = find_defect(vertices, triangles)
@@ -27,7 +27,7 @@ def check_part(part: Part) -> list[Violation]:
     if repaired.turned.any():
         found.append(Violation("orientation", part.name, f"expected outward normals; {repaired.notes[-1]}"))
     if not np.isclose(part.volume_mm3, repaired.volume, rtol=1e-6):
-        message = f"expected {repaired.volume:.6g} mm3, the record says {part.volume_mm3:.6g} mm3"
+        message = f"expected {repaired.volume:.6g} mm3, found {part.volume_mm3:.6g} mm3 in the record"
         found.append(Violation("volume", part.name, message))
     return found
 
@@ -40,10 +40,10 @@ def _check_records(part: Part) -> list[Violation]:
     for region in part.regions:
         chosen = region.triangles
         if chosen is not None and len(chosen) and not 0 <= chosen.min() <= chosen.max() < count:
-            message = f"region {region.name!r}: expected triangles 0 to {count - 1}, found others"
+            message = f"region {region.name!r}: expected triangles 0 to {count - 1}, found others outside this range"
             found.append(Violation("regions", part.name, message))
     colours = part.appearance.triangle_colours
     if colours is not None and np.shape(colours) != (count, 3):
-        message = f"expected three for each of {count} triangles, found shape {np.shape(colours)}"
+        message = f"expected 3 colours for each of {count} triangles, found shape {np.shape(colours)}"
         found.append(Violation("colours", part.name, message))
     return found

@@ -1,4 +1,4 @@
-"""What a broken promise looks like."""
+"""The record of a broken promise."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ class Violation:
     Attributes
     ----------
     promise
-        Short name, the same for every violation of the promise: ``inside build volume``, ``clearance``, ...
+        Short name of the promise, such as ``inside build volume`` or ``clearance``.
     subject
-        What broke it: a part's label, a support's name.
+        The part, support or item that breaks it.
     message
-        Expected, found, with numbers and units.
+        What was found and what was expected, with numbers and units.
     """
 
     promise: str

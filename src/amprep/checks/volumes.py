@@ -1,4 +1,4 @@
-"""The volume maker's promise: the bounding volume contains the part as a solid, interior included."""
+"""Check the volume maker's promise: the bounding volume contains the part with its interior."""
 
 from typing import TYPE_CHECKING
 
@@ -14,25 +14,24 @@ from amprep.model.part import Part
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-_NOTHING_MM3 = 1e-9
+_NEGLIGIBLE_MM3 = 1e-9
 
 
 def check_volume(part: Part, volume: BoundingVolume) -> list[Violation]:
-    """Return where the part reaches further than `CONTACT_TOLERANCE` out of the volume.
+    """Return a violation if the part extends more than `CONTACT_TOLERANCE` beyond the bounding volume.
 
-    The part counts as a solid: what is inside its surface has to be covered too. Of a surface that
-    encloses nothing, the triangles are.
+    The interior of a solid must be covered as well. For a part that is not a solid, the triangles must be.
     """
     if isinstance(volume, Boxes) and len(volume.lo) == 1:
         return _in_one_box(part, volume)
     cover = _cover(volume)
-    outside = (_solid(part) if part.is_solid else _sheet(part, volume)) - cover
-    if outside.is_empty() or outside.volume() <= _NOTHING_MM3:
+    outside = (_solid(part) if part.is_solid else _triangle_prisms(part, volume)) - cover
+    if outside.is_empty() or outside.volume() <= _NEGLIGIBLE_MM3:
         return []
     if not isinstance(volume, Boxes) and thickness(outside) <= CONTACT_TOLERANCE:
         return []
     box = outside.bounding_box()
-    return [_violation(part, f"{outside.volume():.3g} mm3 of it", np.array(box[:3]), np.array(box[3:]))]
+    return [_violation(part, f"{outside.volume():.3g} mm3 of the part", np.array(box[:3]), np.array(box[3:]))]
 
 
 def _in_one_box(part: Part, volume: Boxes) -> list[Violation]:
@@ -40,20 +39,22 @@ def _in_one_box(part: Part, volume: Boxes) -> list[Violation]:
     if (least >= volume.lo[0] - CONTACT_TOLERANCE).all() and (most <= volume.hi[0] + CONTACT_TOLERANCE).all():
         return []
     reach = max(float((volume.lo[0] - least).max()), float((most - volume.hi[0]).max()))
-    return [_violation(part, f"it by up to {reach:.4g} mm", least, most)]
+    return [_violation(part, f"up to {reach:.4g} mm of the part", least, most)]
 
 
-def _violation(part: Part, what: str, least: Floats, most: Floats) -> Violation:
+def _violation(part: Part, amount: str, least: Floats, most: Floats) -> Violation:
     place = " to ".join(
         "(" + ", ".join(f"{c:.3f}" for c in corner.tolist()) + ")" for corner in (least, most)
     )
     return Violation(
-        "volume contains part", part.name, f"the bounding volume leaves out {what}, within {place} mm"
+        "volume contains part",
+        part.name,
+        f"the bounding volume does not contain {amount}, in the box {place} mm",
     )
 
 
 def _cover(volume: BoundingVolume) -> "Manifold":
-    """Return the volume as a solid; boxes are grown by the tolerance, which also closes gaps of rounding."""
+    """Return the volume as a solid. Boxes are enlarged by the tolerance, which also closes rounding gaps."""
     from manifold3d import Manifold, OpType
 
     if isinstance(volume, Boxes):
@@ -67,8 +68,8 @@ def _solid(part: Part) -> "Manifold":
     return as_manifold(part.mesh.vertices, part.mesh.triangles)
 
 
-def _sheet(part: Part, volume: BoundingVolume) -> "Manifold":
-    """Return the triangles that no single box holds, as thin prisms."""
+def _triangle_prisms(part: Part, volume: BoundingVolume) -> "Manifold":
+    """Return the triangles that no single box contains, as thin prisms."""
     from manifold3d import Manifold, OpType
 
     corners = part.mesh.vertices[part.mesh.triangles]

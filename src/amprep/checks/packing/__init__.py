@@ -1,1 +1,1 @@
-"""Judges of packings."""
+"""Checks of packings, on the bounding volumes and on the meshes."""

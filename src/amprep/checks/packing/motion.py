@@ -1,4 +1,4 @@
-"""Whether a motion is rigid and allowed."""
+"""Check that a placement is a rigid motion in an allowed orientation."""
 
 import numpy as np
 
@@ -6,11 +6,11 @@ from amprep.arrays import Floats
 from amprep.model.part import Orientations
 
 ROTATION_TOLERANCE = 5e-6
-"""Of a matrix entry: files keep six digits."""
+"""Tolerance of a matrix entry; 3MF files keep six digits."""
 
 
 def motion_fault(rotation: Floats, orientations: Orientations) -> str:
-    """Return why a rotation ``(3, 3)`` is not one of `orientations`; empty when it is."""
+    """Return what is wrong with a rotation ``(3, 3)``, as a verb phrase; empty if it is one of `orientations`."""
     if (
         not np.isfinite(rotation).all()
         or np.abs(rotation @ rotation.T - np.eye(3)).max() > 4.0 * ROTATION_TOLERANCE
@@ -21,7 +21,11 @@ def motion_fault(rotation: Floats, orientations: Orientations) -> str:
     if orientations.freedom == "free":
         return ""
     if orientations.freedom == "about-z":
-        return "" if abs(rotation[2, 2] - 1.0) <= ROTATION_TOLERANCE else "turns about more than the vertical"
+        return (
+            ""
+            if abs(rotation[2, 2] - 1.0) <= ROTATION_TOLERANCE
+            else "rotates about an axis other than the vertical"
+        )
     nearest = np.abs(orientations.matrices - rotation).max(axis=(1, 2)).min(initial=np.inf)
     if nearest <= ROTATION_TOLERANCE:
         return ""

@@ -1,4 +1,4 @@
-"""The packer's promise, judged on the true meshes: inside, apart, out of the zones, moved only as allowed."""
+"""Check the packer's promise on the meshes: parts are inside, apart, outside zones and placed as allowed."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -8,6 +8,7 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
+from amprep.checks.packing.walls import wall_distances
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.distance import box_solids, near_pairs, solid_distance, triangle_distance
 from amprep.geometry.meshes.manifold import as_manifold
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 ROUNDING = 1e-4
-"""mm; what the numbers of a build file may move a point by, on top of `CONTACT_TOLERANCE`."""
+"""Largest movement of a point (mm) by rounding in a build file; added to `CONTACT_TOLERANCE`."""
 
 TOLERANCE = CONTACT_TOLERANCE + ROUNDING
 
 
-class Body:
-    """A placed part in build coordinates, its solid made when it is first needed."""
+class CheckedPart:
+    """A placed part in build coordinates; its solid is built when it is first needed."""
 
     def __init__(self, placed: PlacedPart, settings: BuildSettings) -> None:
         self.placed = placed
@@ -37,110 +38,117 @@ class Body:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The moved mesh."""
+        """The mesh in build coordinates."""
         return self.placed.mesh
 
     @cached_property
     def solid(self) -> "Manifold":
-        """The moved mesh as a solid."""
+        """The mesh in build coordinates as a solid."""
         return as_manifold(self.mesh.vertices, self.mesh.triangles)
 
     @property
     def corners(self) -> Floats:
-        """The triangles' corners, ``(m, 3, 3)`` mm."""
+        """The corners ``(m, 3, 3)`` of the triangles (mm)."""
         return np.asarray(self.mesh.vertices[self.mesh.triangles])
 
-    def gap(self, other: "Body", limit: float) -> float:
-        """Return the distance to the other body, at most `limit`; negative when they overlap."""
+    def gap(self, other: "CheckedPart", limit: float) -> float:
+        """Return the distance to another part (mm), at most `limit`; negative if they overlap."""
         if self.is_solid and other.is_solid:
             return solid_distance(self.solid, other.solid, limit)
         return triangle_distance(self.corners, other.corners, limit)
 
 
 def check_placed(parts: Sequence[PlacedPart], settings: BuildSettings, stop: Stop) -> list[Violation]:
-    """Return how the parts of a build break the packer's promise.
+    """Return the violations of the packer's promise in a build.
 
-    A part's own clearance and lift hold instead of the build's; between two parts the greater clearance does.
-    Exact on the meshes: solids by manifold3d, surfaces triangle by triangle. Overlaps up to
-    `CONTACT_TOLERANCE` are contact.
+    The clearance and lift of a part override those of the build; between two parts the greater clearance
+    applies. The check is exact on the meshes: solids are intersected by manifold3d, surfaces triangle by
+    triangle. An overlap of at most `CONTACT_TOLERANCE` is contact.
+
+    Parameters
+    ----------
+    parts
+        The placed parts of one build.
+    settings
+        Build volume, clearance and lift.
+    stop
+        Asked before each pair of parts. After a stop, a violation says that the rest is unknown.
     """
-    bodies = [Body(placed, settings) for placed in parts]
-    found = [*_moved(bodies), *_unchanged(bodies)]
-    bodies = [body for body in bodies if np.isfinite(body.mesh.vertices).all() and len(body.mesh.triangles)]
-    found += [violation for body in bodies for violation in _inside(body, settings)]
-    return [*found, *_zones(bodies, settings), *_apart(bodies, stop)]
+    checked = [CheckedPart(placed, settings) for placed in parts]
+    found = [*_moved(checked), *_unchanged(checked)]
+    checked = [part for part in checked if np.isfinite(part.mesh.vertices).all() and len(part.mesh.triangles)]
+    found += [violation for part in checked for violation in _inside(part, settings)]
+    return [*found, *_zones(checked, settings), *_apart(checked, stop)]
 
 
-def _moved(bodies: Sequence[Body]) -> list[Violation]:
-    """Return the motions that are not allowed."""
+def _moved(checked: Sequence[CheckedPart]) -> list[Violation]:
+    """Return the placements that are not allowed."""
     found = []
-    for body in bodies:
-        matrix = body.placed.matrix
-        fault = motion_fault(matrix[:3, :3], body.placed.orientations)
+    for part in checked:
+        matrix = part.placed.matrix
+        fault = motion_fault(matrix[:3, :3], part.placed.orientations)
         if not np.isfinite(matrix).all() or (matrix[3] != [0.0, 0.0, 0.0, 1.0]).any():
             fault = "is not a rigid motion"
         if fault:
-            found.append(Violation("allowed motion", body.label, f"its placement {fault}"))
+            found.append(Violation("allowed motion", part.label, f"its placement {fault}"))
     return found
 
 
-def _unchanged(bodies: Sequence[Body]) -> list[Violation]:
-    """Return the parts whose geometry is not what the build file recorded."""
+def _unchanged(checked: Sequence[CheckedPart]) -> list[Violation]:
+    """Return the parts whose geometry differs from the digest in the build file."""
     return [
         Violation(
-            "part unchanged", body.label, "its geometry differs from what the build file recorded (SHA-256)"
+            "part unchanged", part.label, "its geometry differs from what the build file recorded (SHA-256)"
         )
-        for body in bodies
-        if body.placed.recorded_digest and body.placed.recorded_digest != body.placed.part.mesh.digest
+        for part in checked
+        if part.placed.recorded_digest and part.placed.recorded_digest != part.placed.part.mesh.digest
     ]
 
 
-def _inside(body: Body, settings: BuildSettings) -> list[Violation]:
-    """Return how far a part reaches out of the build volume, or comes too near to walls, lid or plate."""
-    least, most = body.mesh.bounds
-    size = settings.space.size
+def _inside(part: CheckedPart, settings: BuildSettings) -> list[Violation]:
+    """Return where a part leaves the build volume or is too close to its walls, its top or the plate."""
     found = []
-    if settings.space.shape == "cylinder":
-        away = body.mesh.vertices[:, :2] - size[:2] / 2.0
-        walls = float(size[0]) / 2.0 - float(np.hypot(away[:, 0], away[:, 1]).max())
-    else:
-        walls = float(min(least[:2].min(), (size[:2] - most[:2]).min()))
-    for name, distance in (("walls", walls), ("lid", float(size[2] - most[2]))):
+    for name, distance in wall_distances(part.mesh.vertices, settings.space).items():
         if distance < -TOLERANCE:
-            message = f"it reaches {-distance:.4g} mm through the {name} of the build volume"
-            found.append(Violation("inside build volume", body.label, message))
-        elif distance < body.clearance - TOLERANCE:
-            message = f"it is {distance:.4g} mm from the {name}, needs {body.clearance:g} mm"
-            found.append(Violation("clearance", body.label, message))
-    if least[2] < -TOLERANCE:
-        message = f"it reaches {-least[2]:.4g} mm below the plate"
-        found.append(Violation("inside build volume", body.label, message))
-    elif least[2] < body.lift - TOLERANCE:
+            message = f"it extends {-distance:.4g} mm beyond the {name} of the build volume"
+            found.append(Violation("inside build volume", part.label, message))
+        elif distance < part.clearance - TOLERANCE:
+            message = f"it is {distance:.4g} mm from the {name}, expected at least {part.clearance:g} mm"
+            found.append(Violation("clearance", part.label, message))
+    lowest = part.mesh.bounds[0][2]
+    if lowest < -TOLERANCE:
+        message = f"it extends {-lowest:.4g} mm below the plate"
+        found.append(Violation("inside build volume", part.label, message))
+    elif lowest < part.lift - TOLERANCE:
         found.append(
-            Violation("lift", body.label, f"it is {least[2]:.4g} mm above the plate, needs {body.lift:g} mm")
+            Violation(
+                "lift",
+                part.label,
+                f"it is {lowest:.4g} mm above the plate, expected at least {part.lift:g} mm",
+            )
         )
     return found
 
 
-def _zones(bodies: Sequence[Body], settings: BuildSettings) -> list[Violation]:
-    """Return the parts that reach into a forbidden zone."""
+def _zones(checked: Sequence[CheckedPart], settings: BuildSettings) -> list[Violation]:
+    """Return the parts that overlap a forbidden zone."""
     found = []
     for number, (lo, hi) in enumerate(
         zip(settings.space.zone_lo, settings.space.zone_hi, strict=True), start=1
     ):
-        for body in bodies:
-            least, most = body.mesh.bounds
+        for part in checked:
+            least, most = part.mesh.bounds
             if (least >= hi - TOLERANCE).any() or (most <= lo + TOLERANCE).any():
                 continue
             zone = box_solids(lo[None], hi[None])
             depth = (
-                -solid_distance(body.solid, zone, 0.0)
-                if body.is_solid
-                else -triangle_distance(body.corners, _faces(zone), 0.0)
+                -solid_distance(part.solid, zone, 0.0)
+                if part.is_solid
+                else -triangle_distance(part.corners, _faces(zone), 0.0)
             )
-            if depth > TOLERANCE or (not body.is_solid and _any_inside(body, lo, hi)):
-                message = f"it reaches into forbidden zone {number}"
-                found.append(Violation("outside forbidden zones", body.label, message))
+            if depth > TOLERANCE or (not part.is_solid and _any_inside(part, lo, hi)):
+                message = f"it overlaps forbidden zone {number}"
+                found.append(Violation("outside forbidden zones", part.label, message))
     return found
 
 
@@ -150,32 +158,34 @@ def _faces(solid: "Manifold") -> Floats:
     return np.asarray(mesh.vert_properties[:, :3][mesh.tri_verts.astype(np.int64)])
 
 
-def _any_inside(body: Body, lo: Floats, hi: Floats) -> bool:
-    """Return whether a corner of a surface lies inside a box."""
-    vertices = body.mesh.vertices
+def _any_inside(part: CheckedPart, lo: Floats, hi: Floats) -> bool:
+    """Return whether a vertex of a surface is inside a box."""
+    vertices = part.mesh.vertices
     return bool(((vertices > lo + TOLERANCE) & (vertices < hi - TOLERANCE)).all(axis=1).any())
 
 
-def _apart(bodies: Sequence[Body], stop: Stop) -> list[Violation]:
-    """Return the pairs that overlap or are nearer than their clearance."""
-    if not bodies:
+def _apart(checked: Sequence[CheckedPart], stop: Stop) -> list[Violation]:
+    """Return the pairs of parts that overlap or are closer than their clearance."""
+    if not checked:
         return []
-    lo, hi = (np.array([body.mesh.bounds[side] for body in bodies]) for side in (0, 1))
-    greatest = max(body.clearance for body in bodies)
+    lo, hi = (np.array([part.mesh.bounds[side] for part in checked]) for side in (0, 1))
+    greatest = max(part.clearance for part in checked)
     found: list[Violation] = []
     pairs = near_pairs(lo, hi, greatest - TOLERANCE)
     for done, (i, j) in enumerate(pairs):
         if stop():
-            message = f"stopped ({stop.reason}) after {done} of {len(pairs)} near pairs; the rest is unknown"
+            message = (
+                f"stopped ({stop.reason}) after {done} of {len(pairs)} pairs of parts; the others are unknown"
+            )
             return [*found, Violation("clearance", "build", message)]
-        one, other = bodies[i], bodies[j]
+        one, other = checked[i], checked[j]
         needed = max(one.clearance, other.clearance)
         gap = one.gap(other, needed)
         if gap < -TOLERANCE:
             found.append(
-                Violation("no intersection", one.label, f"it overlaps {other.label}, {-gap:.4g} mm deep")
+                Violation("no intersection", one.label, f"it overlaps {other.label} by {-gap:.4g} mm")
             )
         elif gap < needed - TOLERANCE:
-            message = f"it is {max(gap, 0.0):.4g} mm from {other.label}, needs {needed:g} mm"
+            message = f"it is {max(gap, 0.0):.4g} mm from {other.label}, expected at least {needed:g} mm"
             found.append(Violation("clearance", one.label, message))
     return found

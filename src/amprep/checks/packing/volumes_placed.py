@@ -1,4 +1,4 @@
-"""The packer's promise, judged on the bounding volumes."""
+"""Check the packer's promise on the bounding volumes."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -10,6 +10,7 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
+from amprep.checks.packing.walls import wall_distances
 from amprep.checks.violation import Violation
 from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
 from amprep.geometry.meshes.distance import box_distance, box_solids, convex_solid, near_pairs, solid_distance
@@ -22,12 +23,12 @@ if TYPE_CHECKING:
 
 TOLERANCE = CONTACT_TOLERANCE * (1.0 + 1e-5)
 
-_CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
+_CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedVolume:
-    """An item's bounding volume where it stands."""
+    """The bounding volume of a placed item."""
 
     problem: PackingProblem
     placement: Placement
@@ -35,13 +36,13 @@ class PlacedVolume:
 
     @property
     def label(self) -> str:
-        """How messages name it."""
+        """The item's name in messages."""
         item = self.problem.items[self.placement.item]
         return f"item {self.placement.item} (part {item.part}, copy {item.copy})"
 
     @cached_property
     def boxes(self) -> tuple[Floats, Floats] | None:
-        """Corners ``(k, 3)`` of its boxes, or None when they are not parallel to the axes, or not boxes."""
+        """Corners ``(k, 3)`` of its boxes; None if it is not made of boxes parallel to the axes."""
         volume, turned = self.problem.items[self.placement.item].volume, np.abs(self.placement.rotation)
         if not isinstance(volume, Boxes) or (np.minimum(turned, np.abs(1.0 - turned)) > 1e-9).any():
             return None
@@ -50,10 +51,10 @@ class PlacedVolume:
 
     @cached_property
     def hulls(self) -> list[Floats]:
-        """Points ``(n, 3)`` of each piece; the piece is their convex hull, save for a `Solid`."""
+        """Points ``(n, 3)`` of each piece. A piece is the convex hull of its points, except in a `Solid`."""
         volume = self.problem.items[self.placement.item].volume
         if isinstance(volume, Boxes):
-            pieces = [np.where(_CUBE, hi, lo) for lo, hi in zip(volume.lo, volume.hi, strict=True)]
+            pieces = [np.where(_CORNERS, hi, lo) for lo, hi in zip(volume.lo, volume.hi, strict=True)]
         elif isinstance(volume, ConvexPieces):
             pieces = [piece.vertices for piece in volume.pieces]
         else:
@@ -62,7 +63,7 @@ class PlacedVolume:
 
     @cached_property
     def points(self) -> Floats:
-        """All points of the pieces, ``(n, 3)``."""
+        """The points ``(n, 3)`` of all pieces."""
         return np.concatenate(self.hulls)
 
     @cached_property
@@ -76,17 +77,18 @@ class PlacedVolume:
         return as_manifold(self.points, volume.mesh.triangles)
 
     def gap(self, other: "PlacedVolume", limit: float) -> float:
-        """Return the distance to another volume, at most about `limit`; negative when they overlap."""
+        """Return the distance to another volume (mm), at most about `limit`; negative if they overlap."""
         if self.boxes is not None and other.boxes is not None:
             return box_distance(*self.boxes, *other.boxes)
         return solid_distance(self.solid, other.solid, limit)
 
 
 def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
-    """Return how a packing breaks the packer's promise.
+    """Return the violations of the packer's promise.
 
-    Clearance is the true distance of the volumes, contact up to `CONTACT_TOLERANCE`. Fixed placements must be
-    kept and are not judged otherwise. Items of boxes said to be too large must not fit an empty build.
+    The clearance is the exact distance between volumes; an overlap of at most `CONTACT_TOLERANCE` is contact.
+    Fixed placements must be kept and are not checked otherwise. An item of boxes that is unplaced as too large
+    must not fit an empty build.
     """
     faults = _each_item_once(problem, packing)
     if any(v.promise == "known item" for v in faults):
@@ -100,42 +102,46 @@ def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
 
 
 def _each_item_once(problem: PackingProblem, packing: Packing) -> list[Violation]:
-    """Return the items that are nowhere, in two places, or unknown, and builds that hold nothing."""
+    """Return unknown items, items that do not occur exactly once, and empty builds."""
     placed = [placement.item for build in packing.builds for placement in build]
     count = Counter([*placed, *(unplaced.item for unplaced in packing.unplaced)])
     n = len(problem.items)
     faults = [
-        Violation("known item", f"item {i}", f"items are 0 to {n - 1}")
+        Violation("known item", f"item {i}", f"is unknown; items are 0 to {n - 1}")
         for i in sorted(count)
         if not 0 <= i < n
     ]
     faults += [
-        Violation("every item once", f"item {i}", f"is in builds or unplaced {count[i]} times, not once")
+        Violation(
+            "every item once",
+            f"item {i}",
+            f"occurs {count[i]} times in the builds and the unplaced items, expected once",
+        )
         for i in range(n)
         if count[i] != 1
     ]
     for number, build in enumerate(packing.builds, start=1):
         if not build:
-            faults.append(Violation("no empty build", f"build {number}", "holds no item"))
+            faults.append(Violation("no empty build", f"build {number}", "contains no item"))
     if problem.objective != "builds" and len(packing.builds) > 1:
-        faults.append(
-            Violation("one build", "packing", f"has {len(packing.builds)} builds, the problem has one")
-        )
+        faults.append(Violation("one build", "packing", f"has {len(packing.builds)} builds, expected one"))
     return faults
 
 
 def _fixed_kept(problem: PackingProblem, packing: Packing) -> list[Violation]:
-    """Return the fixed placements that are not in the first build as given."""
+    """Return the fixed placements that the first build does not keep."""
     first = {placement.item: placement for placement in (packing.builds[0] if packing.builds else ())}
     return [
-        Violation("fixed placement kept", f"item {fixed.item}", "is not in the first build where it is fixed")
+        Violation(
+            "fixed placement kept", f"item {fixed.item}", "is not in the first build at its fixed placement"
+        )
         for fixed in problem.fixed
         if fixed.item not in first or np.abs(first[fixed.item].matrix - fixed.matrix).max() > 1e-9
     ]
 
 
 def _build_faults(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Violation]:
-    """Return the faults within one build."""
+    """Return the violations in one build."""
     faults: list[Violation] = []
     for volume in placed:
         orientations = problem.items[volume.placement.item].orientations
@@ -148,44 +154,42 @@ def _build_faults(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> li
         return faults
     for volume in placed:
         if not volume.fixed:
-            faults += [*_inside(problem, volume), *_standing(problem, volume), *_zones(problem, volume)]
+            faults += [*_inside(problem, volume), *_lifted(problem, volume), *_zones(problem, volume)]
     return [*faults, *_apart(problem, placed)]
 
 
 def _inside(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
-    """Return how far a volume comes nearer than the clearance to the walls or the lid."""
-    size, points = problem.space.size, volume.points
-    if problem.space.shape == "cylinder":
-        away = points[:, :2] - size[:2] / 2.0
-        walls = float(size[0]) / 2.0 - float(np.hypot(away[:, 0], away[:, 1]).max())
-    else:
-        walls = float(min(points[:, :2].min(), (size[:2] - points[:, :2]).min()))
+    """Return where a volume is closer than the clearance to the walls or the top of the build volume."""
     return [
         Violation(
             "inside build volume",
             volume.label,
-            f"it is {distance:.6g} mm from the {name}, needs {problem.clearance:g}",
+            f"it is {distance:.6g} mm from the {name}, expected at least {problem.clearance:g} mm",
         )
-        for name, distance in (("walls", walls), ("lid", float(size[2] - points[:, 2].max())))
+        for name, distance in wall_distances(volume.points, problem.space).items()
         if distance < problem.clearance - TOLERANCE
     ]
 
 
-def _standing(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
-    """Return whether a volume's lowest point is below `lift`, or above it without stacking."""
+def _lifted(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
+    """Return a violation if the lowest point is below `lift`, or above it although stacking is off."""
     lowest = float(volume.points[:, 2].min())
     if lowest < problem.lift - TOLERANCE:
         return [
-            Violation("lift", volume.label, f"its lowest point is at {lowest:.6g} mm, needs {problem.lift:g}")
+            Violation(
+                "lift",
+                volume.label,
+                f"its lowest point is {lowest:.6g} mm above the plate, expected at least {problem.lift:g} mm",
+            )
         ]
     if not problem.stacking and lowest > problem.lift + TOLERANCE:
-        message = f"its lowest point is at {lowest:.6g} mm; without stacking all stand at {problem.lift:g}"
+        message = f"its lowest point is {lowest:.6g} mm above the plate, expected {problem.lift:g} mm without stacking"
         return [Violation("stacking", volume.label, message)]
     return []
 
 
 def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
-    """Return the zones that a volume reaches into."""
+    """Return the forbidden zones that a volume overlaps."""
     faults = []
     least, most = volume.points.min(axis=0), volume.points.max(axis=0)
     for number, (lo, hi) in enumerate(
@@ -200,14 +204,16 @@ def _zones(problem: PackingProblem, volume: PlacedVolume) -> list[Violation]:
         if gap < -TOLERANCE:
             faults.append(
                 Violation(
-                    "outside forbidden zones", volume.label, f"it is {-gap:.6g} mm inside zone {number}"
+                    "outside forbidden zones",
+                    volume.label,
+                    f"it overlaps forbidden zone {number} by {-gap:.6g} mm",
                 )
             )
     return faults
 
 
 def _apart(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Violation]:
-    """Return the pairs that are nearer than the clearance."""
+    """Return the pairs of volumes that are closer than the clearance."""
     if not placed:
         return []
     lo = np.array([volume.points.min(axis=0) for volume in placed])
@@ -220,17 +226,23 @@ def _apart(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Viol
         gap = one.gap(other, problem.clearance)
         if gap < problem.clearance - TOLERANCE:
             promise = "clearance" if gap >= 0.0 else "no overlap"
-            message = f"it is {gap:.6g} mm from {other.label}, needs {problem.clearance:g}"
+            message = (
+                f"it overlaps {other.label} by {-gap:.6g} mm"
+                if gap < 0.0
+                else f"it is {gap:.6g} mm from {other.label}, expected at least {problem.clearance:g} mm"
+            )
             faults.append(Violation(promise, one.label, message))
     return faults
 
 
 def _reasons(problem: PackingProblem, packing: Packing) -> list[Violation]:
-    """Return the unplaced items without a reason, or with one that is not true."""
+    """Return the unplaced items without a reason, or with a wrong one."""
     faults = []
     for unplaced in packing.unplaced:
         if not unplaced.reason:
-            faults.append(Violation("reason given", f"item {unplaced.item}", "is unplaced without a reason"))
+            faults.append(
+                Violation("reason given", f"item {unplaced.item}", "is unplaced, but no reason is given")
+            )
         if (
             unplaced.reason == "too large"
             and 0 <= unplaced.item < len(problem.items)
@@ -238,14 +250,16 @@ def _reasons(problem: PackingProblem, packing: Packing) -> list[Violation]:
         ):
             faults.append(
                 Violation(
-                    "reason true", f"item {unplaced.item}", "is called too large but fits an empty build"
+                    "reason true",
+                    f"item {unplaced.item}",
+                    "is reported as too large, but it fits an empty build",
                 )
             )
     return faults
 
 
 def _fits(problem: PackingProblem, index: int) -> bool:
-    """Return whether an item of boxes fits an empty build in one of its listed orientations."""
+    """Return whether an item of boxes fits an empty build in one of its allowed orientations."""
     item, size, gap = problem.items[index], problem.space.size, problem.clearance
     if not isinstance(item.volume, Boxes) or item.orientations.freedom != "list":
         return False
@@ -262,28 +276,30 @@ def _fits(problem: PackingProblem, index: int) -> bool:
 
 
 def _claims(problem: PackingProblem, packing: Packing) -> list[Violation]:
-    """Return whether status and bound contradict the packing or each other."""
+    """Return where the status and the bound contradict the packing or each other."""
     reached, sign = _reached(problem, packing), -1.0 if problem.objective == "fill" else 1.0
     slack = 1e-9 * max(1.0, abs(reached))
-    left_out = problem.objective != "fill" and bool(packing.unplaced)
+    incomplete = problem.objective != "fill" and bool(packing.unplaced)
     faults = []
-    if packing.bound is not None and not left_out and sign * (packing.bound - reached) > slack:
+    if packing.bound is not None and not incomplete and sign * (packing.bound - reached) > slack:
         faults.append(
-            Violation("bound", "packing", f"reaches {reached:g}, beyond its own bound {packing.bound:g}")
+            Violation(
+                "bound", "packing", f"reaches {reached:g}, which is better than its bound {packing.bound:g}"
+            )
         )
     if packing.status == "optimal":
         proved = packing.bound is not None and sign * (reached - packing.bound) <= slack
-        if left_out or not proved:
+        if incomplete or not proved:
             left = len(packing.unplaced)
-            message = f"is called optimal but reaches {reached:g}, bound {packing.bound}, {left} unplaced"
+            message = f"is reported as optimal, but reaches {reached:g}, bound {packing.bound}, {left} items unplaced"
             faults.append(Violation("status", "packing", message))
     if packing.status == "infeasible" and not packing.unplaced:
-        faults.append(Violation("status", "packing", "is called infeasible but places every item"))
+        faults.append(Violation("status", "packing", "is reported as infeasible, but every item is placed"))
     return faults
 
 
 def _reached(problem: PackingProblem, packing: Packing) -> float:
-    """Return what the objective measures."""
+    """Return the value of the objective."""
     if problem.objective == "builds":
         return float(len(packing.builds))
     placed = [placement for build in packing.builds for placement in build]

@@ -1,4 +1,4 @@
-"""Boxes in a build volume: rotated boxes, unions, and where an item fits an empty build."""
+"""Rotate boxes, measure their union, and find a position for them in an empty build volume."""
 
 import itertools
 from typing import NamedTuple
@@ -9,20 +9,20 @@ from amprep.arrays import Floats
 
 
 class Space(NamedTuple):
-    """An empty build volume for boxes.
+    """An empty build volume with the clearance taken off its walls.
 
     Attributes
     ----------
     lo, hi
-        ``(3,)`` mm, least and greatest corner that a box may reach.
+        ``(3,)`` lower and upper corner of the region that boxes may use (mm).
     axis, radius
-        ``(2,)`` and mm, the circle that every corner stays in; radius 0 for none.
+        ``(2,)`` centre and radius (mm) of the circle that contains every corner of a box; radius 0: no circle.
     zone_lo, zone_hi
-        ``(m, 3)`` mm forbidden zones; touching them is allowed.
+        ``(m, 3)`` corners of the forbidden zones (mm); boxes may touch them.
     flat
-        The lowest point must be at `lo[2]`.
+        True if the lowest point of an item must be at `lo[2]`.
     slack
-        mm by which walls and zones give.
+        Depth to which a box may enter a wall or a zone (mm).
     """
 
     lo: Floats
@@ -36,14 +36,17 @@ class Space(NamedTuple):
 
 
 def rotated_boxes(lo: Floats, hi: Floats, rotation: Floats) -> tuple[Floats, Floats]:
-    """Return ``(k, 3)`` corners of the axis-parallel boxes around boxes turned by `rotation` ``(3, 3)``."""
+    """Return the corners ``(k, 3)`` of the axis-parallel boxes that enclose boxes rotated by a ``(3, 3)`` matrix."""
     centre, half = (lo + hi) / 2.0, (hi - lo) / 2.0
     centre, half = centre @ rotation.T, half @ np.abs(rotation).T
     return centre - half, centre + half
 
 
 def union_volume(lo: Floats, hi: Floats) -> float:
-    """Return the volume (area) of the union of boxes ``(k, d)``; boxes turned inside out count nothing."""
+    """Return the volume (or area) of the union of boxes ``(k, d)``; a box with a side of at most 0 is ignored.
+
+    The boxes cut space into cells along the planes of their faces; the volumes of the covered cells are added.
+    """
     real = (hi > lo).all(axis=1)
     lo, hi = lo[real], hi[real]
     if len(lo) <= 1:
@@ -59,10 +62,18 @@ def union_volume(lo: Floats, hi: Floats) -> float:
 
 
 def find_feasible_position(lo: Floats, hi: Floats, space: Space) -> Floats | None:
-    """Return a translation ``(3,)`` that puts boxes ``(k, 3)`` into an empty build; None if there is none.
+    """Return a translation ``(3,)`` that places boxes ``(k, 3)`` in an empty build; None if there is none.
 
-    Exact: whenever a place exists, there is one among the crossings of the curves that bound the
-    allowed translations (walls, sides of zones, circles of the corners), lowest plane first.
+    The search is exact. The allowed translations at one height are bounded by lines (walls and sides of zones)
+    and by circles (one per corner of the footprint). If any translation is allowed, one of the crossings of
+    these curves is. The lowest heights are tried first.
+
+    Parameters
+    ----------
+    lo, hi
+        ``(k, 3)`` corners of the item's boxes (mm).
+    space
+        The empty build volume.
     """
     least, most = lo.min(axis=0), hi.max(axis=0)
     if ((most - least) > (space.hi - space.lo) + space.slack).any():
@@ -73,48 +84,44 @@ def find_feasible_position(lo: Floats, hi: Floats, space: Space) -> Floats | Non
     if not space.flat:
         tops = (space.zone_hi[:, 2, None] - lo[:, 2]).ravel()
         heights += sorted(tops[tops > heights[0]].tolist())
-    ways = (
-        (_simple_places, _line_places)
-        if space.radius == 0.0
-        else (_simple_places, _line_places, _round_places)
-    )
-    for places, height in itertools.product(ways, heights):
-        found = _first_allowed(places(lo, hi, space), height, lo, hi, space)
+    sources = [_simple_positions, _line_crossings, *([_circle_crossings] if space.radius else [])]
+    for positions, height in itertools.product(sources, heights):
+        found = _first_allowed(positions(lo, hi, space), height, lo, hi, space)
         if found is not None:
             return found
     return None
 
 
-def _simple_places(lo: Floats, hi: Floats, space: Space) -> Floats:
-    """Return the corner of a box, the centre of a circle, as translations ``(1, 2)``."""
+def _simple_positions(lo: Floats, hi: Floats, space: Space) -> Floats:
+    """Return the translation ``(1, 2)`` to the lower corner of a box-shaped build, or to the centre of a round one."""
     least, most = lo.min(axis=0)[:2], hi.max(axis=0)[:2]
     return np.asarray(space.axis - (least + most) / 2.0 if space.radius else space.lo[:2] - least)[None]
 
 
 def _lines(lo: Floats, hi: Floats, space: Space, axis: int) -> Floats:
-    """Return the translations along `axis` at which a box touches the lower wall or a side of a zone."""
+    """Return the translations along an axis at which a box touches the lower wall or a side of a zone."""
     beyond = (space.zone_hi[:, axis, None] - lo[:, axis]).ravel()
     before = (space.zone_lo[:, axis, None] - hi[:, axis]).ravel()
     return np.unique(np.concatenate(([space.lo[axis] - lo[:, axis].min()], beyond, before)))
 
 
-def _line_places(lo: Floats, hi: Floats, space: Space) -> Floats:
-    """Return the crossings of lines as translations ``(n, 2)``."""
+def _line_crossings(lo: Floats, hi: Floats, space: Space) -> Floats:
+    """Return the crossings of the lines of both axes as translations ``(n, 2)``."""
     crossings = np.meshgrid(_lines(lo, hi, space, 0), _lines(lo, hi, space, 1), indexing="ij")
     return np.stack(crossings, axis=-1).reshape(-1, 2)
 
 
 def _centres(lo: Floats, hi: Floats, space: Space) -> Floats:
-    """Return, for each footprint corner, the centre of the circle of translations that keep it inside."""
+    """Return for each corner of the footprint the centre of the disc of translations that keep it inside."""
     corners = [np.stack((a[:, 0], b[:, 1]), axis=1) for a, b in itertools.product((lo, hi), (lo, hi))]
     return np.asarray(space.axis - np.unique(np.concatenate(corners), axis=0))
 
 
-def _round_places(lo: Floats, hi: Floats, space: Space) -> Floats:
-    """Return the crossings of the corners' circles with each other and with lines, and their extremes."""
+def _circle_crossings(lo: Floats, hi: Floats, space: Space) -> Floats:
+    """Return the crossings of the circles with each other and with the lines, and their extreme points."""
     centres, radius = _centres(lo, hi, space), space.radius
-    extremes = [centres + radius * np.array(way) for way in ((-1, 0), (1, 0), (0, -1), (0, 1))]
-    found = [*extremes, *_circle_circle(centres, radius)]
+    extremes = [centres + radius * np.array(direction) for direction in ((-1, 0), (1, 0), (0, -1), (0, 1))]
+    found = [*extremes, *_circle_pairs(centres, radius)]
     for axis in (0, 1):
         line = _lines(lo, hi, space, axis)
         offset = line[:, None] - centres[None, :, axis]
@@ -126,8 +133,8 @@ def _round_places(lo: Floats, hi: Floats, space: Space) -> Floats:
     return np.concatenate(found)
 
 
-def _circle_circle(centres: Floats, radius: float) -> list[Floats]:
-    """Return the crossings of circles of one radius, pair by pair, as two arrays ``(pairs, 2)``."""
+def _circle_pairs(centres: Floats, radius: float) -> list[Floats]:
+    """Return the two crossings of each pair of circles of equal radius, as two arrays ``(pairs, 2)``."""
     first, second = np.triu_indices(len(centres), 1)
     middle, apart = (centres[first] + centres[second]) / 2.0, centres[second] - centres[first]
     distance = np.hypot(apart[:, 0], apart[:, 1])
@@ -136,16 +143,16 @@ def _circle_circle(centres: Floats, radius: float) -> list[Floats]:
     return [middle + across, middle - across]
 
 
-def _first_allowed(places: Floats, height: float, lo: Floats, hi: Floats, space: Space) -> Floats | None:
-    """Return the first translation (places ``(n, 2)``, height) that keeps inside and out of the zones."""
-    allowed = (places >= space.lo[:2] - lo.min(axis=0)[:2] - space.slack).all(axis=1)
-    allowed &= (places <= space.hi[:2] - hi.max(axis=0)[:2] + space.slack).all(axis=1)
+def _first_allowed(positions: Floats, height: float, lo: Floats, hi: Floats, space: Space) -> Floats | None:
+    """Return the first translation (a position ``(n, 2)`` and the height) inside the walls and outside the zones."""
+    allowed = (positions >= space.lo[:2] - lo.min(axis=0)[:2] - space.slack).all(axis=1)
+    allowed &= (positions <= space.hi[:2] - hi.max(axis=0)[:2] + space.slack).all(axis=1)
     allowed &= height <= space.hi[2] - hi[:, 2].max() + space.slack
     if space.radius:
-        away = places[:, None] - _centres(lo, hi, space)[None]
+        away = positions[:, None] - _centres(lo, hi, space)[None]
         allowed &= (np.hypot(away[..., 0], away[..., 1]) <= space.radius + space.slack / 2.0).all(axis=1)
-    places = places[allowed]
-    moved = np.column_stack((places, np.full(len(places), height)))
+    positions = positions[allowed]
+    moved = np.column_stack((positions, np.full(len(positions), height)))
     for (corner, far), zone in itertools.product(
         zip(lo, hi, strict=True), zip(space.zone_lo, space.zone_hi, strict=True)
     ):

@@ -16,7 +16,7 @@ def amprep_mesh_readers() -> Iterable[MeshReader]:
     """Yield the built-in readers."""
     yield MeshReader(
         "3mf",
-        "3MF jobs: build items with quantity, colours, materials, metadata.",
+        "3MF jobs: build items with quantity, colours, materials and metadata.",
         run=_read_3mf,
         suffixes=(".3mf",),
     )
@@ -28,7 +28,7 @@ def amprep_mesh_readers() -> Iterable[MeshReader]:
     )
     yield MeshReader(
         "step",
-        "STEP files by way of OpenCASCADE; needs the extra amprep[step].",
+        "STEP files, triangulated by OpenCASCADE; needs the extra amprep[step].",
         run=_read_step,
         suffixes=(".step", ".stp"),
         params=StepParams,

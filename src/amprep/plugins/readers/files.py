@@ -1,4 +1,4 @@
-"""Read a mesh file into parts; STL by ourselves, the rest by trimesh behind our limits."""
+"""Read mesh files into parts: STL with our own reader, other formats with trimesh after checks of their size."""
 
 import io
 import warnings
@@ -27,14 +27,14 @@ class _Named(NamedTuple):
 
 
 def read_mesh_file(path: Path) -> list[Part]:
-    """Return the parts of a mesh file: one, or one for each mesh of a scene, transforms applied.
+    """Return the parts of a mesh file: one part, or one per mesh of a scene with its transform applied.
 
-    Corners at equal places are made one vertex: most of these formats store them apart.
+    Vertices at equal positions are merged, because most of these formats repeat them.
 
     Raises
     ------
     InputError
-        If it is not what its suffix says, damaged, too large, or refers to other files.
+        If the file does not match its suffix, is damaged or too large, or refers to other files.
     """
     content = read_bounded(path)
     suffix = path.suffix.lower()
@@ -48,11 +48,25 @@ def read_mesh_file(path: Path) -> list[Part]:
     if suffix in checks:
         checks[suffix](content, path)
     meshes = _load(content, suffix[1:], path, **(_SPLIT if suffix == ".obj" else {}))
-    return _parts(meshes[::-1] if suffix == ".obj" else meshes, (), path)  # trimesh takes objects last first
+    return _parts(
+        meshes[::-1] if suffix == ".obj" else meshes, (), path
+    )  # trimesh returns objects in reverse order
 
 
 def read_gltf(content: bytes, suffix: str, path: Path, notes: tuple[str, ...]) -> list[Part]:
-    """Return a part for each mesh of a glTF scene, scaled from metres; `path` is named in messages."""
+    """Return a part for each mesh of a glTF scene, scaled from metres to millimetres.
+
+    Parameters
+    ----------
+    content
+        The bytes of the file.
+    suffix
+        ``.glb`` or ``.gltf``.
+    path
+        The file's name in messages and in the parts.
+    notes
+        Notes for the first part.
+    """
     check_gltf(content, path, binary=suffix == ".glb")
     meshes = _load(content, suffix[1:], path, merge_primitives=True)
     scaled = [mesh._replace(vertices=mesh.vertices * _METRE) for mesh in meshes]
@@ -60,24 +74,26 @@ def read_gltf(content: bytes, suffix: str, path: Path, notes: tuple[str, ...]) -
 
 
 def _load(content: bytes, kind: str, path: Path, **options: Any) -> list[_Named]:
-    """Let trimesh read the meshes of a file; it gets bytes and no way to other files."""
+    """Read the meshes of a file with trimesh. It gets bytes only, so it cannot open other files."""
     import trimesh
 
     try:
         with warnings.catch_warnings():
-            # numpy only warns of text it cannot read, and gives the numbers before it
+            # numpy only warns about text that it cannot parse, and returns the numbers before it
             warnings.filterwarnings("error", message="string or file could not be read")
             scene = trimesh.load_scene(
                 io.BytesIO(content), file_type=kind, process=False, skip_materials=True, **options
             )
         return list(_instances(scene))
-    except Exception as error:  # trimesh raises whatever its parts raise
+    except Exception as error:  # trimesh passes on the exceptions of its parsers
         words = " ".join(f"{type(error).__name__}: {error}".split())[:200]
-        raise InputError(f"{path}: cannot be read as {kind.upper()} ({words}); is it damaged?") from error
+        raise InputError(
+            f"{path}: cannot be read as {kind.upper()} ({words}); the file may be damaged"
+        ) from error
 
 
 def _instances(scene: Any) -> Iterator[_Named]:
-    """Yield the meshes of a scene where they stand, mirrored ones turned back."""
+    """Yield the meshes of a scene with their transforms applied; mirrored ones keep outward normals."""
     for node in scene.graph.nodes_geometry:
         matrix, geometry = scene.graph[node]
         mesh = scene.geometry[geometry]
@@ -91,7 +107,7 @@ def _instances(scene: Any) -> Iterator[_Named]:
 
 def _parts(meshes: list[_Named], notes: tuple[str, ...], path: Path) -> list[Part]:
     if not any(len(mesh.triangles) for mesh in meshes):
-        raise InputError(f"{path}: no triangles in this file")
+        raise InputError(f"{path}: the file contains no triangles")
     return [
         Part(
             name=_printable(mesh.name) if len(meshes) > 1 else path.stem,
@@ -106,9 +122,9 @@ def _parts(meshes: list[_Named], notes: tuple[str, ...], path: Path) -> list[Par
 
 def _merged(mesh: _Named, path: Path) -> Mesh:
     if not np.isfinite(mesh.vertices).all():
-        raise InputError(f"{path}: has NaN or infinite coordinates; export it again")
+        raise InputError(f"{path}: the file contains non-finite coordinates; export it again")
     if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.vertices):
-        raise InputError(f"{path}: a triangle names a vertex that does not exist; the file is damaged")
+        raise InputError(f"{path}: a triangle refers to a vertex that does not exist; the file is damaged")
     vertices, triangles = merge_equal_vertices(mesh.vertices, mesh.triangles)
     return Mesh(vertices, triangles.astype(np.int32))
 

@@ -28,10 +28,10 @@ def _boxes(part: Part, *, params: Any, rng: np.random.Generator, stop: Stop) -> 
 @hookimpl
 def amprep_volume_makers() -> Iterable[VolumeMaker]:
     """Yield the built-in volume makers."""
-    yield VolumeMaker(name="box", summary="The box around the part.", run=_box, makes="box")
+    yield VolumeMaker(name="box", summary="The enclosing box of the part.", run=_box, makes="box")
     yield VolumeMaker(
         name="boxes",
-        summary="The boxes that the job gives for the part, checked to contain it.",
+        summary="The boxes given in the job for the part; they must contain it.",
         run=_boxes,
         makes="boxes",
     )

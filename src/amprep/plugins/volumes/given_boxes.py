@@ -1,4 +1,4 @@
-"""Bounding volumes of boxes: the one around the part, and those given by hand."""
+"""Bounding volumes of boxes: the enclosing box, and boxes given in the job."""
 
 import numpy as np
 
@@ -15,17 +15,17 @@ def enclosing_box(part: Part) -> Boxes:
 
 
 def given_boxes(part: Part) -> Boxes:
-    """Return the boxes that the job gives for the part.
+    """Return the boxes given in the job for the part.
 
     Raises
     ------
     JobError
-        If there are none, one has no extent, or the part is not wholly inside their union.
+        If there are none, if a box is empty, or if their union does not contain the part.
     """
     if part.boxes is None or not np.size(part.boxes):
         raise JobError(
             f"part {part.name!r}: the volume maker 'boxes' needs boxes = [[x0, y0, z0, x1, y1, z1], ...] in "
-            "the job's [[part]], got none; add them or choose the volume maker 'box'"
+            "the job's [[part]], found none; add them or choose the volume maker 'box'"
         )
     corners = np.asarray(part.boxes, dtype=np.float64).reshape(-1, 6)
     for number, corner in enumerate(corners.tolist(), start=1):

@@ -1,4 +1,4 @@
-"""The judge of placed meshes: every broken promise is named, and touching is not overlapping."""
+"""The check of placed meshes reports each broken promise; contact is not overlap."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def promises(*placed, stop=None, **rules):
     return [violation.promise for violation in check_placed(placed, settings, stop or Stop())]
 
 
-def test_an_empty_build_and_a_single_part_are_fine():
+def test_an_empty_build_and_a_single_part_are_valid():
     assert promises() == []
     assert promises(at(cube()), clearance=2.0) == []
 
@@ -51,7 +51,7 @@ def test_an_empty_build_and_a_single_part_are_fine():
         ((5, 5, 2.9), "lift"),
     ],
 )
-def test_walls_lid_and_plate_are_judged(place, promise):
+def test_parts_outside_or_too_close_to_walls_top_or_plate_are_reported(place, promise):
     assert promises(at(cube(), *place), clearance=2.0, lift=3.0) == [promise]
 
 
@@ -59,7 +59,7 @@ def test_contact_within_the_tolerance_is_accepted():
     assert promises(at(cube(), -0.0009, 5, 0), at(cube(), 9.998, 5, 0, label="b")) == []
 
 
-def test_a_cylinder_is_judged_by_its_round_wall():
+def test_a_round_build_volume_has_a_round_wall():
     space = BuildVolume(np.array([20.0, 20.0, 20.0]), "cylinder")
     assert promises(at(cube(), 5, 5), space=space) == []
     assert promises(at(cube(), 8, 8), space=space) == ["inside build volume"]
@@ -67,14 +67,14 @@ def test_a_cylinder_is_judged_by_its_round_wall():
     assert promises(at(cube(), 5, 5), space=space, clearance=3.0) == ["clearance"]
 
 
-def test_overlap_and_clearance_are_judged_on_the_meshes():
+def test_overlap_and_clearance_are_measured_on_the_meshes():
     for x, expected in ((15.0, []), (14.9, ["no intersection"]), (17.0, []), (16.9, [])):
         assert promises(at(cube()), at(cube(), x, label="b")) == expected
     for x, expected in ((17.0, []), (16.9, ["clearance"]), (14.9, ["no intersection"])):
         assert promises(at(cube()), at(cube(), x, label="b"), clearance=2.0) == expected
 
 
-def test_boxes_may_overlap_where_the_meshes_do_not():
+def test_enclosing_boxes_may_overlap_if_the_meshes_do_not():
     ring = part(Manifold.cylinder(10, 20, 20, center=False) - Manifold.cylinder(10, 15, 15))
     peg = part(Manifold.cylinder(10, 10, 10))
     assert promises(at(ring, 30, 30), at(peg, 30, 30, label="peg")) == []
@@ -85,7 +85,7 @@ def test_a_part_wholly_inside_another_intersects_it():
     assert promises(at(cube(30.0)), at(cube(5.0), 15, 15, 10, label="inner")) == ["no intersection"]
 
 
-def test_surfaces_are_judged_triangle_by_triangle():
+def test_distances_of_surfaces_are_those_of_their_triangles():
     sheet = Part("sheet", Mesh([[0, 0, 0], [20, 0, 0], [0, 20, 0]], [[0, 1, 2]]), 0.0, is_solid=False)
     box = cube()
     assert promises(at(sheet, 4, 4, 20), at(box, 5, 5, 0, label="b"), clearance=2.0) == []
@@ -94,7 +94,7 @@ def test_surfaces_are_judged_triangle_by_triangle():
     assert promises(at(sheet, 4, 4, 10), at(box, 5, 5, 0, label="b")) == []
 
 
-def test_zones_are_judged_on_the_meshes():
+def test_overlap_with_a_zone_is_measured_on_the_meshes():
     space = BuildVolume(np.array([100.0, 100.0, 50.0]), zone_lo=[[50, 0, 0]], zone_hi=[[60, 100, 50]])
     ball = part(Manifold.sphere(10, 64))
     sheet = Part("sheet", Mesh([[0, 0, 0], [2, 0, 0], [0, 2, 0]], [[0, 1, 2]]), 0.0, is_solid=False)
@@ -103,7 +103,7 @@ def test_zones_are_judged_on_the_meshes():
     assert promises(at(sheet, 52, 20, 10), space=space) == ["outside forbidden zones"]
 
 
-def test_motions_are_judged():
+def test_placements_in_other_orientations_are_reported():
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     tilt = turn[[2, 0, 1]][:, [2, 0, 1]]
     place = {"x": 30.0, "y": 30.0, "z": 20.0}
@@ -121,20 +121,20 @@ def test_motions_are_judged():
     assert promises(at(cube(), float("nan"))) == ["allowed motion"]
 
 
-def test_a_rotation_as_a_file_writes_it_is_still_the_listed_one():
+def test_a_rotation_rounded_to_six_digits_is_still_the_allowed_one():
     c, s = np.cos(0.3), np.sin(0.3)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     listed = Orientations(matrices=turn[None])
     assert promises(at(cube(), 30, 30, 10, rotation=np.round(turn, 6), orientations=listed)) == []
 
 
-def test_geometry_that_differs_from_its_record_is_named():
+def test_geometry_that_differs_from_its_digest_is_reported():
     shape = cube()
     assert promises(at(shape, recorded_digest=shape.mesh.digest)) == []
     assert promises(at(shape, recorded_digest="0" * 64)) == ["part unchanged"]
 
 
-def test_a_parts_own_clearance_and_lift_hold():
+def test_clearance_and_lift_of_a_part_override_those_of_the_build():
     wide = cube(overrides=Overrides(clearance_mm=5.0))
     assert promises(at(cube(), 10), at(wide, 24, 10, label="b")) == ["clearance"]
     assert promises(at(cube(), 10), at(wide, 25, 10, label="b")) == []
@@ -143,7 +143,7 @@ def test_a_parts_own_clearance_and_lift_hold():
     assert promises(at(high, z=4.0), lift=3.0) == []
 
 
-def test_a_stop_does_not_pass_for_a_good_judgement():
+def test_a_check_that_is_stopped_reports_a_violation():
     stop = Stop()
     stop.cancelled.set()
     found = check_placed([at(cube()), at(cube(), 8, label="b")], BuildSettings("test", ROOM), stop)

@@ -1,4 +1,4 @@
-"""The judge of packings accepts a good one and names each promise that is broken on purpose."""
+"""The check of packings accepts a valid one and reports each promise that is broken on purpose."""
 
 from dataclasses import replace
 
@@ -54,24 +54,24 @@ def promises(problem, packing):
 
 
 def moved(*placement, problem=PROBLEM):
-    """Promises broken when item 1 of the good packing is placed otherwise."""
+    """Return the promises broken when item 1 of the valid packing is moved."""
     return promises(problem, replace(GOOD, builds=((at(0, 2, 2, 3), at(1, *placement)), GOOD.builds[1])))
 
 
-def test_a_good_packing_has_no_violation():
+def test_a_valid_packing_has_no_violation():
     assert check_packing(PROBLEM, GOOD) == []
 
 
-def test_an_item_that_is_nowhere_or_twice_is_named():
+def test_an_item_that_is_missing_or_occurs_twice_is_reported():
     assert promises(PROBLEM, replace(GOOD, builds=GOOD.builds[:1])) == ["every item once"]
     assert promises(PROBLEM, replace(GOOD, unplaced=(Unplaced(2, "no room left"),))) == ["every item once"]
 
 
-def test_an_unknown_item_is_named():
+def test_an_unknown_item_is_reported():
     assert "known item" in promises(PROBLEM, replace(GOOD, unplaced=(Unplaced(3, "no room left"),)))
 
 
-def test_an_empty_build_is_named():
+def test_an_empty_build_is_reported():
     assert promises(PROBLEM, replace(GOOD, builds=(*GOOD.builds, ()))) == ["no empty build"]
 
 
@@ -94,7 +94,7 @@ def test_a_fill_problem_has_one_build():
         ((14, 2, 3, np.eye(3) * 1.01), "allowed motion"),
     ],
 )
-def test_a_placement_that_breaks_a_rule_is_named(place, promise):
+def test_a_placement_that_breaks_a_rule_is_reported(place, promise):
     assert moved(*place) == [promise]
 
 
@@ -109,12 +109,12 @@ def test_clearance_is_measured_diagonally():
     assert moved(13.4, 13.4, 3) == ["clearance"]
 
 
-def test_without_stacking_all_stand_at_lift():
+def test_without_stacking_each_item_is_at_the_lift_height():
     assert moved(14, 2, 20) == []
     assert moved(14, 2, 20, problem=replace(PROBLEM, stacking=False)) == ["stacking"]
 
 
-def test_zones_are_kept_out_of():
+def test_overlap_with_a_forbidden_zone_is_reported():
     zoned = replace(
         PROBLEM, space=BuildVolume(np.full(3, 60.0), zone_lo=[[24, 0, 0]], zone_hi=[[30, 60, 60]])
     )
@@ -122,7 +122,7 @@ def test_zones_are_kept_out_of():
     assert moved(14.1, 2, 3, problem=zoned) == ["outside forbidden zones"]
 
 
-def test_a_cylinder_keeps_corners_within_its_circle():
+def test_corners_outside_the_circle_of_a_round_build_are_reported():
     # centred on the axis the corners are 7.07 from it: a radius of 9.07 leaves the clearance of 2
     for diameter, expected in ((18.15, []), (18.1, ["inside build volume"])):
         space = BuildVolume(np.array([diameter, diameter, 60.0]), "cylinder")
@@ -131,19 +131,19 @@ def test_a_cylinder_keeps_corners_within_its_circle():
         assert promises(problem, Packing(((at(0, middle, middle, 3),),))) == expected
 
 
-def test_fixed_placements_must_stay():
+def test_a_moved_fixed_placement_is_reported():
     fixed = replace(PROBLEM, fixed=(at(0, 2, 2, 3),))
     assert promises(fixed, GOOD) == []
     assert promises(replace(PROBLEM, fixed=(at(0, 2, 3, 3),)), GOOD) == ["fixed placement kept"]
     assert promises(replace(PROBLEM, fixed=(at(2, 2, 2, 3),)), GOOD) == ["fixed placement kept"]
 
 
-def test_fixed_placements_are_not_judged_otherwise():
+def test_fixed_placements_are_not_checked_otherwise():
     outside = replace(PROBLEM, fixed=(at(0, -5, 2, 0),))
     assert promises(outside, replace(GOOD, builds=((at(0, -5, 2, 0), at(1, 14, 2, 3)), GOOD.builds[1]))) == []
 
 
-def test_too_large_must_be_true_and_a_reason_given():
+def test_an_unplaced_item_needs_a_reason_and_too_large_must_be_true():
     one_left = replace(GOOD, builds=GOOD.builds[:1], bound=None)
     assert promises(PROBLEM, replace(one_left, unplaced=(Unplaced(2, "too large"),))) == ["reason true"]
     assert promises(PROBLEM, replace(one_left, unplaced=(Unplaced(2, ""),))) == ["reason given"]
@@ -160,15 +160,15 @@ def test_too_large_must_be_true_and_a_reason_given():
         ({"status": "infeasible"}, "status"),
     ],
 )
-def test_claims_that_contradict_the_packing_are_named(change, promise):
+def test_a_status_or_bound_that_contradicts_the_packing_is_reported(change, promise):
     assert promises(PROBLEM, replace(GOOD, **change)) == [promise]
 
 
-def test_optimal_with_a_bound_that_is_met_is_accepted():
+def test_optimal_is_accepted_if_the_bound_is_met():
     assert promises(PROBLEM, replace(GOOD, status="optimal", bound=2.0)) == []
 
 
-def test_continuous_orientations_are_judged_by_their_freedom():
+def test_a_rotation_beyond_the_allowed_freedom_is_reported():
     c = np.sqrt(0.5)
     about_z = np.array([[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]])
     about_x = about_z[[2, 0, 1]][:, [2, 0, 1]]
@@ -183,7 +183,7 @@ def test_continuous_orientations_are_judged_by_their_freedom():
 
 
 @pytest.mark.parametrize("kind", ["boxes", "pieces", "solid"])
-def test_turned_boxes_convex_pieces_and_solids_are_judged_by_their_true_shape(kind):
+def test_rotated_boxes_convex_pieces_and_solids_are_measured_exactly(kind):
     volume = {"boxes": cube(), "pieces": ConvexPieces((cube_mesh(),)), "solid": Solid(cube_mesh())}[kind]
     c = np.sqrt(0.5)
     turned = np.array([[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]])
@@ -197,7 +197,7 @@ def test_turned_boxes_convex_pieces_and_solids_are_judged_by_their_true_shape(ki
         assert promises(problem, Packing(builds)) == expected
 
 
-def test_height_and_fill_bounds_are_judged_by_their_own_measure():
+def test_bounds_of_height_and_fill_problems_are_checked():
     one = replace(PROBLEM, items=PROBLEM.items[:1])
     builds = ((at(0, 2, 2, 3),),)
     assert promises(replace(one, objective="height"), Packing(builds, bound=13.0, status="optimal")) == []

@@ -1,4 +1,4 @@
-"""Where an item fits an empty build, against dense sampling; turned boxes and unions."""
+"""Positions in an empty build are compared with dense sampling; rotated boxes and unions are exact."""
 
 import numpy as np
 import pytest
@@ -20,14 +20,14 @@ def box(*size):
     return np.zeros((1, 3)), np.array([size], float)
 
 
-def test_a_quarter_turn_swaps_the_sides():
+def test_a_quarter_turn_swaps_two_sides():
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     lo, hi = rotated_boxes(*box(1, 2, 3), turn)
     assert lo.tolist() == [[-2, 0, 0]]
     assert hi.tolist() == [[0, 1, 3]]
 
 
-def test_overlaps_count_once_in_a_union():
+def test_an_overlap_counts_once_in_the_volume_of_a_union():
     lo, hi = (
         np.array([[0, 0, 0], [1, 1, 1], [5, 5, 5]], float),
         np.array([[2, 2, 2], [3, 3, 3], [5, 6, 6]], float),
@@ -36,12 +36,12 @@ def test_overlaps_count_once_in_a_union():
     assert union_volume(np.empty((0, 3)), np.empty((0, 3))) == 0.0
 
 
-def test_a_box_that_is_exactly_as_large_fits():
+def test_a_box_of_exactly_the_size_of_the_build_fits():
     assert find_feasible_position(*box(20, 20, 10), space()) is not None
     assert find_feasible_position(*box(20.001, 20, 10), space()) is None
 
 
-def test_a_box_fits_a_circle_up_to_its_diagonal():
+def test_a_box_fits_a_circle_if_its_diagonal_does():
     room = space(radius=10.0)
     assert find_feasible_position(*box(12, 16, 1), room) is not None
     assert find_feasible_position(*box(12.01, 16, 1), room) is None
@@ -54,13 +54,13 @@ def test_an_item_of_two_boxes_may_fit_a_circle_although_its_enclosing_box_does_n
     assert find_feasible_position(*box(19, 19, 1), space(radius=10.0)) is None
 
 
-def test_an_item_off_the_middle_of_its_enclosing_box_is_still_found_in_a_circle():
+def test_an_item_away_from_the_centre_of_its_enclosing_box_is_placed_in_a_circle():
     # a bar with a bump: the least circle around it is not centred on the enclosing box
     shape = np.array([[0, 0, 0], [8, 0, 0]], float), np.array([[19.5, 2, 1], [12, 9, 1]], float)
     assert find_feasible_position(*shape, space(radius=10.0)) is not None
 
 
-def test_without_stacking_the_item_must_stand_on_the_plate():
+def test_without_stacking_the_item_must_be_on_the_plate():
     below = [(0, 0, 0, 20, 20, 3)]
     assert find_feasible_position(*box(5, 5, 5), space(zones=below))[2] == 3.0
     assert find_feasible_position(*box(5, 5, 5), space(zones=below, flat=True)) is None
@@ -68,7 +68,7 @@ def test_without_stacking_the_item_must_stand_on_the_plate():
 
 @examples(60)
 @given(st.data())
-def test_whatever_dense_sampling_finds_is_found(data):
+def test_a_position_is_found_if_dense_sampling_finds_one(data):
     number = st.integers(1, 19)
     zones = []
     for _ in range(data.draw(st.integers(0, 3))):

@@ -1,4 +1,4 @@
-"""Volume makers and their judge: what is given by hand contains the part as a solid, or is refused."""
+"""Boxes given by hand contain the part, or are rejected; the check of bounding volumes is exact."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def part(solid, **more):
 
 
 def angle():
-    """A foot of 20 x 10 x 5 and a wall of 5 x 10 x 20."""
+    """Return an angle bracket: a foot of 20 x 10 x 5 mm and a wall of 5 x 10 x 20 mm."""
     return Manifold.cube([20, 10, 5]) + Manifold.cube([5, 10, 20])
 
 
@@ -39,36 +39,38 @@ def test_the_enclosing_box_touches_the_part_on_all_six_sides():
     assert check_volume(part(angle()), volume) == []
 
 
-def test_boxes_given_by_hand_that_contain_the_part_are_taken():
+def test_given_boxes_that_contain_the_part_are_accepted():
     volume = given_boxes(part(angle(), boxes=np.array([FOOT, WALL], float)))
     assert volume.hi.tolist() == [[20, 10, 5], [5, 10, 20]]
 
 
 @pytest.mark.parametrize("given", [None, np.empty((0, 6))])
-def test_boxes_that_are_missing_are_asked_for(given):
-    with pytest.raises(JobError, match=r"'angle'.*needs boxes = .*got none"):
+def test_missing_boxes_are_reported_with_the_key_to_add(given):
+    with pytest.raises(JobError, match=r"'angle'.*needs boxes = .*found none"):
         given_boxes(part(angle(), boxes=given))
 
 
 @pytest.mark.parametrize("bad", [[0, 0, 0, 20, 0, 5], [20, 10, 5, 0, 0, 0], [0, 0, 0, np.nan, 1, 1]])
-def test_a_box_without_extent_is_refused_by_its_number(bad):
+def test_an_empty_box_is_rejected_with_its_number(bad):
     with pytest.raises(JobError, match="box 2 must be x0 < x1"):
         given_boxes(part(angle(), boxes=np.array([WALL, bad], float)))
 
 
-def test_boxes_that_leave_something_out_are_refused_with_the_place():
-    with pytest.raises(JobError, match=r"leaves out 49.9 mm3 of it, within \(19\.\d+, .*enlarge the boxes"):
+def test_boxes_that_do_not_contain_the_part_are_rejected_with_the_location():
+    with pytest.raises(
+        JobError, match=r"does not contain 49.9 mm3 of the part, in the box \(19\.\d+, .*enlarge the boxes"
+    ):
         given_boxes(part(angle(), boxes=np.array([[0, 0, 0, 19, 10, 5], WALL], float)))
 
 
-def test_the_tolerance_decides_what_is_contained():
+def test_a_part_may_extend_beyond_its_boxes_by_the_tolerance():
     assert check_volume(part(angle()), boxes([0, 0, 0, 19.9995, 10, 5], WALL)) == []
     assert check_volume(part(angle()), boxes([0, 0, 0, 19.998, 10, 5], WALL)) != []
     assert check_volume(part(angle()), boxes([0, 0, 0, 19.9995, 10, 20])) == []
     assert check_volume(part(angle()), boxes([0, 0, 0, 19.998, 10, 20])) != []
 
 
-def test_the_inside_has_to_be_covered_too():
+def test_the_interior_of_a_solid_must_be_covered():
     # six plates that hold the whole surface of a cube leave its middle empty
     cube = part(Manifold.cube([10, 10, 10]))
     plates = [[0, 0, 0, 1, 10, 10], [9, 0, 0, 10, 10, 10], [0, 0, 0, 10, 1, 10], [0, 9, 0, 10, 10, 10]]
@@ -77,7 +79,7 @@ def test_the_inside_has_to_be_covered_too():
     assert check_volume(cube, boxes(*plates, [1, 1, 1, 9, 9, 9])) == []
 
 
-def test_convex_pieces_and_solids_are_judged():
+def test_convex_pieces_and_solids_are_checked():
     foot, wall = (mesh_of(Manifold.cube(size)) for size in ([20, 10, 5], [5, 10, 20]))
     assert check_volume(part(angle()), ConvexPieces((foot, wall))) == []
     assert check_volume(part(angle()), ConvexPieces((foot,))) != []
@@ -85,7 +87,7 @@ def test_convex_pieces_and_solids_are_judged():
     assert check_volume(part(angle()), Solid(mesh_of(angle().scale([1, 1, 0.99])))) != []
 
 
-def test_of_a_surface_the_triangles_are_covered():
+def test_the_triangles_of_a_surface_must_be_covered():
     sheet = Mesh([[0, 0, 0], [10, 0, 0], [0, 10, 0]], [[0, 1, 2]])
     surface = Part("sheet", sheet, 0.0, is_solid=False)
     assert check_volume(surface, enclosing_box(surface)) == []
