@@ -237,11 +237,11 @@ def test_what_has_no_way_is_answered_by_the_advice_of_standing_on_the_part(ampre
     trimesh.util.concatenate([trimesh.creation.icosphere(2, 9.0), hole]).export(tmp_path / "hollow.stl")
     command = ("support", tmp_path / "hollow.stl", "--center", "--json", "--dry-run")
     outcome = amprep(*command)
-    (advice,) = [words for words in outcome.json["warnings"] if "without a way to the plate" in words]
-    assert "1 region is" in advice
+    (advice,) = [words for words in outcome.json["warnings"] if "no path to the build plate" in words]
+    assert "1 region has" in advice
     assert "--set supports.grounding=anywhere" in advice
     inside = amprep(*command, "--grounding", "anywhere")
-    assert not any("without a way" in words for words in inside.json["warnings"])
+    assert not any("no path to the build plate" in words for words in inside.json["warnings"])
     assert "columns stand on parts" in inside.json["builds"][0]["supports"]["notes"][0]
 
 

@@ -59,16 +59,16 @@ class BuildSettings:
 
 @dataclass(frozen=True, eq=False)
 class PlacedPart:
-    """A part where it stands in the build.
+    """A part at its position in a build.
 
     Attributes
     ----------
     label
-        Name within the build, unique: the part's name, with ``-2`` and so on for further copies.
+        Unique name in the build: the part's name, with ``-2`` and so on for further copies.
     matrix
         ``(4, 4)`` part coordinates to build coordinates.
     recorded_digest
-        `Mesh.digest` that a build file states for this part; empty while the build is being made.
+        `Mesh.digest` that the build file records for this part; empty before the file is written.
     """
 
     label: str
@@ -95,11 +95,11 @@ class Lattice:
     nodes, struts, radii
         ``(n, 3)`` mm, ``(m, 2)`` int32, and ``(m, 2)`` mm at both ends.
     solids
-        Connectors and whatever else is no beam; may have no triangles.
+        Everything that is no beam, for example connectors; may have no triangles.
     stand_in
-        What readers that know no beams show: the whole body as a solid, or a coarser one.
+        Mesh for programs that cannot read beams: the whole body as a solid, or a coarser one.
     room
-        ``(2, 3)`` mm, corners of the box outside which beams are cut off; None where nothing cuts them.
+        ``(2, 3)`` mm, corners of the box to which beams are clipped; None for no clipping.
     """
 
     nodes: Floats
@@ -124,13 +124,13 @@ class SupportBody:
     Attributes
     ----------
     mesh
-        The whole body; of beams, too, which are solids of several sides in it.
+        The whole body; beams are prisms in it.
     parts
-        Indices of the placed parts it holds; more than one only where supports are shared.
+        Indices of the placed parts that it supports; more than one only where parts share supports.
     surface
-        True for walls without thickness, which a machine must not fill.
+        True for walls without thickness, which the machine must not fill.
     lattice
-        The body as a file says it where beams are wanted; None for a mesh.
+        The body as beams, for a file with beams; None for a mesh.
     """
 
     name: str
@@ -142,14 +142,14 @@ class SupportBody:
 
 @dataclass(frozen=True, eq=False)
 class Unsupported:
-    """A listed region that needs support and has none within reach.
+    """An overhang without a contact within reach.
 
     Attributes
     ----------
     part
         Index of the placed part.
     label
-        For people: ``overhang 7 of bracket-2``.
+        Name in reports, for example ``overhang 7 of bracket-2``.
     kind
         ``face``, ``edge`` or ``tip``.
     reason
@@ -157,9 +157,12 @@ class Unsupported:
     measure
         Unsupported area in mm2, length in mm, or 0 for a tip.
     points
-        ``(n, 3)`` mm, build coordinates: every point of the region lies within `radius` of one of them.
+        ``(n, 3)`` mm, build coordinates; every point of the region is within `radius` of one of them.
+    radius
+        mm.
     minor
-        Whether it is smaller than the least area or length to support, beside held surface: listed, no fault.
+        True if below the smallest area or length and adjacent to supported surface; listed but not counted as a
+        fault.
     """
 
     part: int
@@ -177,7 +180,7 @@ class Unsupported:
 
 @dataclass(frozen=True, eq=False)
 class Build:
-    """One printing run, complete: rules, parts, supports, and what stayed unsupported."""
+    """One printing run: its settings, parts, supports, and unsupported overhangs."""
 
     settings: BuildSettings
     parts: tuple[PlacedPart, ...]
@@ -186,4 +189,4 @@ class Build:
 
 
 MAX_STAND_IN_TRIANGLES = 100_000
-"""Triangles of a body that its file shows to readers that know no beams; larger ones get a coarser mesh."""
+"""Largest number of triangles of a mesh for programs that cannot read beams; larger bodies get a coarser mesh."""

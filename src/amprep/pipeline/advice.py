@@ -1,4 +1,4 @@
-"""Advice on the supports of a build: what to try where something stays unsupported."""
+"""Advise on settings that would support more of a build."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -10,38 +10,52 @@ from amprep.supports.grid.sizing import estimated_megabytes, usual_pitch
 
 
 def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
-    """Say where another grid, other rules or more time would serve the build better; minor regions do not count."""
-    usual, wishes = usual_pitch(build.parts), job.supports
-    if wishes.pitch_mm is None and pitch > usual:
+    """Yield sentences that name the settings to change for regions that are unsupported; minor regions do not count.
+
+    Parameters
+    ----------
+    job
+        The job of the build.
+    build
+        The finished build, with its unsupported regions.
+    pitch
+        Horizontal voxel size of the support grid, mm.
+    """
+    usual, rules = usual_pitch(build.parts), job.supports
+    if rules.pitch_mm is None and pitch > usual:
         yield (
-            f"the support grid was coarsened from {usual:g} to {pitch:g} mm to keep to supports.memory_mb = "
-            f"{wishes.memory_mb}"
+            f"the pitch of the support grid was raised from {usual:g} to {pitch:g} mm, so that the grid fits into "
+            f"supports.memory_mb = {rules.memory_mb}"
         )
     counts = Counter(each.reason for each in build.unsupported if not each.minor)
     narrow = counts[NO_FREE_VOXEL_BELOW] + counts[CONNECTOR_BLOCKED]
     if narrow:
         yield (
-            f"{_regions(narrow)} unsupported for want of room below in a grid of {pitch:g} mm; a finer one may reach "
-            f"what is not inside the part: {_finer(job, build, pitch)}"
+            f"{_have(narrow)} no free voxel below {'it' if narrow == 1 else 'them'} at a pitch of {pitch:g} mm; a "
+            f"finer pitch may reach those outside the part: {_finer(job, build, pitch)}"
         )
-    if counts[ENCLOSED] and wishes.grounding == "plate-only":
+    if counts[ENCLOSED] and rules.grounding == "plate-only":
         yield (
-            f"{_regions(counts[ENCLOSED])} without a way to the plate; columns may stand on the part itself below: "
+            f"{_have(counts[ENCLOSED])} no path to the build plate; supports may stand on the part below: "
             "--set supports.grounding=anywhere"
         )
     if counts[CAPACITY]:
-        yield f"{_regions(counts[CAPACITY])} left out by capacities; let them grow: --set supports.escalation=cut"
+        yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"
     if counts[OUT_OF_TIME]:
-        yield f"{_regions(counts[OUT_OF_TIME])} left out for want of time: allow a longer time limit"
+        yield f"{_have(counts[OUT_OF_TIME])} no path yet, because the time ended; allow a longer time limit"
 
 
-def _regions(count: int) -> str:
-    return "1 region is" if count == 1 else f"{count} regions are"
+def _have(count: int) -> str:
+    return "1 region has" if count == 1 else f"{count} regions have"
 
 
 def _finer(job: Job, build: Build, pitch: float) -> str:
-    """Return the settings of a grid half as wide, with the memory that it takes."""
+    """Return the options for half the pitch and the memory that it takes."""
     finer = round(pitch / 2, 1) if pitch >= 0.4 else pitch / 2
-    words = f"--set supports.pitch_mm={finer:g}"
-    takes = estimated_megabytes(build.parts, job.printer.space, finer, job.supports.strut_angle_deg)
-    return words if takes <= job.supports.memory_mb else f"{words} --set supports.memory_mb={int(takes) + 1}"
+    options = f"--set supports.pitch_mm={finer:g}"
+    needed = estimated_megabytes(build.parts, job.printer.space, finer, job.supports.strut_angle_deg)
+    return (
+        options
+        if needed <= job.supports.memory_mb
+        else f"{options} --set supports.memory_mb={int(needed) + 1}"
+    )

@@ -1,4 +1,4 @@
-"""The support layout: what was planned for a whole build, ready to be turned into cells."""
+"""The support layout: everything planned for a whole build, ready for the cells."""
 
 from dataclasses import dataclass, field
 
@@ -16,42 +16,42 @@ from amprep.supports.grid.red_squares import RedSquares
 
 @dataclass(frozen=True, eq=False)
 class SupportLayout:
-    """Red squares of all parts, the edges that carry their flow, and the support groups these form.
+    """The planned supports of a build: red squares of all parts, edges with flow, and support groups.
 
     Attributes
     ----------
+    frame
+        The grid.
     voxels
         ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Voxel`.
     meshes
-        One per placed part, in build coordinates: its own, or split finer where blockers and enforcers end.
+        One per placed part, in build coordinates; subdivided at the borders of blockers and enforcers.
     overhangs
         One per placed part; indices into `meshes`.
     red
-        ``(m, 3)`` int32 plane, y, x; sorted. A square appears once per part that needs it. Those on plane 0
-        need no support of their own ("what lies in the layer on the plate"): connected, without edges.
+        ``(m, 3)`` int32 plane, y, x; sorted. A square occurs once for each part it supports. A square on plane 0
+        is connected without edges: the plate holds it.
     red_part, red_region
-        ``(m,)`` int32: placed part; region of its overhangs (the one of least label in the square's column).
+        ``(m,)`` int32: placed part, and its overhang region; of several regions above the square the first.
     red_rise
-        ``(m,)`` int32: occupied voxels from the red square upwards that its connector may pass, the
-        contiguous run of voxels of the column that hold needed geometry of the part.
+        ``(m,)`` int32: number of occupied voxels, from the red square upwards, that its connector may pass.
     connected
         ``(m,)`` bool.
     reasons
-        ``m`` words: why a red square is unconnected, ``""`` when it is connected.
+        ``m`` strings: why a red square is unconnected, ``""`` when it is connected.
     edges
-        Edges with their part and group; an edge that several parts share appears once.
-    feet
-        ``(k, 5)`` int32: where columns end on a part instead of the plate; see
-        `amprep.supports.routes.on_part.Grounded`.
+        Edges with their part and group; an edge that several parts share occurs once.
     red_group
-        ``(m,)`` int32: support group, -1 for red squares that are not connected; one group per part, merged
-        where parts share squares.
+        ``(m,)`` int32: support group, -1 for unconnected red squares. A part has one group; parts that share
+        squares have the same group.
     group_parts
-        Placed parts each group holds; more than one only where squares are shared.
+        Placed parts of each group.
     notes
-        Sentences for the user: what the router says, which columns stand on parts or are joined.
+        Sentences for the user: from the router, about columns on parts, about bracing.
     shared
-        Which parts share supports, one sentence for each group of more than one part.
+        One sentence for each group of more than one part.
+    feet
+        ``(k, 5)`` int32: columns that end on a part; see `amprep.supports.routes.on_part.Grounded`.
     """
 
     frame: Grid
@@ -85,11 +85,11 @@ class SupportLayout:
         return tuple(map(PartOverhangs, self.meshes, self.overhangs))
 
     def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
-        """Say for each point ``(n, 3)`` mm of a part's unsupported overhangs why nothing holds it.
+        """Return for each point ``(n, 3)`` mm of a part's unsupported overhangs the reason.
 
-        The red square that counts is the highest of the part in the point's column that is not above the
-        point. When the point is within its rise it gives its reason or, connected, the connector does not get
-        there; otherwise no voxel below the point is white.
+        The reason comes from the highest red square of the part that is in the point's column and not above the
+        point. If the point is within the rise of the square, the reason is that of the square or, if the square is
+        connected, that the connector is blocked. Otherwise there is no free voxel below the point.
         """
         reds = np.flatnonzero(self.red_part == part)
         key = self._heights(self.red[reds])
@@ -106,7 +106,7 @@ class SupportLayout:
         return tuple(reasons)
 
     def _heights(self, square: Ints | Int64s) -> Int64s:
-        """Return the place of squares ``(n, 3)`` in the order of columns, upwards in each."""
+        """Return numbers that order squares ``(n, 3)`` by column, and upwards in each column."""
         nz, _, nx = self.frame.shape
         plane, y, x = square.T.astype(np.int64)
         return np.asarray((y * nx + x) * (nz + 2) + np.clip(plane, 0, nz + 1), np.int64)
@@ -115,7 +115,25 @@ class SupportLayout:
 def groups_of(
     edges: SupportEdges, red: RedSquares, connected: Bools, count: int
 ) -> tuple[Ints, Ints, tuple[tuple[int, ...], ...]]:
-    """Return the group of each red square ``(m,)`` (-1: none), of each edge ``(n,)``, and the parts of each group."""
+    """Return the support group of each red square and edge, and the parts of each group.
+
+    The supports of a part form one group. Parts whose supports are connected have the same group.
+
+    Parameters
+    ----------
+    edges
+        The edges of all supports.
+    red
+        The red squares.
+    connected
+        ``(m,)`` bool, the connected red squares.
+    count
+        Number of placed parts.
+
+    Returns
+    -------
+    Group of each red square ``(m,)`` (-1 for unconnected ones) and of each edge ``(n,)``, and the parts of each group.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

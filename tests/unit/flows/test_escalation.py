@@ -73,12 +73,12 @@ def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():
     task = floor_with_holes([3], edge_capacity=2, escalation="cut")
     plan = route("push-relabel", task)
     found = [each.message for each in check_plan(replace(task, escalation="none"), plan)]
-    assert "raises capacities, though the problem forbids it" in found
-    assert "is used" in check_plan(task, replace(plan, raised=6))[0].message
+    assert "raises capacities, which the problem does not allow" in found
+    assert "the flow uses 5" in check_plan(task, replace(plan, raised=6))[0].message
     unused = replace(plan.edges, capacity=np.where(plan.edges.flow == 1, 3, plan.edges.capacity))
     idle = check_plan(task, replace(plan, edges=unused))
     assert "a raised capacity that it does not use" in idle[0].message
     wide = replace(task, edge_capacity=7)
-    assert "without that all 7" in check_raises(wide, plan)[0].message
+    assert "although all 7 reachable" in check_raises(wide, plan)[0].message
     left = route("push-relabel", replace(task, escalation="none"))
-    assert "leaves out 5" in check_raises(task, left)[0].message
+    assert "leaves 5 red squares" in check_raises(task, left)[0].message

@@ -19,13 +19,12 @@ PROMISE = "support plan"
 
 
 def check_plan(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
-    """Judge a plan: legal edges, integral flow conserved from red to green, capacities, true reasons.
+    """Judge a plan: edges exist, the flow from red to green squares is conserved, capacities hold, reasons are true.
 
-    Capacities bind edges and squares above the plate; squares on the plate are unbounded. They are exceeded
-    only when the problem allows it, by no more than the plan says. Every red square is connected or listed
-    exactly once, as ``enclosed`` only when no white way leads to the plate at all, as ``capacity`` only when
-    there is one and the problem sets capacities that bind, as ``time limit`` only when there is one and the
-    plan ended early.
+    Capacities apply to edges and to squares above the plate; squares on the plate have none. They are exceeded
+    only if the problem allows it, and by no more than the plan reports. Every red square is connected or listed
+    once: as ``enclosed`` only if no path over free voxels leads to the plate, as ``capacity`` only if there is a
+    path and the problem has capacities, as ``time limit`` only if there is a path and the router ended early.
     """
     found = _check_edges(problem, plan)
     if found:
@@ -48,10 +47,10 @@ def _check_edges(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     found = _first(~inside, edges, "leads out of the grid")
     if found:
         return found
-    white = np.ones(len(plane), np.bool_)
+    free = np.ones(len(plane), np.bool_)
     for row, column in ends:
-        white &= problem.voxels[plane - 1, row, column] == Voxel.FREE
-    found = _first(~white, edges, "meets a voxel that is not white")
+        free &= problem.voxels[plane - 1, row, column] == Voxel.FREE
+    found = _first(~free, edges, "meets a voxel that is not free")
     found += _first(edges.flow < 1, edges, "carries no flow")
     found += _first(edges.flow > edges.capacity, edges, "carries more than its reported capacity")
     if problem.edge_capacity > 0:
@@ -96,7 +95,7 @@ def _check_listing(problem: SupportProblem, plan: SupportPlan) -> list[Violation
 
 
 def _check_flow(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
-    """Judge conservation and node capacities over the squares that occur."""
+    """Judge flow conservation and node capacities at the squares that the plan uses."""
     _, ny, nx = problem.voxels.shape
     connected = np.ones(len(problem.red), np.bool_)
     connected[[each.red for each in plan.unconnected]] = False
@@ -131,30 +130,33 @@ def _check_flow(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
 
 
 def _check_raised(problem: SupportProblem, plan: SupportPlan, through: Floats) -> list[Violation]:
-    """Judge what escalation has raised: only when asked to, no more than is used, and for everybody."""
+    """Judge the amount by which capacities are raised: as reported, and only if the problem allows it."""
     edge = int(plan.edges.flow.max(initial=0)) - problem.edge_capacity if problem.edge_capacity else 0
     node = int(through.max(initial=0)) - problem.node_capacity if problem.node_capacity else 0
     found = []
     if plan.raised != max(edge, node, 0):
-        message = f"says that capacities are raised by {plan.raised}, but {max(edge, node, 0)} is used"
+        message = f"reports capacities raised by {plan.raised}, but the flow uses {max(edge, node, 0)}"
         found.append(_violation("plan", message))
     if plan.raised and problem.escalation == "none":
-        found.append(_violation("plan", "raises capacities, though the problem forbids it"))
+        found.append(_violation("plan", "raises capacities, which the problem does not allow"))
     return found
 
 
 def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
-    """Judge whether escalation left nobody out and was needed, by a greatest flow that scipy finds.
+    """Judge whether escalation was needed and connected every reachable red square, by a maximum flow of scipy.
 
-    With the capacities asked for (``cut``), or with one less than those of the plan (``uniform``), it must not
-    be possible to connect every red square that has a way. Takes about 300 bytes a square.
+    With the capacities of the problem (``cut``), or with capacities smaller by one than those of the plan
+    (``uniform``), it must be impossible to connect every reachable red square. The judge takes about 300 bytes for
+    each square.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import maximum_flow
 
     left = sum(each.reason == CAPACITY for each in plan.unconnected)
     if left and problem.escalation != "none" and plan.stop_reason == "finished":
-        return [_violation("plan", f"leaves out {left} red squares, though capacities may be raised")]
+        return [
+            _violation("plan", f"leaves {left} red squares unconnected, although capacities may be raised")
+        ]
     if not plan.raised:
         return []
     graph = support_graph(problem, raised=plan.raised - 1 if problem.escalation == "uniform" else 0)
@@ -164,20 +166,25 @@ def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     wanted = int(_reachable(problem).sum())
     if possible < wanted:
         return []
-    return [_violation("plan", f"raises capacities, though without that all {wanted} could be connected")]
+    return [
+        _violation(
+            "plan",
+            f"raises capacities, although all {wanted} reachable red squares can be connected without it",
+        )
+    ]
 
 
 def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     if not plan.unconnected:
         return []
-    way = _reachable(problem)
+    reachable = _reachable(problem)
     found = []
     for each in plan.unconnected:
-        if way[each.red] == (each.reason == ENCLOSED):
-            truth = "there is a white way" if way[each.red] else "there is no white way at all"
+        if reachable[each.red] == (each.reason == ENCLOSED):
+            truth = "there is a path" if reachable[each.red] else "there is no path"
             found.append(_violation(f"red square {each.red}", f"listed as {each.reason!r}, but {truth}"))
         elif each.reason == CAPACITY and not (problem.node_capacity or problem.edge_capacity):
-            message = "listed as 'capacity', but the problem sets none"
+            message = "listed as 'capacity', but the problem has no capacities"
             found.append(_violation(f"red square {each.red}", message))
     return found
 
@@ -192,8 +199,8 @@ def _reachable(problem: SupportProblem) -> Bools:
     free = problem.voxels == Voxel.FREE
     reached = np.zeros((len(free) + 1, *problem.green.shape), np.bool_)
     reached[0] = problem.green
-    for plane, white in enumerate(free[: int(problem.red[:, 0].max(initial=0))], start=1):
-        reached[plane] = white & binary_dilation(reached[plane - 1] & white)
+    for plane, layer in enumerate(free[: int(problem.red[:, 0].max(initial=0))], start=1):
+        reached[plane] = layer & binary_dilation(reached[plane - 1] & layer)
     return np.asarray(reached[tuple(problem.red.T)])
 
 

@@ -1,1 +1,1 @@
-"""Finding overhanging faces, edges and tips."""
+"""Find overhanging faces, knife edges and tips."""

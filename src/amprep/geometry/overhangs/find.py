@@ -1,4 +1,4 @@
-"""What of a mesh needs support: faces, knife edges and downward tips (thesis 3.1)."""
+"""Find the overhangs of a mesh: faces, knife edges and tips (thesis 3.1)."""
 
 from typing import NamedTuple
 
@@ -19,9 +19,16 @@ from amprep.geometry.overhangs.tips import minimum_plateaus, tips_of
 
 
 class Modifiers(NamedTuple):
-    """What a person marked: triangles that must, triangles and vertices that must not be supported.
+    """Support modifiers: what must be supported, and what must not be.
 
-    A blocked edge has both its ends blocked. Marked triangles count only where they look down.
+    Attributes
+    ----------
+    enforced
+        ``(m,)`` bool, triangles to support; only downward triangles above the plate count.
+    blocked
+        ``(m,)`` bool, triangles that are no overhangs.
+    blocked_vertices
+        ``(n,)`` bool, vertices that are no tips; an edge with two of them is no knife edge.
     """
 
     enforced: Bools
@@ -38,43 +45,47 @@ def find_overhangs(
     min_length: float = 0.0,
     modifiers: Modifiers | None = None,
 ) -> Overhangs:
-    """Find what needs support when the mesh is built upwards from the plate z = 0 (thesis 3.1).
+    """Find the overhangs of a mesh that is built upwards from the plate z = 0 (thesis 3.1).
 
-    A face needs support when it looks down and its angle to the plate is under `angle_deg`. A knife edge
-    does when its own angle is under `angle_deg`, the solid lies above it, all its faces rise from it, and
-    none of them needs support itself. A tip is a local minimum of the solid that touches neither. Angles
-    within 0.01 degrees of the threshold count as steep enough. What lies on the plate (z <= 0.001 mm) is
-    held by it.
+    A face is an overhang if it faces downwards and its angle to the plate is below `angle_deg`. An edge is a knife
+    edge if its own angle is below `angle_deg`, the solid is above it, all its faces rise from it, and none of
+    them is an overhang. A tip is a local minimum of the solid that touches neither. Angles within 0.01 degrees
+    of the threshold count as steep enough. Geometry on the plate (z <= 0.001 mm) is no overhang.
 
-    Regions smaller than `min_area` (mm2) or `min_length` (mm) are dropped, unless they hold a local
-    minimum (there the part would start in the air, however small the start) or an enforced triangle. Tips
-    are local minima and never dropped.
+    Smaller and shorter regions than asked are dropped, unless they contain a local minimum, where the part would
+    start in the air, or an enforced triangle. Tips are local minima and never dropped.
 
     Parameters
     ----------
     vertices
-        ``(n, 3)`` mm, in the build's position. Coincident ones are merged here; the indices returned
+        ``(n, 3)`` mm, in build coordinates. Coincident vertices are merged for the search; the indices returned
         refer to the arrays given.
     triangles
         ``(m, 3)``, normals out of the solid. Edges of one or of more than two faces are allowed.
+    angle_deg
+        Overhang angle.
+    min_area, min_length
+        Smallest area (mm2) of a face region and smallest length (mm) of an edge region.
+    modifiers
+        Triangles and vertices selected by blockers and enforcers.
     """
     surface = merge_vertices(np.asarray(vertices, np.float64), np.asarray(triangles))
     normals = unit_normals(surface)
     minimum = minimum_plateaus(surface)
-    needy = overhanging_faces(surface, normals, angle_deg)
-    sharp = surface.edges[knife_edges(surface, normals, needy, angle_deg)]
-    tips, tip_label = tips_of(minimum, surface.triangles[needy], sharp)
+    overhanging = overhanging_faces(surface, normals, angle_deg)
+    sharp = surface.edges[knife_edges(surface, normals, overhanging, angle_deg)]
+    tips, tip_label = tips_of(minimum, surface.triangles[overhanging], sharp)
 
     enforced = np.zeros(len(triangles), np.bool_)
     if modifiers is not None:
         enforced = modifiers.enforced & (normals[:, 2] < -LEVEL) & above_plate(surface)
-        needy = (needy | enforced) & ~modifiers.blocked
+        overhanging = (overhanging | enforced) & ~modifiers.blocked
         blocked = modifiers.blocked_vertices[surface.first]
         sharp = sharp[~blocked[sharp].all(axis=1)]
         tips, tip_label = tips[~blocked[tips]], tip_label[~blocked[tips]]
-    faces = np.flatnonzero(needy)
+    faces = np.flatnonzero(overhanging)
     area = 0.5 * np.linalg.norm(cross_products(surface.points, surface.triangles[faces]), axis=1)
-    face_label = components_of_faces(surface, needy)
+    face_label = components_of_faces(surface, overhanging)
     starts = np.asarray((minimum[surface.triangles[faces]] >= 0).any(axis=1) | enforced[faces])
     face_keep = large_enough(face_label, area, min_area, starts)
     length = np.linalg.norm(surface.points[sharp[:, 1]] - surface.points[sharp[:, 0]], axis=1)

@@ -1,4 +1,4 @@
-"""Knife edges: edges with solid above them only."""
+"""Find knife edges: flat edges from which all faces rise, with the solid above them."""
 
 import numpy as np
 
@@ -7,30 +7,42 @@ from amprep.geometry.overhangs.faces import ANGLE_TOLERANCE_DEG
 from amprep.geometry.overhangs.surface import ON_PLATE, Surface
 
 
-def knife_edges(surface: Surface, normals: Floats, needy: Bools, angle_deg: float) -> Int64s:
-    """Find the shallow edges from which all faces rise, none of them needy, with the solid above them."""
+def knife_edges(surface: Surface, normals: Floats, overhanging: Bools, angle_deg: float) -> Int64s:
+    """Return the knife edges of a surface, which touch no overhanging face.
+
+    Parameters
+    ----------
+    surface
+        The merged surface.
+    normals
+        ``(m, 3)`` unit normals of its faces.
+    overhanging
+        ``(m,)`` bool, overhanging faces.
+    angle_deg
+        Edges at a smaller angle to the plate are flat.
+    """
     start, end = surface.points[surface.edges[:, 0]], surface.points[surface.edges[:, 1]]
     along = end - start
     length = np.linalg.norm(along, axis=1)
-    shallow = np.abs(along[:, 2]) < length * np.sin(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
-    shallow &= np.maximum(start[:, 2], end[:, 2]) > ON_PLATE
+    flat = np.abs(along[:, 2]) < length * np.sin(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
+    flat &= np.maximum(start[:, 2], end[:, 2]) > ON_PLATE
     rising = np.ones(len(along), np.bool_)
     rise = surface.points[surface.opposite] - start[surface.half_edge]
     tangent = along / np.maximum(length, 1e-300)[:, None]
     halves = tangent[surface.half_edge]
     ray = rise - np.einsum("ij,ij->i", rise, halves)[:, None] * halves
     size = np.linalg.norm(ray, axis=1)
-    sinks = (ray[:, 2] <= 1e-6 * size) | needy[surface.half_face]
+    sinks = (ray[:, 2] <= 1e-6 * size) | overhanging[surface.half_face]
     rising[surface.half_edge[sinks]] = False
-    chosen = np.flatnonzero(shallow & rising)
+    chosen = np.flatnonzero(flat & rising)
     return chosen[_solid_above(surface, normals, ray, tangent, chosen)]
 
 
 def _solid_above(surface: Surface, normals: Floats, ray: Floats, tangent: Floats, edges: Int64s) -> Bools:
-    """Tell for each edge whether the solid lies above it.
+    """Tell for each edge whether the solid is above it.
 
-    In the plane across the edge its faces are rays that rise from it; the solid lies above when the outside
-    is clockwise of the rightmost ray. An edge of one face (an open wall) counts as above.
+    In the plane perpendicular to the edge, its faces are rays that rise from it. The solid is above the edge if
+    the outside is clockwise of the rightmost ray. The solid counts as above an edge of one face (an open wall).
     """
     position = np.full(len(surface.edges), -1)
     position[edges] = np.arange(len(edges))

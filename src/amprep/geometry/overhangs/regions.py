@@ -1,19 +1,17 @@
-"""Regions: overhangs that hang together."""
+"""Group overhangs into connected regions."""
 
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int32s, Int64s
-from amprep.geometry.overhangs.surface import (
-    Surface,
-)
+from amprep.geometry.overhangs.surface import Surface
 
 Kind = Literal["face", "edge", "tip"]
 
 
 class OverhangRegion(NamedTuple):
-    """A connected region that needs support.
+    """A connected region of overhangs.
 
     Attributes
     ----------
@@ -31,14 +29,14 @@ class OverhangRegion(NamedTuple):
 
 
 class Overhangs(NamedTuple):
-    """Everything of a mesh that needs support, in connected regions.
+    """All overhangs of a mesh, in connected regions.
 
     Attributes
     ----------
     faces
         ``(f,)`` int32, triangles.
     face_region
-        ``(f,)`` int32, index into `regions`; labels of faces come first, then edges, then tips.
+        ``(f,)`` int32, index into `regions`, in which regions of faces come first, then edges, then tips.
     edges
         ``(e, 2)`` int32, vertex indices.
     edge_region
@@ -67,23 +65,35 @@ def connected_components(start: Int64s, end: Int64s, count: int) -> Int64s:
     return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
 
-def components_of_faces(surface: Surface, needy: Bools) -> Int64s:
-    """Label the component of every needy face, over shared edges."""
-    position = np.cumsum(needy) - 1
-    halves = np.flatnonzero(needy[surface.half_face])
+def components_of_faces(surface: Surface, overhanging: Bools) -> Int64s:
+    """Label the overhanging faces; faces that share an edge have the same label."""
+    position = np.cumsum(overhanging) - 1
+    halves = np.flatnonzero(overhanging[surface.half_face])
     same = surface.half_edge[halves[1:]] == surface.half_edge[halves[:-1]]
     faces = position[surface.half_face[halves]]
-    return connected_components(faces[:-1][same], faces[1:][same], int(needy.sum()))
+    return connected_components(faces[:-1][same], faces[1:][same], int(overhanging.sum()))
 
 
 def components_of_edges(edges: Int64s, count: int) -> Int64s:
-    """Label the component of every edge, over shared vertices."""
+    """Label edges ``(e, 2)`` among `count` points; edges that share a point have the same label."""
     return connected_components(edges[:, 0], edges[:, 1], count)[edges[:, 0]]
 
 
-def large_enough(label: Int64s, measure: Floats, least: float, always: Bools) -> Bools:
-    """Tell which members belong to regions that are large enough or have a member to keep always."""
-    keep = np.bincount(label, weights=measure) >= least
+def large_enough(label: Int64s, measure: Floats, smallest: float, always: Bools) -> Bools:
+    """Tell which members belong to regions that are large enough or contain a member to keep always.
+
+    Parameters
+    ----------
+    label
+        ``(n,)`` region of each member.
+    measure
+        ``(n,)`` area or length of each member.
+    smallest
+        Smallest area or length of a region to keep.
+    always
+        ``(n,)`` bool, members whose region is kept whatever its size.
+    """
+    keep = np.bincount(label, weights=measure) >= smallest
     keep[label[always]] = True
     return np.asarray(keep[label])
 
@@ -94,7 +104,17 @@ def labelled_regions(
     edges: tuple[Int64s, Int64s, Floats],
     tips: tuple[Int64s, Int64s],
 ) -> Overhangs:
-    """Label the regions 0, 1, ..., faces first, and measure them."""
+    """Number the regions 0, 1, ..., faces first, and measure them.
+
+    Parameters
+    ----------
+    surface
+        The merged surface.
+    faces, edges
+        Indices of faces (points of edges), their labels, and their areas (lengths).
+    tips
+        Points, and their labels.
+    """
     points = surface.points
     groups: list[Int32s] = []
     regions: list[OverhangRegion] = []

@@ -1,4 +1,4 @@
-"""The merged surface of a part, as the search for overhangs reads it."""
+"""Prepare the surface of a part for the search for overhangs: merge coincident vertices, sort half-edges by edge."""
 
 from typing import Any, NamedTuple
 
@@ -8,16 +8,27 @@ from numpy.typing import NDArray
 from amprep.arrays import Bools, Floats, Int64s
 
 LEVEL = 1e-6
-"""mm; vertices nearer than that are one, and heights that differ by less are equal."""
+"""Vertices closer than this (mm) are merged, and heights that differ by less are equal."""
 
 ON_PLATE = 1e-3
-"""mm; what lies nearer to the plate than that touches it."""
+"""Geometry closer to the plate than this (mm) touches it."""
 
 
 class Surface(NamedTuple):
     """A mesh with coincident vertices merged and its half-edges sorted by edge.
 
-    `half_edge` gives each half-edge's edge, `opposite` the corner across from it, `half_face` its triangle.
+    Attributes
+    ----------
+    points
+        ``(n, 3)`` mm.
+    first
+        ``(n,)`` smallest index of each point in the vertices given.
+    triangles
+        ``(m, 3)`` indices of points.
+    edges
+        ``(e, 2)`` indices of points.
+    half_edge, half_face, opposite
+        ``(h,)`` edge and triangle of each half-edge, and the corner of the triangle opposite to it.
     """
 
     points: Floats
@@ -30,7 +41,7 @@ class Surface(NamedTuple):
 
 
 def merge_vertices(vertices: Floats, triangles: NDArray[Any]) -> Surface:
-    """Return the mesh with coincident vertices merged."""
+    """Return the surface of a mesh; degenerate triangles have no half-edges."""
     keys = np.round(vertices / LEVEL).astype(np.int64)
     order = np.lexsort(keys.T[::-1])
     new = np.ones(len(order), np.bool_)
@@ -53,7 +64,7 @@ def merge_vertices(vertices: Floats, triangles: NDArray[Any]) -> Surface:
 
 
 def cross_products(points: Floats, corners: Int64s) -> Floats:
-    """Return twice the area vectors ``(n, 3)`` of triangles."""
+    """Return the cross products of two sides ``(n, 3)``: normals with twice the area as their length."""
     a, b, c = points[corners[:, 0]], points[corners[:, 1]], points[corners[:, 2]]
     return np.asarray(np.cross(b - a, c - a), np.float64)
 
@@ -66,9 +77,6 @@ def unit_normals(surface: Surface) -> Floats:
 
 
 def above_plate(surface: Surface) -> Bools:
-    """Tell which faces do not lie on the plate."""
+    """Tell which faces are not entirely on the plate."""
     heights = surface.points[:, 2][surface.triangles]
     return np.asarray(heights.max(axis=1, initial=-np.inf) > ON_PLATE)
-
-
-"""mm; vertices closer than this in height are level, closer than this in space are one."""

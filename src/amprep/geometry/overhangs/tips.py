@@ -1,4 +1,4 @@
-"""Tips: local minima of the surface."""
+"""Find tips: local minima of the surface with the solid above them."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from amprep.geometry.overhangs.surface import LEVEL, ON_PLATE, Surface
 
 
 def minimum_plateaus(surface: Surface) -> Int64s:
-    """Label each vertex by its level plateau where that is a local minimum above the plate, else -1."""
+    """Label each point with its level plateau if that is a local minimum of the solid above the plate, else with -1."""
     count = len(surface.points)
     start, end = surface.edges[:, 0], surface.edges[:, 1]
     difference = surface.points[end, 2] - surface.points[start, 2]
@@ -23,10 +23,10 @@ def minimum_plateaus(surface: Surface) -> Int64s:
 
 
 def _section_areas(surface: Surface, plateau: Int64s, lowest: Bools) -> Floats:
-    """Measure the surface's level section just above each local minimum.
+    """Return the signed area (mm2) of the surface's level section just above each local minimum.
 
-    The signed area is negative (clockwise seen from above) where the solid lies above the plateau, positive
-    at the bottom of a pit. A triangle touches at most one minimum: of two the higher would not be one.
+    The area is negative (clockwise seen from above) if the solid is above the plateau, and positive at the bottom
+    of a pit. A triangle touches at most one minimum, because the higher of two would not be a minimum.
     """
     corners = surface.triangles
     inside = lowest[plateau[corners]]
@@ -46,8 +46,8 @@ def _section_areas(surface: Surface, plateau: Int64s, lowest: Bools) -> Floats:
         j = (i + 1) % 3
         a, b = surface.points[corners[:, i]], surface.points[corners[:, j]]
         crosses = inside[:, i] != inside[:, j]
-        share = np.divide(level - a[:, 2], b[:, 2] - a[:, 2], out=np.zeros(len(a)), where=crosses)
-        point = a[:, :2] + np.clip(share, 0, 1)[:, None] * (b - a)[:, :2] - origin[group]
+        fraction = np.divide(level - a[:, 2], b[:, 2] - a[:, 2], out=np.zeros(len(a)), where=crosses)
+        point = a[:, :2] + np.clip(fraction, 0, 1)[:, None] * (b - a)[:, :2] - origin[group]
         leaves = crosses & inside[:, i]
         up[leaves], down[crosses & ~leaves] = point[leaves], point[crosses & ~leaves]
     signed = up[:, 0] * down[:, 1] - up[:, 1] * down[:, 0]
@@ -55,10 +55,20 @@ def _section_areas(surface: Surface, plateau: Int64s, lowest: Bools) -> Floats:
 
 
 def tips_of(minimum: Int64s, corners: Int64s, ends: Int64s) -> tuple[Int64s, Int64s]:
-    """Pick the vertices of the local minima that no needy face or edge touches, and the plateau of each."""
+    """Return the points of local minima that no overhanging face and no knife edge touches, and their plateaus.
+
+    Parameters
+    ----------
+    minimum
+        ``(n,)`` labels from `minimum_plateaus`.
+    corners
+        ``(f, 3)`` points of the overhanging faces.
+    ends
+        ``(e, 2)`` points of the knife edges.
+    """
     held = np.zeros(int(minimum.max(initial=-1)) + 2, np.bool_)
     held[minimum[corners.ravel()]] = True
     held[minimum[ends.ravel()]] = True
-    held[-1] = True  # the vertices that are no minimum
+    held[-1] = True  # the points that are no minimum
     tips = np.flatnonzero(~held[minimum])
     return tips, minimum[tips]

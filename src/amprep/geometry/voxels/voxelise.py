@@ -1,4 +1,4 @@
-"""Exact conservative voxelisation: which voxels of the support grid a mesh meets (thesis 3.2)."""
+"""Voxelise meshes exactly: find the voxels of a grid whose interior a mesh meets (thesis 3.2)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,18 +8,26 @@ from amprep.geometry.overhangs.regions import Overhangs
 from amprep.geometry.voxels.grid import VoxelBlock
 
 UNMARKED = 2**31 - 1
-"""Label of a voxel that holds nothing."""
+"""Label of a voxel that contains no overhang."""
 
 _CONTACT = 1e-3
-"""mm; the penetration that counts as contact."""
+"""Largest penetration (mm) that counts as contact."""
 
 
 def met_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, *, solid: bool = True) -> Bools:
-    """Tell which voxels' open interior the solid meets, by its surface or its inside; an array over `block`.
+    """Tell in which voxels of a block a mesh meets the open interior.
 
-    A penetration of up to 0.001 mm is contact and does not count, so a face on a grid plane leaves both
-    sides alone (the inside then marks its own side). What is inside has a winding number above 0. With
-    `solid` False only the surface counts.
+    A penetration of up to 0.001 mm is contact and does not count: a face on a plane of the grid meets neither
+    neighbour, but the interior of the solid meets the voxel on its side.
+
+    Parameters
+    ----------
+    block
+        The block of voxels; the result has its shape.
+    vertices, triangles
+        ``(n, 3)`` mm, ``(m, 3)``.
+    solid
+        Whether the interior (winding number above 0) counts in addition to the surface.
     """
     from amprep.kernels.voxels.voxelise import count_crossings, mark_interior
 
@@ -33,16 +41,35 @@ def met_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, *, solid:
 
 
 def near_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, gap: float) -> Bools:
-    """Tell which voxels have the surface in their sideways neighbourhood: the square widened by `gap` mm."""
+    """Tell which voxels meet the surface when they are widened horizontally by a gap.
+
+    Parameters
+    ----------
+    block
+        The block of voxels; the result has its shape.
+    vertices, triangles
+        ``(n, 3)`` mm, ``(m, 3)``.
+    gap
+        Horizontal distance, mm.
+    """
     return np.asarray(_marked(block, vertices, triangles, grow=gap - _CONTACT, holds=False) != UNMARKED)
 
 
 def holding_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, overhangs: Overhangs) -> Int32s:
-    """Label the voxels that hold needy geometry with its least region, others with `UNMARKED`.
+    """Label each voxel with the smallest number of an overhang region in it, else with `UNMARKED`.
 
-    A face, edge or tip on a horizontal grid plane belongs to the voxel above it, the material's side; an edge
-    or a tip on an upright grid plane to the voxels on both sides. Intersect with the occupied voxels to keep those
-    that have material.
+    A face, edge or tip on a horizontal plane of the grid belongs to the voxel above, on the side of the material.
+    An edge or tip on a vertical plane of the grid belongs to the voxels on both sides; the caller keeps those
+    that are occupied.
+
+    Parameters
+    ----------
+    block
+        The block of voxels; the result has its shape.
+    vertices, triangles
+        ``(n, 3)`` mm, ``(m, 3)``.
+    overhangs
+        Overhangs of this mesh.
     """
     faces = triangles[overhangs.faces]
     marks = _marked(block, vertices, faces, grow=-_CONTACT, holds=True, labels=overhangs.face_region)

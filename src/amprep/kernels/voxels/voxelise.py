@@ -1,6 +1,6 @@
-"""Voxelisation kernels: which voxels triangles, edges and points meet, and which voxel centres lie inside.
+"""Voxelisation kernels: find the voxels that triangles, edges and points meet, and the voxel centres inside a solid.
 
-Coordinates are mm relative to the block's corner; a block is an array over voxels ``[k, y, x]``.
+Coordinates are mm relative to the smallest corner of a block of voxels; arrays over the block are indexed [k, y, x].
 """
 
 import numpy as np
@@ -12,7 +12,10 @@ from amprep.kernels.meshes.rows import ends_in_row, slopes_of
 
 @njit(cache=True)
 def _clip(source: Floats, count: int, axis: int, bound: float, sign: float, target: Floats) -> int:
-    """Clip the polygon `source[:count]` to ``sign * (p[axis] - bound) >= 0``; return the corners kept."""
+    """Clip the polygon ``source[:count]`` to ``sign * (p[axis] - bound) >= 0``; return the number of corners kept.
+
+    The result is written to `target`, which has room for one corner more than the polygon.
+    """
     kept = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
@@ -23,9 +26,9 @@ def _clip(source: Floats, count: int, axis: int, bound: float, sign: float, targ
                 target[kept, c] = source[i, c]
             kept += 1
         if (a > 0.0 and b < 0.0) or (a < 0.0 and b > 0.0):
-            share = a / (a - b)
+            fraction = a / (a - b)
             for c in range(3):
-                target[kept, c] = source[i, c] + share * (source[j, c] - source[i, c])
+                target[kept, c] = source[i, c] + fraction * (source[j, c] - source[i, c])
             target[kept, axis] = bound
             kept += 1
     return kept
@@ -43,7 +46,7 @@ def _mark_column(
     ix: int,
     marks: Int32s,
 ) -> None:
-    """Mark the voxels of one column that the height interval of `polygon` meets."""
+    """Lower the labels of the voxels of one column that the height interval of ``polygon[:count]`` meets."""
     low = polygon[0, 2]
     high = low
     for i in range(1, count):
@@ -57,6 +60,11 @@ def _mark_column(
         marks[k, iy, ix] = min(marks[k, iy, ix], label)
 
 
+# Strategy. A voxel is a square of the grid times a height interval. The elements (triangles, edges, points) are convex,
+# so an element clipped to the vertical prism over a square is convex and connected: it meets just the voxels of the
+# column between its lowest and its highest corner. An element is first clipped to a row of squares (a band in y), then
+# the band to each square; elements inside a band or square are not clipped. Clipping a triangle by four planes
+# leaves at most seven corners. The work is proportional to the number of columns that the elements meet.
 @njit(cache=True)
 def mark_elements(
     points: Floats,
@@ -69,12 +77,26 @@ def mark_elements(
     holds: bool,
     marks: Int32s,
 ) -> None:
-    """Lower `marks` (int32, modified in place) to the least label of the elements that meet each voxel.
+    """Lower `marks` to the smallest label of the elements that meet each voxel.
 
-    Elements are triangles, edges ``(a, b, b)`` or points ``(a, a, a)``. Each is clipped to every xy-square,
-    widened by `grow` mm on each side (negative: shrunk); the clipped polygon is connected, so its height
-    interval says exactly which voxels of the column it meets. Heights within `tolerance` of a grid plane do
-    not reach the voxel beyond it. With `holds`, what lies on a grid plane belongs to the voxel above.
+    Parameters
+    ----------
+    points
+        ``(n, 3)`` mm.
+    elements
+        ``(m, 3)`` triangles, edges ``(a, b, b)`` or points ``(a, a, a)``.
+    labels
+        ``(m,)`` label of each element.
+    pitch, step
+        Horizontal and vertical voxel size, mm.
+    grow
+        Squares are widened by it on each side, mm; negative values shrink them.
+    tolerance
+        Heights within it (mm) of a plane of the grid do not reach the voxel beyond the plane.
+    holds
+        Whether an element on a plane of the grid belongs to the voxel above.
+    marks
+        ``(nz, ny, nx)`` labels of the voxels; modified in place.
     """
     ny, nx = marks.shape[1], marks.shape[2]
     whole = np.empty((3, 3))
@@ -122,9 +144,18 @@ def mark_elements(
 
 @njit(cache=True)
 def count_crossings(points: Floats, triangles: Int64s, pitch: float, step: float, change: Int16s) -> None:
-    """Add to `change` (int16, modified in place) how the winding number changes up each line of voxel centres.
+    """Count how the winding number changes along each vertical line of voxel centres.
 
-    ``change[k]`` collects the crossings between centres k - 1 and k.
+    Parameters
+    ----------
+    points
+        ``(n, 3)`` mm.
+    triangles
+        ``(m, 3)``.
+    pitch, step
+        Horizontal and vertical voxel size, mm.
+    change
+        ``(nz, ny, nx)``; the change between the centres k - 1 and k is added to ``change[k]``.
     """
     nz, ny, nx = change.shape
     for t in range(triangles.shape[0]):
@@ -140,7 +171,9 @@ def count_crossings(points: Floats, triangles: Int64s, pitch: float, step: float
             up, down = ends_in_row(points, triangles, t, y)
             if np.isinf(up) or np.isinf(down):
                 continue
-            sign = 1 if up < down else -1  # clockwise seen from above: it looks down, the solid begins
+            sign = (
+                1 if up < down else -1
+            )  # clockwise seen from above: a downward face, where the solid begins
             first = int(np.ceil(min(up, down) / pitch - 0.5))
             last = int(np.ceil(max(up, down) / pitch - 0.5)) - 1
             for ix in range(max(first, 0), min(last, nx - 1) + 1):
@@ -152,7 +185,7 @@ def count_crossings(points: Floats, triangles: Int64s, pitch: float, step: float
 
 @njit(cache=True)
 def mark_interior(change: Int16s, marks: Int32s) -> None:
-    """Mark with 0 the voxels whose centre has a positive winding number, from `count_crossings`."""
+    """Set `marks` to 0 where the winding number of the voxel centre is positive; `change` is summed up in place."""
     nz, ny, nx = change.shape
     for iy in range(ny):
         for k in range(nz):

@@ -1,4 +1,4 @@
-"""The support graph edge by edge: for oracles, rival solvers and curiosity; routers never store it."""
+"""Build the support graph edge by edge, for judges, other solvers and tests; routers never store it."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,13 +15,15 @@ if TYPE_CHECKING:
 class SupportGraph(NamedTuple):
     """A flow network with one source and one sink.
 
-    The square at ``(p, y, x)`` has the number ``i = (p * ny + y) * nx + x`` and two nodes: 2 i, where paths come
-    in, and 2 i + 1, where they leave; the arc between them has the square's capacity.
+    The square ``(p, y, x)`` has the number ``i = (p * ny + y) * nx + x`` and two nodes: paths enter it at node 2 i
+    and leave it at node 2 i + 1. The arc between the two has the capacity of the square.
 
     Attributes
     ----------
     tail, head, capacity, cost
-        ``(n,)`` int32, the arcs; what is unbounded has the number of red squares plus 1 as its capacity.
+        ``(n,)`` int32, the arcs. The capacity of an unbounded arc is the number of red squares plus 1.
+    source, sink
+        Their nodes.
     """
 
     tail: Ints
@@ -35,24 +37,24 @@ class SupportGraph(NamedTuple):
 def support_graph(problem: SupportProblem, *, raised: int = 0) -> SupportGraph:
     """Return the graph of a problem, with `raised` added to each of its capacities.
 
-    Arcs lead from the source to every red square, through squares, down edges, and from green squares to the
-    sink. Takes about 250 bytes a square.
+    Arcs lead from the source to every red square, through each square, along each edge, and from every green
+    square to the sink. The graph takes about 250 bytes for each square.
     """
     nz, ny, nx = problem.voxels.shape
-    white, plenty = problem.voxels == Voxel.FREE, len(problem.red) + 1
+    free, unbounded = problem.voxels == Voxel.FREE, len(problem.red) + 1
     number = np.arange((nz + 1) * ny * nx, dtype=np.int32).reshape(nz + 1, ny, nx)
     source, sink = 2 * number.size, 2 * number.size + 1
-    edge = problem.edge_capacity + raised if problem.edge_capacity else plenty
-    node = problem.node_capacity + raised if problem.node_capacity else plenty
+    edge = problem.edge_capacity + raised if problem.edge_capacity else unbounded
+    node = problem.node_capacity + raised if problem.node_capacity else unbounded
     above = number[1:].reshape(-1)
     red = number[tuple(problem.red.T)]
     green = number[0][problem.green]
-    blocks = [(2 * above, 2 * above + 1, node, 0), (2 * green, np.full_like(green, sink), plenty, 0)]
+    blocks = [(2 * above, 2 * above + 1, node, 0), (2 * green, np.full_like(green, sink), unbounded, 0)]
     blocks.append((np.full_like(red, source), 2 * red, 1, 0))
     for direction, step in enumerate(DIRECTIONS):
         upper = tuple(slice(max(-d, 0), n - max(d, 0)) for d, n in zip(step, (ny, nx), strict=True))
         lower = tuple(slice(max(d, 0), n - max(-d, 0)) for d, n in zip(step, (ny, nx), strict=True))
-        exists = white[:, *upper] & white[:, *lower]
+        exists = free[:, *upper] & free[:, *lower]
         cost = problem.costs[direction > 0]
         blocks.append((2 * number[1:, *upper][exists] + 1, 2 * number[:-1, *lower][exists], edge, cost))
     tail, head = (np.concatenate([block[i] for block in blocks]).astype(np.int32) for i in (0, 1))
@@ -65,7 +67,7 @@ def to_networkx(problem: SupportProblem) -> "nx.DiGraph":
     """Return the graph of a small problem, with `capacity` and `weight` on its arcs.
 
     Nodes are ``("in", p, y, x)`` and ``("out", p, y, x)`` for each square, ``"source"`` and ``"sink"``; arcs
-    without a `capacity` are unbounded. Takes some kilobytes a square: up to about 100,000 squares.
+    without a `capacity` are unbounded. It takes some kilobytes for each square; use it for up to about 100,000 squares.
     """
     import networkx as nx
 

@@ -55,8 +55,8 @@ def test_a_sound_plan_has_no_violations(task, plan):
     [
         ({"x": 9}, "leads out of the grid"),
         ({"plane": 0}, "leads out of the grid"),
-        ({"plane": 5}, "not white"),
-        ({"direction": 4}, "not white|receives"),
+        ({"plane": 5}, "not free"),
+        ({"direction": 4}, "not free|receives"),
         ({"direction": 7}, "leads out of the grid"),
         ({"flow": 0}, "carries no flow"),
         ({"flow": 2}, "more than its reported capacity"),
@@ -69,8 +69,8 @@ def test_a_wrong_edge_is_found(task, plan, change, message):
     assert any(each in found for each in message.split("|"))
 
 
-def test_a_step_into_a_black_cube_is_found(task, plan):
-    assert "not white" in messages(task, changed(plan, 4, direction=1))
+def test_a_step_into_an_occupied_voxel_is_found(task, plan):
+    assert "not free" in messages(task, changed(plan, 4, direction=1))
 
 
 def test_a_column_that_ends_in_the_air_is_found(task, plan):
@@ -86,12 +86,12 @@ def test_red_squares_must_be_connected_or_listed_once_with_a_true_reason(task, p
     assert "expected one of the reasons" in messages(
         task, replace(plan, unconnected=(Unconnected(2, "tired"),))
     )
-    assert "no white way" in messages(task, replace(plan, unconnected=(Unconnected(2, CAPACITY),)))
+    assert "there is no path" in messages(task, replace(plan, unconnected=(Unconnected(2, CAPACITY),)))
     half = replace(plan, edges=plan.edges[:4])
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, ENCLOSED)))
-    assert "there is a white way" in messages(task, lazy)
+    assert "there is a path" in messages(task, lazy)
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, CAPACITY)))
-    assert "sets none" in messages(task, lazy)
+    assert "has no capacities" in messages(task, lazy)
     assert check_plan(replace(task, edge_capacity=1), lazy) == []
 
 
