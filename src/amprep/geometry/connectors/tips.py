@@ -19,9 +19,6 @@ ROUND_SIDES = 12
 _APART = 2e-4
 """Distance (mm) between a tip and the side of its cell; tips of neighbouring cells are twice as far apart."""
 
-_OVER = 5e-4
-"""Length (mm) by which prisms extend beyond the sides of their cells."""
-
 _ROOT = 0.05
 """Margin on each side of the root of a tip, as a fraction of the cell."""
 
@@ -79,8 +76,8 @@ def make_tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, ov
 def grid_prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
     """Return the union of upright prisms of various heights over squares of a grid.
 
-    manifold3d unites solids with coincident walls less reliably than solids that overlap. Therefore prisms extend
-    slightly beyond their squares, and four meshes are united, each of which holds no two neighbouring squares.
+    Walls of neighbouring prisms coincide, and a mesh with coincident walls is not a valid solid. Therefore four meshes
+    are united, each of which has no two neighbouring squares.
 
     Parameters
     ----------
