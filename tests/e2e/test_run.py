@@ -128,13 +128,13 @@ def test_a_dry_run_writes_nothing(amprep, fixtures, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_stl_files_lie_in_build_coordinates(amprep, fixtures, tmp_path):
+def test_stl_files_are_in_build_coordinates(amprep, fixtures, tmp_path):
     import trimesh
 
     outcome = amprep(
         "run", fixtures / "table.stl", "-o", tmp_path, "--stl", "--json", "--set", "packing.lift_mm=3"
     )
-    names = outcome.json["builds"][0]["stl"]
+    names = outcome.json["builds"][0]["stl_files"]
     bounds = [trimesh.load_mesh(tmp_path / name).bounds for name in names]
     assert len(names) == 2, "the part and its supports"
     assert bounds[0][0][2] == pytest.approx(3.0, abs=1e-4)

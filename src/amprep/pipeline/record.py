@@ -96,7 +96,15 @@ def _advice(builds: Sequence[BuildRecord]) -> list[str]:
 def unplaced_records(
     parts: Sequence[Part], problem: PackingProblem, packing: Packing
 ) -> tuple[UnplacedRecord, ...]:
-    """Return the copies that are in no build, with the reasons."""
+    """Return the copies that are in no build, with the reasons.
+
+    Parameters
+    ----------
+    parts
+        The job's parts, which give the names.
+    problem, packing
+        The packing problem and its solution.
+    """
     items = ((problem.items[entry.item], entry.reason) for entry in packing.unplaced)
     return tuple(UnplacedRecord(parts[item.part].name, item.copy + 1, reason) for item, reason in items)
 

@@ -48,7 +48,17 @@ def finish_build(
 
 
 def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:
-    """Write pictures and the HTML and JSON reports; return the record with durations and file names."""
+    """Write pictures and the HTML and JSON reports; return the record with durations and file names.
+
+    Parameters
+    ----------
+    record
+        The record of the run.
+    outputs
+        Folder of the files.
+    clock
+        Times the stage; its durations are part of the reports.
+    """
     from amprep.report.json_report import write_json
     from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture

@@ -18,7 +18,17 @@ INK, SOFT = (38, 46, 58), (112, 121, 134)
 
 
 def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
-    """Draw title and ruler on a picture and return it; the camera is made for twice its size."""
+    """Draw title and ruler on a picture and return it.
+
+    Parameters
+    ----------
+    image
+        Modified in place.
+    build
+        Gives the title and the size of the plate.
+    camera
+        Made for a picture of twice the width and height.
+    """
     from PIL import ImageDraw, ImageFont
 
     draw = ImageDraw.Draw(image)

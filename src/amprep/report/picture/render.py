@@ -1,4 +1,4 @@
-"""Render coloured meshes to pixels: prepare the arrays for `amprep.kernels.raster`, and encode its result."""
+"""Render coloured meshes to pixels: prepare the arrays for `amprep.kernels.picture`, and encode its result."""
 
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,8 @@ from amprep.report.picture.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.picture.scene import ColouredMesh, TriangleScene, assemble, linear, unit_normals
 
 if TYPE_CHECKING:
-    from amprep.kernels.raster import DepthBuffer, DrawnMarks, Facets, PlateShape, Sun
+    from amprep.kernels.picture.rasterise import DepthBuffer
+    from amprep.kernels.picture.shade import DrawnMarks, Facets, PlateShape, Sun
 
 SUN_AXES = view_axes(-112.0, 56.0)
 """Axes of a viewer who looks in the direction of the sunlight."""
@@ -42,7 +43,7 @@ def render(
     space
         Gives the plate its size and shape; None without a plate.
     """
-    from amprep.kernels.raster import Openness, shade
+    from amprep.kernels.picture.shade import Openness, shade
 
     scene = assemble(meshes)
     reach = max(3.0, 60.0 / camera.pixels_per_mm)
@@ -62,7 +63,7 @@ def render(
 
 
 def _drawn(vertices: Floats, triangles: Ints, camera: Camera, size: tuple[int, int]) -> "DepthBuffer":
-    from amprep.kernels.raster import DepthBuffer, draw
+    from amprep.kernels.picture.rasterise import DepthBuffer, draw
 
     shape = (2 * size[1], 2 * size[0])
     buffer = DepthBuffer(np.full(shape, np.inf, np.float32), np.full(shape, -1, np.int32))
@@ -71,7 +72,7 @@ def _drawn(vertices: Floats, triangles: Ints, camera: Camera, size: tuple[int, i
 
 
 def _drawn_marks(marks: ColouredMesh | None, camera: Camera, size: tuple[int, int]) -> "DrawnMarks":
-    from amprep.kernels.raster import DrawnMarks
+    from amprep.kernels.picture.shade import DrawnMarks
 
     if marks is None:
         buffer = _drawn(np.empty((0, 3)), np.empty((0, 3), np.int32), camera, size)
@@ -86,7 +87,8 @@ def _drawn_marks(marks: ColouredMesh | None, camera: Camera, size: tuple[int, in
 
 def _sun(scene: TriangleScene, camera: Camera) -> "Sun":
     """Return the shadow map, and the map from the camera's column, row and depth to it."""
-    from amprep.kernels.raster import PLATE, DepthBuffer, Sun, draw
+    from amprep.kernels.picture.rasterise import DepthBuffer, draw
+    from amprep.kernels.picture.shade import PLATE, Sun
 
     casting = scene.triangles[scene.kinds != PLATE]
     corners = box_corners(scene.vertices.min(axis=0), scene.vertices.max(axis=0))
@@ -98,7 +100,7 @@ def _sun(scene: TriangleScene, camera: Camera) -> "Sun":
 
 
 def _facets(scene: TriangleScene, camera: Camera) -> "Facets":
-    from amprep.kernels.raster import Facets, light_facets
+    from amprep.kernels.picture.shade import Facets, light_facets
 
     count = len(scene.triangles)
     facets = Facets(
@@ -120,7 +122,7 @@ def _spirals(reach: float) -> Int64s:
 
 
 def _plate(space: BuildVolume | None, camera: Camera) -> "PlateShape":
-    from amprep.kernels.raster import PlateShape
+    from amprep.kernels.picture.shade import PlateShape
 
     x, y = (float(space.size[0]), float(space.size[1])) if space else (0.0, 0.0)
     is_round = space is not None and space.shape == "cylinder"

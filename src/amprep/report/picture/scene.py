@@ -10,7 +10,7 @@ from amprep.report.picture.colours import SUPPORT, UNSUPPORTED, part_colours, rg
 from amprep.report.picture.marks import balls, mark_radius, thinned
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
-"""The kinds of `amprep.kernels.raster`, repeated here because importing that module takes time."""
+"""The kinds of `amprep.kernels.picture.shade`, repeated here because importing that module takes time."""
 PLATE_COLOUR = "#ccd2da"
 
 

@@ -35,7 +35,15 @@ class MeshColours(NamedTuple):
 
 
 def mesh_colours(model: "Lib3MF.Model", mesh: "Lib3MF.MeshObject", raw: RawMesh) -> MeshColours:
-    """Return the colours of a mesh object; triangles without a property of their own have the object's."""
+    """Return the colours of a mesh object; triangles without a property of their own have the object's.
+
+    Parameters
+    ----------
+    model
+        Holds the property resources.
+    mesh, raw
+        The object and its arrays.
+    """
     resource, chosen = _with_default(mesh, raw)
     corners = np.full((len(raw.triangles), 3), NO_COLOUR, np.int64)
     materials: set[str] = set()

@@ -135,11 +135,11 @@ def _with_prefixes(text: bytes) -> bytes:
 def _with_placements(text: bytes, placements: Mapping[str, Floats]) -> bytes:
     """Return the model with placements of nine digits; lib3mf itself writes six, 0.5 um at 300 mm."""
 
-    def placed(found: re.Match[bytes]) -> bytes:
+    def with_placement(found: re.Match[bytes]) -> bytes:
         matrix = placements.get(found.group(1).decode())
         if matrix is None:
             return found.group()
         numbers = " ".join(f"{value:.9g}" for value in (matrix[:3].T + 0.0).ravel().tolist())
         return f'transform="{numbers}" '.encode() + found.group()
 
-    return re.sub(rb'p:UUID="([^"]*)"', placed, text)
+    return re.sub(rb'p:UUID="([^"]*)"', with_placement, text)

@@ -136,14 +136,17 @@ class _Builder:
         self.model.SetBuildUUID(self.next_uuid())
 
     def next_uuid(self) -> str:
+        """Return the next identifier."""
         self.uuids += 1
         return str(uuid5(NAMESPACE_URL, f"{NAMESPACE}/{self.name}/{self.uuids}"))
 
     def annotate(self, group: Any, entries: Metadata) -> None:
+        """Add metadata to a group of lib3mf."""
         for namespace, name, value in entries:
             group.AddMetaData(namespace, name, xml_text(value), "xs:string", True)
 
     def add_object(self, thing: MeshObject) -> None:
+        """Add an object with one triangle in place of its mesh."""
         mesh = self.model.AddMeshObject()
         corners = [self.lib3mf.Position(row) for row in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))]
         mesh.SetGeometry(corners, [self.lib3mf.Triangle((0, 1, 2))])
@@ -179,6 +182,7 @@ class _Builder:
         self.palettes.append(palette)
 
     def add_palette(self, colours: Any) -> Palette:
+        """Add a colour group and return it as a palette."""
         group = self.model.AddColorGroup()
         for value in colours.tolist():
             group.AddColor(self.colour(value))
@@ -198,6 +202,7 @@ class _Builder:
         return self.wrapper.RGBAToColor(*value.to_bytes(4, "big"))
 
     def add_item(self, item: BuildItem) -> None:
+        """Add a build item, with a components object if its objects form a group."""
         identity = self.wrapper.GetIdentityTransform()
         if item.group:
             target = self.model.AddComponentsObject()
@@ -213,6 +218,7 @@ class _Builder:
         self.annotate(added.GetMetaDataGroup(), item.metadata)
 
     def place(self, added: Any, placed: PlacedObject) -> None:
+        """Give an item or component an identifier, and remember its placement."""
         uuid = self.next_uuid()
         added.SetUUID(uuid)
         if (placed.matrix != np.eye(4)).any():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from amprep.kernels.raster import DepthBuffer, draw
+from amprep.kernels.picture.rasterise import DepthBuffer, draw
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody, Unsupported
 from amprep.report.picture import build_picture, draw_mesh, write_picture
 from amprep.report.picture.camera import box_corners, fitted, view_axes

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from amprep.kernels.raster import (
+from amprep.kernels.picture.rasterise import DepthBuffer
+from amprep.kernels.picture.shade import (
     PART,
-    DepthBuffer,
     Facets,
     Openness,
     PlateShape,

@@ -1,11 +1,10 @@
-"""Rasterise triangles into a depth buffer and shade the result: orthographic, without a graphics card.
+"""Shade the pixels of a depth buffer: sunlight with shadows, openness, outlines, plate and marks.
 
-Strategy: triangles are drawn one after the other into a buffer of twice the picture's width and height, which
-keeps the nearest triangle of each pixel. Shading then visits each pixel once. Its light has three factors: the
-angle of the facet to the sun and to the viewer (computed once per triangle), the shadow (a second depth buffer, seen
-from the sun), and the openness of the surface (the depth of 7 pixels around it, in 4 different spirals for the 4 pixels
-of a block). Averaging blocks of 2 x 2 pixels smooths edges and the spirals' pattern. Drawing takes time in proportion
-to the pixels covered, shading to the pixels of the picture.
+Strategy: the scene is drawn at twice the picture's width and height, and each pixel is visited once. Its light has
+three factors: the angle of the facet to the sun and to the viewer (computed once per triangle), the shadow (a second
+depth buffer, seen from the sun), and the openness of the surface (the depth of 7 pixels around it, in 4 different
+spirals for the 4 pixels of a block). Averaging blocks of 2 x 2 pixels smooths edges and the spirals' pattern. Time is
+in proportion to the pixels of the picture.
 """
 
 from typing import NamedTuple
@@ -14,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Bytes, Float32s, Floats, Int32s, Int64s
+from amprep.kernels.picture.rasterise import DepthBuffer
 
 PLATE = 0
 """Kind of a triangle of the build plate: shaded with a millimetre grid."""
@@ -32,21 +32,6 @@ _CREASE = 0.86
 """Cosine of the angle between facets above which their common edge is not drawn."""
 _FADED, _MARKED = 0.40, 0.95
 """Opacity of marks behind and before other surfaces."""
-
-
-class DepthBuffer(NamedTuple):
-    """Nearest surface of each pixel.
-
-    Attributes
-    ----------
-    depth
-        ``(h, w)`` float32 mm, infinite where nothing is drawn.
-    ids
-        ``(h, w)`` int32 index of the triangle or -1; of shape (0, 0) to keep the depth only.
-    """
-
-    depth: Float32s
-    ids: Int32s
 
 
 class Facets(NamedTuple):
@@ -124,59 +109,6 @@ class PlateShape(NamedTuple):
 
 
 @njit(cache=True)
-def draw(points: Floats, triangles: Int32s, buffer: DepthBuffer) -> None:
-    """Draw triangles where they are nearer than the buffer's surface.
-
-    Parameters
-    ----------
-    points
-        ``(n, 3)`` column, row and depth; pixel (i, j) has its centre at column j and row i.
-    triangles
-        ``(m, 3)``.
-    buffer
-        Modified in place.
-    """
-    depth, ids = buffer.depth, buffer.ids
-    height, width = depth.shape
-    keep = ids.shape[0] > 0
-    for k in range(triangles.shape[0]):
-        a, b, c = triangles[k, 0], triangles[k, 1], triangles[k, 2]
-        xa, ya, za = points[a, 0], points[a, 1], points[a, 2]
-        xb, yb, zb = points[b, 0], points[b, 1], points[b, 2]
-        xc, yc, zc = points[c, 0], points[c, 1], points[c, 2]
-        area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)
-        if area == 0.0:
-            continue
-        top = max(0, int(np.ceil(min(ya, yb, yc))))
-        bottom = min(height - 1, int(np.floor(max(ya, yb, yc))))
-        left = max(0, int(np.ceil(min(xa, xb, xc))))
-        right = min(width - 1, int(np.floor(max(xa, xb, xc))))
-        if top > bottom or left > right:
-            continue
-        # The barycentric weights of b and c and the depth are linear in column and row.
-        beta_x, beta_y = (yc - ya) / area, (xa - xc) / area
-        gamma_x, gamma_y = (ya - yb) / area, (xb - xa) / area
-        slope = beta_x * (zb - za) + gamma_x * (zc - za)
-        for row in range(top, bottom + 1):
-            beta = beta_x * (left - xa) + beta_y * (row - ya)
-            gamma = gamma_x * (left - xa) + gamma_y * (row - ya)
-            near = za + beta * (zb - za) + gamma * (zc - za)
-            entered = False
-            for column in range(left, right + 1):
-                if beta >= 0.0 and gamma >= 0.0 and beta + gamma <= 1.0:
-                    entered = True
-                    if near < depth[row, column]:
-                        depth[row, column] = near
-                        if keep:
-                            ids[row, column] = k
-                elif entered:
-                    break  # the pixels of a triangle in a row are consecutive
-                beta += beta_x
-                gamma += gamma_x
-                near += slope
-
-
-@njit(cache=True)
 def light_facets(
     vertices: Floats, triangles: Int32s, axes: Floats, sun: Floats, pixels_per_mm: float, facets: Facets
 ) -> None:
@@ -217,7 +149,17 @@ def light_facets(
 
 @njit(cache=True)
 def lit_fraction(shadow: Float32s, column: float, row: float, near: float, bias: float) -> float:
-    """Return the fraction in [0, 1] of the four nearest shadow pixels whose surface is not nearer to the sun."""
+    """Return the fraction of sunlight at a point: how much of the four nearest shadow pixels is not nearer to the sun.
+
+    Parameters
+    ----------
+    shadow
+        ``(s, s)`` depth in mm seen from the sun.
+    column, row, near
+        The point in the shadow map.
+    bias
+        Difference of depth in mm that still counts as lit.
+    """
     height, width = shadow.shape
     j, i = int(np.floor(column)), int(np.floor(row))
     if i < 0 or j < 0 or i >= height - 1 or j >= width - 1:
@@ -233,7 +175,19 @@ def lit_fraction(shadow: Float32s, column: float, row: float, near: float, bias:
 def openness_at(
     depth: Float32s, row: int, column: int, slope_x: float, slope_y: float, openness: Openness
 ) -> float:
-    """Return in [0, 1] how open the surface at a pixel is; surfaces nearer than its tangent plane close it."""
+    """Return in [0, 1] how open the surface at a pixel is; surfaces nearer than its tangent plane close it.
+
+    Parameters
+    ----------
+    depth
+        ``(h, w)`` mm.
+    row, column
+        The pixel.
+    slope_x, slope_y
+        Increase of depth in mm for one pixel to the right and for one pixel down.
+    openness
+        Pixels to look at, and reach.
+    """
     height, width = depth.shape
     here, closed, seen = depth[row, column], 0.0, 0
     own, reach = openness.offsets[2 * (row & 1) + (column & 1)], openness.reach
@@ -256,6 +210,19 @@ def outline_at(
 
     An outline is the border to the background, to another mesh behind this one, or to a surface that is more than
     `jump` mm behind. A crease is the border between facets of the same mesh at different angles.
+
+    Parameters
+    ----------
+    buffer
+        The scene.
+    row, column
+        A pixel with a triangle.
+    slope_x, slope_y
+        Increase of depth in mm for one pixel to the right and for one pixel down.
+    facets
+        Of the scene's triangles.
+    jump
+        mm.
     """
     ids, depth = buffer.ids, buffer.depth
     height, width = depth.shape
@@ -279,7 +246,15 @@ def outline_at(
 
 @njit(cache=True)
 def plate_tone(x: float, y: float, plate: PlateShape) -> float:
-    """Return the tone of the plate at x, y mm, with its edge and lines every 10 and 50 mm; negative outside."""
+    """Return the tone of the plate at a point: 1, darker on its edge and on lines every 10 and 50 mm; negative outside.
+
+    Parameters
+    ----------
+    x, y
+        mm.
+    plate
+        Its shape and the size of a pixel.
+    """
     pixel = plate.pixel
     if plate.is_round:
         inside = plate.size_x / 2 - np.sqrt((x - plate.size_x / 2) ** 2 + (y - plate.size_y / 2) ** 2)
@@ -296,7 +271,7 @@ def plate_tone(x: float, y: float, plate: PlateShape) -> float:
     return 0.82 if to_ten < 0.7 * pixel else 1.0
 
 
-@njit(cache=True)
+@njit(inline="always")
 def _mapped(matrix: Floats, axis: int, column: int, row: int, near: float) -> float:
     """Return one coordinate of a pixel and its depth under a ``(3, 4)`` map."""
     return float(matrix[axis, 0] * column + matrix[axis, 1] * row + matrix[axis, 3] + matrix[axis, 2] * near)

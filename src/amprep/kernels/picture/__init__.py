@@ -1,0 +1,1 @@
+"""Kernels for pictures of builds: rasterising and shading."""
