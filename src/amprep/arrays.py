@@ -1,4 +1,4 @@
-"""Names of array types, one meaning each, and the copy that freezes an array."""
+"""Names of array types, and a function that makes read-only copies of arrays."""
 
 from typing import Any
 
@@ -15,13 +15,13 @@ Bytes = NDArray[np.uint8]
 Bools = NDArray[np.bool_]
 
 Ints = NDArray[np.signedinteger[Any]]
-"""Signed integers of any width, where a record does not fix it."""
+"""Signed integers of any width."""
 
 MeshArrays = tuple[Floats, Int64s]
 """Vertices ``(n, 3)`` mm and triangles ``(m, 3)`` of a closed mesh."""
 
 CONTACT_TOLERANCE = 1e-3
-"""mm; penetration up to it is contact, and a box too large by at most it fits."""
+"""Tolerance for lengths (mm): less penetration counts as contact, and a box that is this much too large fits."""
 
 
 def frozen(values: Any, dtype: DTypeLike, width: int | None = None) -> NDArray[Any]:
@@ -30,7 +30,7 @@ def frozen(values: Any, dtype: DTypeLike, width: int | None = None) -> NDArray[A
     Raises
     ------
     ValueError
-        If the values do not fill rows of `width`.
+        When the number of values is not a multiple of `width`.
     """
     array = np.array(values, dtype=dtype, order="C")
     if width is not None:

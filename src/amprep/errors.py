@@ -1,15 +1,15 @@
-"""The errors amprep raises on purpose: one base class, a few named ones, one line each."""
+"""Errors that amprep raises: one base class, and one class for each cause. Every message is one line."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
 
 class AmprepError(Exception):
-    """A broken contract a person can act on; the command line prints it as one line and exits with 2."""
+    """Base class of all errors of amprep; the command line prints the message and exits with code 2."""
 
 
 class InputError(AmprepError):
-    """A file could not be read, is not what it claims to be, or exceeds a limit."""
+    """A file cannot be read, has the wrong format, or exceeds a limit."""
 
 
 class MeshError(InputError):
@@ -21,15 +21,15 @@ class JobError(AmprepError):
 
 
 class PluginError(AmprepError):
-    """A plugin could not be loaded, chosen or run; the message names it, its distribution and version."""
+    """A plugin cannot be loaded, chosen or run; the message names the plugin, its distribution and its version."""
 
 
 class Interrupted(AmprepError):
-    """The user stopped the run; the command line exits with 130."""
+    """The user interrupted the run; the command line exits with code 130."""
 
 
 def nearest_hint(name: str, known: Iterable[str]) -> str:
-    """Return `` (did you mean 'x'?)`` for the known name nearest to `name`, or the list of known names."""
+    """Return `` (did you mean 'x'?)`` with the most similar known name, or the list of known names."""
     names = sorted(known)
     close = get_close_matches(name, names, n=1)
     if close:

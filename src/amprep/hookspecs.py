@@ -1,7 +1,7 @@
-"""All that a plugin author must read: the five hooks, the offer records and the `hookimpl` marker.
+"""Hooks for plugins: the five hooks, the records of offers, and the marker `hookimpl`.
 
-A plugin is a Python module (or package) named in the entry point group ``amprep``. It states the hook API it
-was written for and yields offers; the job picks an offer by name::
+A plugin is a Python module or package in the entry point group ``amprep``. It states the version of the hooks and
+yields offers; a job chooses an offer by name::
 
     from amprep.hookspecs import Packer, PackerAccepts, hookimpl
 
@@ -9,7 +9,7 @@ was written for and yields offers; the job picks an offer by name::
 
     @hookimpl
     def amprep_packers():
-        yield Packer("my-packer", "What it does, in a line.", run=my_run, accepts=PackerAccepts())
+        yield Packer("my-packer", "Does something.", run=my_run, accepts=PackerAccepts())
 """
 
 from collections.abc import Callable, Iterable
@@ -57,7 +57,7 @@ __all__ = [
 ]
 
 API_VERSION = 1
-"""Version of the hooks and offer records; a plugin states the one it was written for as ``amprep_api``."""
+"""Version of the hooks and the records of offers; a plugin states it as ``amprep_api``."""
 
 ENTRY_POINT_GROUP = "amprep"
 
@@ -67,13 +67,13 @@ _hookspec = pluggy.HookspecMarker("amprep")
 
 @dataclass(frozen=True)
 class NoParams:
-    """The parameters of an offer that has none."""
+    """Parameters of an offer without parameters."""
 
 
 def later(where: str) -> Callable[..., Any]:
-    """Return the function ``"package.module:name"``, imported when it is first called.
+    """Return a function that imports ``"package.module:name"`` when it is first called, and calls it.
 
-    An offer's module is loaded by every command; what its algorithm needs (numba, a solver) takes seconds.
+    Every command imports the module of an offer. Slow imports (numba, a solver) should wait for the first call.
     """
     module, _, name = where.partition(":")
 
@@ -84,13 +84,13 @@ def later(where: str) -> Callable[..., Any]:
 
 
 class ReadMeshes(Protocol):
-    """Reads one file. Raises `amprep.errors.InputError` when it cannot."""
+    """Read one file; raise `amprep.errors.InputError` if this is impossible."""
 
     def __call__(self, path: Path, *, params: Any) -> list[Part]: ...
 
 
 class MakeVolume(Protocol):
-    """Makes a bounding volume that contains the part as a solid."""
+    """Return a bounding volume that contains the part as a solid."""
 
     def __call__(
         self, part: Part, *, params: Any, rng: np.random.Generator, stop: Stop
@@ -98,7 +98,7 @@ class MakeVolume(Protocol):
 
 
 class Pack(Protocol):
-    """Places items; every item ends in exactly one build or in `unplaced`."""
+    """Place the items; every item is in exactly one build or in `unplaced`."""
 
     def __call__(
         self,
@@ -112,7 +112,7 @@ class Pack(Protocol):
 
 
 class RouteSupports(Protocol):
-    """Routes every red square that has a way to the plate; lists the others with a reason."""
+    """Route every reachable red square to the plate; list the others with a reason."""
 
     def __call__(
         self,
@@ -126,14 +126,14 @@ class RouteSupports(Protocol):
 
 
 class EmitCells(Protocol):
-    """Replaces edges by geometry."""
+    """Replace edges by geometry."""
 
     def __call__(self, request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells: ...
 
 
 @dataclass(frozen=True)
 class PackerAccepts:
-    """What a packer can handle; the host refuses a job that asks for more.
+    """Problems that a packer can handle; the host refuses a job that needs more.
 
     Attributes
     ----------
@@ -155,7 +155,7 @@ class PackerAccepts:
 
 @dataclass(frozen=True)
 class MeshReader:
-    """Offers to read files with certain suffixes (lower case, with the dot)."""
+    """Offer of a reader for files with certain suffixes (lower case, with the dot)."""
 
     name: str
     summary: str
@@ -166,7 +166,7 @@ class MeshReader:
 
 @dataclass(frozen=True)
 class VolumeMaker:
-    """Offers a kind of bounding volume; `makes` is one of the words of `PackerAccepts.volumes`."""
+    """Offer of a maker of bounding volumes; `makes` is one of the words in `PackerAccepts.volumes`."""
 
     name: str
     summary: str
@@ -177,7 +177,7 @@ class VolumeMaker:
 
 @dataclass(frozen=True)
 class Packer:
-    """Offers a packing algorithm."""
+    """Offer of a packing algorithm."""
 
     name: str
     summary: str
@@ -188,7 +188,7 @@ class Packer:
 
 @dataclass(frozen=True)
 class SupportRouter:
-    """Offers a support routing algorithm."""
+    """Offer of a support routing algorithm."""
 
     name: str
     summary: str
@@ -198,11 +198,16 @@ class SupportRouter:
 
 @dataclass(frozen=True)
 class CellEmitter:
-    """Offers a lattice cell.
+    """Offer of a lattice cell.
 
-    `material` tells routers what an edge costs: given the frame's pitch and step and the checked params it
-    returns the mm3 of a vertical and of an oblique edge; None counts both as one full prism. `declare`, given the
-    same, returns the cell's declaration, if it has one: `amprep.cells.cell_offer` fills it in.
+    Attributes
+    ----------
+    material
+        Function of pitch (mm), step (mm) and checked parameters that returns the volume (mm3) of a vertical and of an
+        oblique edge, by which routers choose paths; None counts both as a full prism.
+    declare
+        Function of the same arguments that returns the declaration of the cell; None for a cell in code.
+        `amprep.cells.cell_offer` sets it.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Turns plain values, as TOML gives them, into typed ones; says what was expected and what came."""
+"""Convert plain values, as in TOML, to typed values; messages say what was expected and what came."""
 
 import math
 import types
@@ -14,14 +14,14 @@ _SCALARS: dict[Any, str] = {bool: "true or false", int: "a whole number", float:
 
 
 def field_types(cls: type) -> dict[str, Any]:
-    """Return the type of each settable field of a dataclass.
+    """Return the type of each field of a dataclass that can be set.
 
     Raises
     ------
     TypeError
-        When a field has a type that no plain value turns into.
+        When no plain value can be converted to the type of a field.
     NameError
-        When an annotation names something that does not exist.
+        When an annotation uses a name that does not exist.
     """
     hints = get_type_hints(cls)
     settable = {field.name: hints[field.name] for field in fields(cls) if field.init}
@@ -31,17 +31,17 @@ def field_types(cls: type) -> dict[str, Any]:
 
 
 def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
-    """Make the dataclass `cls` from a table of plain values.
+    """Make a record of the dataclass `cls` from a table of plain values.
 
     Parameters
     ----------
     where
-        Says which table it is, for messages: ``job.toml, [packing]``.
+        Name of the table in messages, for example ``job.toml, [packing]``.
 
     Raises
     ------
     JobError
-        For an unknown key (with the nearest known one), a value of the wrong type, or a broken bound.
+        For an unknown key, a value of the wrong type, or a value out of bounds.
     """
     wanted = field_types(cls)
     for key in table:
@@ -55,7 +55,7 @@ def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
 
 
 def convert(value: Any, wanted: Any, where: str) -> Any:
-    """Return `value` as the type `wanted`, or raise `JobError` saying what was expected and what came."""
+    """Return the value converted to a type; raise `JobError` if this is impossible."""
     converted, fits = _attempt(value, wanted)
     if not fits:
         raise JobError(f"{where}: expected {expectation(wanted, where)}, got {_shown(value)}")
@@ -63,7 +63,7 @@ def convert(value: Any, wanted: Any, where: str) -> Any:
 
 
 def expectation(wanted: Any, where: str) -> str:
-    """Describe a type for people; raise `TypeError` for one that cannot be set from a plain value."""
+    """Describe a type in words; raise `TypeError` if no plain value can be converted to it."""
     if wanted in _SCALARS:
         return _SCALARS[wanted]
     if wanted is Any or wanted is Path:
@@ -90,7 +90,7 @@ def _tuple_expectation(arguments: tuple[Any, ...], where: str) -> str:
 
 
 def _attempt(value: Any, wanted: Any) -> tuple[Any, bool]:
-    """Return the converted value and whether it fits."""
+    """Return the converted value, and whether the conversion succeeded."""
     if wanted is Any:
         return value, True
     if wanted in _SCALARS or wanted is Path:

@@ -1,4 +1,4 @@
-"""The commands, mounted."""
+"""The application with all commands."""
 
 from typing import Annotated
 
@@ -13,8 +13,8 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    help="Prepare additive-manufacturing builds: pack parts, plan supports that stand on the plate, "
-    "write a 3MF build job per printing run.",
+    help="Prepare builds for additive manufacturing: pack parts, plan supports that stand on the plate, "
+    "and write one 3MF build job per printing run.",
 )
 app.command("run")(run.run)
 app.command("support")(support.support)
@@ -38,4 +38,4 @@ def _main(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Hold the options that belong to no command."""
+    """Take the options that belong to no command."""

@@ -1,4 +1,4 @@
-"""``amprep plugins``: list what is on offer, judge a plugin, start a new one."""
+"""``amprep plugins``: list all offers, check a plugin, start a new plugin."""
 
 import json
 from dataclasses import asdict, fields
@@ -20,9 +20,7 @@ Modules = Annotated[
     typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
 ]
 
-app = typer.Typer(
-    no_args_is_help=True, help="Plugins: list what is on offer, check a plugin, start a new one."
-)
+app = typer.Typer(no_args_is_help=True, help="List all offers, check a plugin, or start a new plugin.")
 
 
 @app.command("list")
@@ -31,7 +29,7 @@ def list_all(
     modules: Modules = None,
     no_plugins: Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")] = False,
 ) -> None:
-    """List every offer with the plugin it comes from."""
+    """List every offer with the plugin that provides it."""
     from amprep.host import Host
 
     host = Host.load(modules=modules or [], plugins_enabled=not no_plugins)
@@ -45,16 +43,18 @@ def list_all(
 
 @app.command("check")
 def check(
-    package: Annotated[str, typer.Argument(help="Plugin, distribution, module, or path of a module.")],
+    package: Annotated[
+        str, typer.Argument(help="Name of a plugin, distribution or module, or path of a module.")
+    ],
     sample: Annotated[
         list[Path] | None,
-        typer.Option(help="A file for a mesh reader to read, for formats amprep cannot write."),
+        typer.Option(help="File for a mesh reader to read, in a format that amprep cannot write."),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Load a plugin, run each of its offers on tiny problems, and judge the promises.
+    """Load a plugin, run each of its offers on sample problems, and check the promises.
 
-    Exit code 0: every promise holds; 1: some do not; 2: the plugin cannot be loaded.
+    Exit code 0: every promise holds; 1: a promise is broken; 2: the plugin cannot be loaded.
     """
     from amprep.testing.conformance import try_plugin
 
@@ -70,15 +70,15 @@ def check(
 def new(
     name: Annotated[str, typer.Argument(help="Name of the package, e.g. amprep-shelves.")],
     kind: Annotated[
-        str, typer.Option(help="What it offers: packer, cell, router, volume or reader.")
+        str, typer.Option(help="Kind of the offer: packer, cell, router, volume or reader.")
     ] = "packer",
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder in which to make it.")] = Path(),
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the new package.")] = Path(),
 ) -> None:
-    """Start a plugin: a package that works, with tests that pass."""
+    """Start a plugin: make a package that works and whose tests pass."""
     from amprep.host.scaffold import make_plugin
 
     folder = make_plugin(name, kind, output)
-    typer.echo(f"made {folder}; try it:")
+    typer.echo(f"made {folder}; install and check it:")
     typer.echo(f"  python -m pip install -e {folder} && amprep plugins check {name}")
 
 
@@ -124,7 +124,7 @@ def _abilities(offer: "Offer") -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value that JSON can hold; sets are sorted."""
+    """Return a value for JSON; sets become sorted lists."""
     if isinstance(value, frozenset | set):
         return sorted(value)
     return value if isinstance(value, bool | int | float | str | list | tuple | dict | None) else str(value)
@@ -137,7 +137,7 @@ def _print_offers(host: "Host") -> None:
 
     from amprep.host import KINDS
 
-    table = Table("kind", "name", "what it does", "from", box=None)
+    table = Table("kind", "name", "description", "from", box=None)
     for kind, description in KINDS.items():
         for each in host.offers(kind).values():
             origin = f"[dim]{each.origin}" if each.builtin else escape(each.origin)

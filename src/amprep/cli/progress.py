@@ -1,4 +1,4 @@
-"""Progress bars on standard error, one for each stage."""
+"""Progress bars on standard error, one per stage."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Bars:
-    """Draws a bar a stage; on something that is no terminal, a line when a stage ends."""
+    """Draws one bar per stage; if the output is not a terminal, it prints one line per finished stage."""
 
     def __init__(self, console: "Console") -> None:
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -22,7 +22,7 @@ class Bars:
             TextColumn("{task.description:>10}"),
             BarColumn(bar_width=28),
             TimeElapsedColumn(),
-            TextColumn("[dim]{task.fields[words]}", markup=True),
+            TextColumn("[dim]{task.fields[message]}", markup=True),
             console=console,
         )
         self._tasks: dict[str, int] = {}
@@ -38,16 +38,16 @@ class Bars:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[Progress]:
-        """Show one stage; entered again, it goes on with the same bar."""
+        """Show one stage; a stage that is entered again continues its bar."""
         from rich.markup import escape
         from rich.progress import TaskID
 
         if name not in self._tasks:
-            self._tasks[name] = self._progress.add_task(name, total=1.0, words="")
+            self._tasks[name] = self._progress.add_task(name, total=1.0, message="")
         task = TaskID(self._tasks[name])
 
-        def progress(share: float, words: str) -> None:
-            self._progress.update(task, completed=min(max(share, 0.0), 1.0), words=escape(words))
+        def progress(fraction: float, message: str) -> None:
+            self._progress.update(task, completed=min(max(fraction, 0.0), 1.0), message=escape(message))
 
         progress(0.0, "")
         yield progress

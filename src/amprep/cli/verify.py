@@ -24,9 +24,9 @@ def verify(
     stand on the plate and do not penetrate parts; and that every overhang is supported or listed with a reason.
     Exit codes: 0 if all promises hold, 1 if some are broken, 2 if the file is not a build that amprep wrote.
     """
-    from amprep.pipeline.verify import verify_file
+    from amprep import api
 
-    violations = verify_file(file)
+    violations = api.verify(file).violations
     if as_json:
         from amprep.report.json_values import violations_json
 

@@ -1,4 +1,4 @@
-"""Finds plugins and takes their offers; each plugin is loaded and judged by itself."""
+"""Find plugins, load each by itself, and check its offers."""
 
 import importlib
 import importlib.util
@@ -29,7 +29,7 @@ CHOSEN_BY_ENVIRONMENT = "AMPREP_LOAD_PLUGINS"
 
 @dataclass(frozen=True)
 class Source:
-    """A plugin not loaded yet: where it comes from, and how to load it."""
+    """A plugin that is not loaded yet: its origin, and a function that loads it."""
 
     name: str
     distribution: str
@@ -40,25 +40,25 @@ class Source:
 
     @property
     def title(self) -> str:
-        """For people: ``plugin 'shelves' of amprep-shelves 1.2``."""
+        """Title for messages: ``plugin 'shelves' of amprep-shelves 1.2``."""
         return f"plugin {self.name!r}" + (
             f" of {self.distribution} {self.version}" if self.distribution else ""
         )
 
     def answers_to(self, name: str) -> bool:
-        """Whether a user may mean this plugin by `name`."""
+        """Tell whether `name` is the name of this plugin or of its distribution."""
         return name in (self.name, self.distribution)
 
 
 def built_in() -> list[Source]:
-    """Return the built-in plugins, named by strings: the host knows no plugin by statement."""
+    """Return the built-in plugins; they are imported by name, because the host depends on no plugin."""
     return [Source(name, "amprep", __version__, _importer(name), builtin=True) for name in BUILT_IN]
 
 
 def installed(environment: Mapping[str, str]) -> tuple[list[Source], list[str]]:
-    """Return the installed plugins in order of distribution and name, and warnings.
+    """Return the installed plugins, in order of distribution and name, and warnings.
 
-    With ``AMPREP_LOAD_PLUGINS`` set, only the entry points (or distributions) it lists; empty means none.
+    If ``AMPREP_LOAD_PLUGINS`` is set, only the plugins or distributions in this list are returned.
     """
     points, warnings = _entry_points()
     found = sorted(map(_from_entry_point, points), key=_by_distribution)
@@ -75,7 +75,7 @@ def installed(environment: Mapping[str, str]) -> tuple[list[Source], list[str]]:
 
 
 def given(modules: Sequence[str]) -> list[Source]:
-    """Return the plugins asked for with ``-p``: importable modules, or paths of a file or package."""
+    """Return the plugins given with ``-p``: names of modules, or paths of files or packages."""
     return [
         Source(Path(name).stem, "", "", _importer(name), asked_for=True)
         if _is_path(name)
@@ -85,14 +85,15 @@ def given(modules: Sequence[str]) -> list[Source]:
 
 
 def offers_of(plugin: object) -> Iterator[tuple[Kind, Offer]]:
-    """Judge a loaded plugin and yield all its offers, each with its kind.
+    """Check a loaded plugin and yield its offers, each with its kind.
 
-    A plugin is taken whole or not at all. It gets a plugin manager of its own, so that a fault stays with it.
+    If one offer is faulty, the whole plugin is refused. Every plugin has its own plugin manager, so that its faults do
+    not affect other plugins.
 
     Raises
     ------
     PluginError
-        Saying what is wrong, without the plugin's name.
+        When the plugin is faulty; the message does not name the plugin.
     """
     _require_api(plugin)
     manager = pluggy.PluginManager(ENTRY_POINT_GROUP)
@@ -106,7 +107,7 @@ def offers_of(plugin: object) -> Iterator[tuple[Kind, Offer]]:
 
 
 def one_line(error: BaseException) -> str:
-    """Return an exception as ``ValueError: what it says``, on one line of at most 300 characters."""
+    """Return an exception as ``ValueError: message`` in one line of at most 300 characters."""
     text = " ".join(str(error).split())
     line = f"{type(error).__name__}: {text}" if text else type(error).__name__
     return line if len(line) <= 300 else line[:297] + "..."
@@ -158,10 +159,10 @@ def _is_hook(plugin: object, name: str, manager: pluggy.PluginManager) -> bool:
 
 
 def _entry_points() -> tuple[list[EntryPoint], list[str]]:
-    """Return the entry points of all installed packages; one with a damaged list costs a warning."""
+    """Return the entry points of all installed packages, and a warning for each damaged list."""
     try:
         return list(entry_points(group=ENTRY_POINT_GROUP)), []
-    except Exception:  # noqa: BLE001 the list of some package is damaged: look at each by itself
+    except Exception:  # noqa: BLE001 the list of one package is damaged: read them one by one
         found: list[EntryPoint] = []
         warnings = []
         for distribution in distributions():
@@ -179,10 +180,10 @@ def _from_entry_point(entry_point: EntryPoint) -> Source:
 
 
 def _identity(distribution: Distribution | None) -> tuple[str, str]:
-    """Return name and version; a package whose metadata is damaged has none, and is still named somehow."""
+    """Return name and version of a package, or placeholders if its metadata is damaged."""
     try:
         name, version = (distribution.name, distribution.version) if distribution else (None, None)
-    except Exception:  # noqa: BLE001 metadata of strangers may be damaged in any way
+    except Exception:  # noqa: BLE001 metadata may be damaged in any way
         name = version = None
     return name or "unknown distribution", version or "?"
 

@@ -1,4 +1,4 @@
-"""The host: a table of offers per kind, the choice by name, the guard around every call."""
+"""The host: list the offers of all plugins, choose one by name, and guard every call."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -21,14 +21,14 @@ from amprep.model.supports import SupportPlan
 
 
 class Host:
-    """Every offer of every plugin that loaded, and the only way to run one.
+    """The offers of all loaded plugins; every offer is run through its host.
 
     Attributes
     ----------
     warnings
-        One line for each plugin that was refused and each clash of names.
+        One line for each plugin that was refused and for each name that several plugins use.
     clashes
-        Those of the warnings that are clashes of names.
+        The warnings about names that several plugins use.
     """
 
     def __init__(self, listed: Sequence[Listed[Offer]], warnings: Sequence[str] = ()) -> None:
@@ -48,21 +48,21 @@ class Host:
         plugins_enabled: bool = True,
         env: Mapping[str, str] = os.environ,
     ) -> "Host":
-        """Load the built-in plugins, the installed ones, and the modules given.
+        """Load the built-in plugins, the installed plugins, and further modules.
 
         Parameters
         ----------
         modules
-            Importable names or paths of modules; ``no:NAME`` blocks a plugin by its name or distribution.
+            Names or paths of modules; ``no:NAME`` blocks a plugin by its name or its distribution.
         plugins_enabled
-            False loads the built-in plugins only.
+            Whether plugins other than the built-in ones are loaded.
         env
-            ``AMPREP_LOAD_PLUGINS``, a comma-separated list, limits the installed plugins to those named.
+            Environment; ``AMPREP_LOAD_PLUGINS`` is a comma-separated list of the installed plugins to load.
 
         Raises
         ------
         PluginError
-            When one of `modules` cannot be loaded; a broken installed plugin is only a warning.
+            When one of `modules` cannot be loaded. An installed plugin that cannot be loaded gives a warning.
         """
         blocked = [name.removeprefix("no:") for name in modules if name.startswith("no:")]
         asked = [name for name in modules if not name.startswith("no:")]
@@ -77,12 +77,12 @@ class Host:
 
     @classmethod
     def load_one(cls, package: str) -> "Host":
-        """Load one plugin beside the built-in ones: the installed one of that name, or else a module.
+        """Load the built-in plugins and one more: the installed plugin of that name, or else a module.
 
         Raises
         ------
         PluginError
-            When it cannot be loaded, or one of its names is another's.
+            When it cannot be loaded, or one of its offers has the name of another offer.
         """
         found, _ = installed({CHOSEN_BY_ENVIRONMENT: package})
         asked = [replace(source, asked_for=True) for source in found] or given([package])
@@ -92,7 +92,7 @@ class Host:
         return host
 
     def offers(self, kind: Kind) -> Mapping[str, Listed[Offer]]:
-        """Return the offers of a kind by name: the built-in ones first, then by distribution."""
+        """Return the offers of a kind by name: built-in offers first, then in order of distribution."""
         return dict(self._listed[kind])
 
     @overload
@@ -114,7 +114,7 @@ class Host:
         Raises
         ------
         PluginError
-            When there is none (with the nearest name), or several plugins offer it.
+            When no offer or several offers have this name.
         """
         table, noun = self._listed[kind], KINDS[kind].noun
         if (kind, name) in self._clashes:
@@ -125,12 +125,12 @@ class Host:
         return table[name]
 
     def params(self, listed: Listed[Offer], table: Mapping[str, Any]) -> Any:
-        """Return the offer's parameters made from a table of plain values.
+        """Return the parameters of an offer, made from a table of plain values.
 
         Raises
         ------
         JobError
-            For an unknown key (with the nearest known one), a wrong type, or a bound that the offer checks.
+            For an unknown key, a value of the wrong type, or a value out of bounds.
         """
         return self._guarded(
             listed,
@@ -157,8 +157,8 @@ class Host:
         Raises
         ------
         PluginError
-            When the plugin raises anything but an `AmprepError`, or returns something else than promised;
-            the plugin's own exception is the cause.
+            When the plugin raises an exception other than an `AmprepError`, which is then the cause, or returns a
+            value of the wrong type.
         """
         result = self._guarded(listed, listed.offer.run, *args, **kwargs)
         wanted = KINDS[listed.kind].result
@@ -166,18 +166,18 @@ class Host:
             expected = " or ".join(each.__name__ for each in wanted)
             raise PluginError(f"{listed.title} returned {type(result).__name__}, expected {expected}")
         if wanted == (list,) and not all(isinstance(each, Part) for each in result):
-            raise PluginError(f"{listed.title} returned a list of other things than parts")
+            raise PluginError(f"{listed.title} returned a list with items that are not Part")
         return result
 
     def material(
         self, listed: Listed[CellEmitter], pitch: float, step: float, params: Any
     ) -> tuple[float, float]:
-        """Return the mm3 of a vertical and of an oblique edge; one full prism each by default.
+        """Return the volume (mm3) of a vertical and of an oblique edge; a full prism if the cell has no estimate.
 
         Raises
         ------
         PluginError
-            When the cell's own estimate fails or is not two numbers.
+            When the estimate of the cell fails or is not two numbers.
         """
         if listed.offer.material is None:
             return pitch * pitch * step, pitch * pitch * step
@@ -185,12 +185,12 @@ class Host:
         return vertical, oblique
 
     def declared(self, listed: Listed[CellEmitter], pitch: float, step: float, params: Any) -> DeclaredCell:
-        """Return how a cell that has a declaration is declared in a grid.
+        """Return the declaration of a cell for a grid; the cell must have one.
 
         Raises
         ------
         PluginError
-            When the declaration fails or is something else.
+            When the declaration fails or has the wrong type.
         """
         cell = self._guarded(listed, listed.offer.declare, pitch, step, params)
         if not isinstance(cell, DeclaredCell):
@@ -198,12 +198,12 @@ class Host:
         return cell
 
     def refuse_mismatch(self, listed: Listed[Packer], problem: PackingProblem) -> None:
-        """Refuse a packer that cannot handle `problem`, with the names of those that can.
+        """Refuse a packer that cannot handle the problem, and name packers that can.
 
         Raises
         ------
         PluginError
-            Naming what does not fit.
+            When the packer cannot handle a part of the problem, which the message names.
         """
         lacking = fits(listed.offer.accepts, problem)
         if not lacking:
@@ -214,12 +214,12 @@ class Host:
         raise PluginError(f"{listed.title} does not handle {', '.join(lacking)}; {advice}")
 
     def reader_for(self, path: Path, chosen: Mapping[str, str] | None = None) -> Listed[MeshReader]:
-        """Return the reader of a file by its suffix: the one `chosen` for it, else the first listed.
+        """Return the reader for the suffix of a file: the chosen reader, or else the first one listed.
 
         Parameters
         ----------
         chosen
-            Suffix to name of the reader, from the job.
+            Names of readers by suffix, from the job.
 
         Raises
         ------
@@ -265,7 +265,7 @@ class Host:
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """The suffixes that some reader knows, sorted."""
+        """Suffixes of all readers, sorted."""
         readers = [each.offer for each in self._listed["reader"].values()]
         return tuple(
             sorted({s for reader in readers if isinstance(reader, MeshReader) for s in reader.suffixes})
@@ -299,7 +299,7 @@ def _two_floats(material: Any, pitch: float, step: float, params: Any) -> tuple[
 
 
 def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]]:
-    """Load each source by itself; return the offers and a warning for each that was refused."""
+    """Load each source; return the offers, and a warning for each source that was refused."""
     listed: list[Listed[Offer]] = []
     warnings: list[str] = []
     seen: list[object] = []

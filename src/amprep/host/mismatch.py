@@ -1,4 +1,4 @@
-"""Says what a packing problem asks for that a packer does not handle."""
+"""Compare a packing problem with what a packer accepts."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from amprep.model.part import Orientations
 
 
 def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
-    """Return what `problem` asks for beyond `accepts`, in a few words each; empty when nothing."""
+    """Return the features of the problem that the packer does not accept, in a few words each."""
     volumes = {volume_word(item.volume) for item in problem.items} - _volumes_handled(accepts)
     turns = {orientation_word(item.orientations) for item in problem.items} - _turns_handled(accepts)
     found = [f"bounding volumes of kind {word!r}" for word in sorted(volumes)]
@@ -28,14 +28,14 @@ def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
 
 
 def volume_word(volume: BoundingVolume) -> str:
-    """Return the word of `PackerAccepts.volumes` that a bounding volume needs."""
+    """Return the word in `PackerAccepts.volumes` for a bounding volume."""
     if isinstance(volume, Boxes):
         return "box" if len(volume.lo) == 1 else "boxes"
     return "convex" if isinstance(volume, ConvexPieces) else "solid"
 
 
 def orientation_word(orientations: Orientations) -> str:
-    """Return the word of `PackerAccepts.orientations` that a part's freedom needs."""
+    """Return the word in `PackerAccepts.orientations` for the orientations of an item."""
     if orientations.freedom != "list":
         return orientations.freedom
     matrices = orientations.matrices
@@ -49,7 +49,7 @@ def _volumes_handled(accepts: PackerAccepts) -> frozenset[str]:
 
 
 def _turns_handled(accepts: PackerAccepts) -> frozenset[str]:
-    # a list may map axes to axes, and one rotation is a list of one
+    # "list" includes lists that map axes to axes, and "axis" includes a single rotation
     handled = set(accepts.orientations)
     if "list" in handled:
         handled.add("axis")

@@ -1,4 +1,4 @@
-"""What an offer must look like, and the record under which the host lists it."""
+"""Check that an offer is well-formed, and list it with its origin."""
 
 import re
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ OfferT_co = TypeVar("OfferT_co", bound=Offer, covariant=True)
 
 @dataclass(frozen=True)
 class KindOfOffer:
-    """The hook that yields a kind of offer, its record, and what its `run` must return."""
+    """A kind of offer: its hook, its record, its name for messages, and the result types of its `run`."""
 
     hook: str
     record: type[Any]
@@ -42,14 +42,14 @@ _NAME = re.compile(r"[a-z0-9][a-z0-9_.-]*")
 
 @dataclass(frozen=True)
 class Listed(Generic[OfferT_co]):
-    """An offer and where it comes from.
+    """An offer and its origin.
 
     Attributes
     ----------
     plugin
         Name of the plugin: its entry point, or its module.
     distribution, version
-        The installed package it belongs to; empty for a module given with ``-p``.
+        Installed package of the plugin; empty for a module given with ``-p``.
     """
 
     kind: Kind
@@ -61,17 +61,17 @@ class Listed(Generic[OfferT_co]):
 
     @property
     def origin(self) -> str:
-        """For people: ``amprep-shelves 1.2``, or ``module my_packer``."""
+        """Origin for messages: ``amprep-shelves 1.2``, or ``module my_packer``."""
         return f"{self.distribution} {self.version}" if self.distribution else f"module {self.plugin}"
 
     @property
     def title(self) -> str:
-        """For people: ``packer 'shelves' of amprep-shelves 1.2``."""
+        """Title for messages: ``packer 'shelves' of amprep-shelves 1.2``."""
         return f"{KINDS[self.kind].noun} {self.offer.name!r} of {self.origin}"
 
 
 def faults_of(kind: Kind, offer: Any) -> list[str]:
-    """Say what is wrong with a record yielded for `kind`; empty for a well-formed offer."""
+    """Return the faults of an offer of a kind, one sentence each; an empty list for a well-formed offer."""
     wanted = KINDS[kind]
     if not isinstance(offer, wanted.record):
         return [f"{wanted.hook} yields {wanted.record.__name__} records, got {type(offer).__name__}"]
@@ -84,9 +84,9 @@ def faults_of(kind: Kind, offer: Any) -> list[str]:
 def _naming(offer: Any) -> list[str]:
     found = []
     if not isinstance(offer.name, str) or not _NAME.fullmatch(offer.name):
-        found.append("a name is lower-case letters, digits, '-', '_' and '.'")
+        found.append("a name must consist of lower-case letters, digits, '-', '_' and '.'")
     if not isinstance(offer.summary, str) or not offer.summary.strip() or "\n" in offer.summary:
-        found.append("a summary is one line of text")
+        found.append("a summary must be one line of text")
     return found
 
 
@@ -97,7 +97,7 @@ def _params(params: Any) -> list[str]:
         return [f"params class {params.__name__} must be frozen: @dataclass(frozen=True)"]
     bare = [field.name for field in fields(params) if field.init and not _has_default(field)]
     if bare:
-        return [f"every parameter needs a default; these have none: {', '.join(bare)}"]
+        return [f"every parameter must have a default; these have none: {', '.join(bare)}"]
     try:
         field_types(params)
     except (TypeError, NameError) as error:
@@ -105,7 +105,7 @@ def _params(params: Any) -> list[str]:
     try:
         params()
     except ValueError as error:
-        return [f"the defaults of {params.__name__} break its own rule: {error}"]
+        return [f"the defaults of {params.__name__} are out of its own bounds: {error}"]
     return []
 
 
@@ -117,7 +117,7 @@ def _particular(offer: Any) -> list[str]:
     if isinstance(offer, MeshReader):
         return _suffixes(offer.suffixes)
     if isinstance(offer, VolumeMaker) and offer.makes not in VOLUME_WORDS:
-        return [f"makes is one of {_words(VOLUME_WORDS)}, got {offer.makes!r}"]
+        return [f"makes must be one of {_words(VOLUME_WORDS)}, got {offer.makes!r}"]
     if isinstance(offer, Packer):
         accepts = offer.accepts
         return [
@@ -127,20 +127,24 @@ def _particular(offer: Any) -> list[str]:
             *_unknown("stacking", accepts.stacking, frozenset({True, False})),
         ]
     material = offer.material if isinstance(offer, CellEmitter) else None
-    return [] if material is None or callable(material) else ["material is a function or None"]
+    return [] if material is None or callable(material) else ["material must be a function or None"]
 
 
 def _suffixes(suffixes: Any) -> list[str]:
     if not isinstance(suffixes, tuple) or not suffixes:
-        return ["suffixes is a tuple of at least one suffix"]
+        return ["suffixes must be a tuple of at least one suffix"]
     wrong = [s for s in suffixes if not isinstance(s, str) or not s.startswith(".") or s != s.lower()]
-    return [f"suffixes are lower case and start with a dot, got {wrong}"] if wrong else []
+    return [f"suffixes must be lower case and start with a dot, got {wrong}"] if wrong else []
 
 
 def _unknown(name: str, given: Any, known: frozenset[Any]) -> list[str]:
     if not isinstance(given, frozenset | set) or not given:
-        return [f"accepts.{name} is a set of at least one of {_words(known)}, got {given!r}"]
-    return [f"accepts.{name} knows {_words(known)}, got {_words(given - known)}"] if given - known else []
+        return [f"accepts.{name} must be a set of at least one of {_words(known)}, got {given!r}"]
+    return (
+        [f"accepts.{name} must be among {_words(known)}, got {_words(given - known)}"]
+        if given - known
+        else []
+    )
 
 
 def _words(values: frozenset[Any] | set[Any]) -> str:

@@ -1,4 +1,4 @@
-"""Makes a new plugin package from the templates shipped with amprep."""
+"""Make a new plugin package from the templates of amprep."""
 
 import keyword
 import re
@@ -21,12 +21,12 @@ _CHOICE = {
 
 
 def make_plugin(name: str, kind: str, output: Path) -> Path:
-    """Make the folder `output`/`name` with a plugin that works and tests that pass; return it.
+    """Make a plugin that works and whose tests pass in the folder `output`/`name`, and return this folder.
 
     Raises
     ------
     PluginError
-        When the name or the kind is not allowed, or the folder exists already.
+        When the name or the kind is not allowed, or the folder exists.
     """
     if kind not in _CHOICE:
         raise PluginError(f"no kind of offer is called {kind!r}{nearest_hint(kind, _CHOICE)}")
@@ -53,11 +53,11 @@ def make_plugin(name: str, kind: str, output: Path) -> Path:
 def _module_name(name: str) -> str:
     if not _NAME.fullmatch(name) or len(name) > 60:
         raise PluginError(
-            f"a plugin's name is lower-case words with dashes, like amprep-shelves; got {name!r}"
+            f"the name of a plugin must be lower-case words with dashes, such as amprep-shelves, got {name!r}"
         )
     module = name.replace("-", "_")
     if keyword.iskeyword(module) or module == "amprep" or module in sys.stdlib_module_names:
-        raise PluginError(f"{name!r} is taken by Python or amprep itself; choose another, like amprep-{name}")
+        raise PluginError(f"{name!r} is taken by Python or amprep; choose another, such as amprep-{name}")
     return module
 
 

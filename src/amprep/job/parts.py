@@ -1,4 +1,4 @@
-"""Applies what the job says about single parts to the parts that were read."""
+"""Apply the ``[[part]]`` entries of a job to the parts that were read."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,14 +14,14 @@ from amprep.model.part import Part
 
 
 def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
-    """Return the parts with the settings of every ``[[part]]`` entry that names them; later entries win.
+    """Return the parts with the settings of their ``[[part]]`` entries; later entries take precedence.
 
-    An entry names parts by the file they came from, by their name, or by both.
+    An entry names parts by their file, by their name, or by both.
 
     Raises
     ------
     JobError
-        When an entry names no part, with the nearest known file or name.
+        When an entry names no part; the message suggests a similar file or name.
     """
     result = list(parts)
     for number, entry in enumerate(job.parts, start=1):
@@ -34,7 +34,7 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
 
 
 def names_part(entry: PartSettings, part: Part, job: Job) -> bool:
-    """Tell whether an entry of the job is about the part."""
+    """Tell whether an entry of the job names the part."""
     same_name = entry.name is None or part.name == entry.name
     return same_name and (entry.file is None or _same_file(entry.file, part.source, job.folder))
 
@@ -51,17 +51,17 @@ def _unmatched(entry: PartSettings, parts: Sequence[Part]) -> str:
 
 
 def _fixed(part: Part, entry: PartSettings) -> Floats | None:
-    """Return where the first copies stand already.
+    """Return the fixed positions of copies.
 
     Raises
     ------
     JobError
-        When more copies are fixed than wanted.
+        When there are more fixed positions than copies.
     """
     quantity = entry.quantity or part.quantity
     if len(entry.fixed) > quantity:
         raise JobError(
-            f"part {part.name!r}: fixed names {len(entry.fixed)} places, but only {quantity} copies are wanted; "
+            f"part {part.name!r}: fixed has {len(entry.fixed)} positions, but the quantity is {quantity}; "
             "raise quantity"
         )
     return frozen(entry.fixed, np.float64, 3) if entry.fixed else part.fixed

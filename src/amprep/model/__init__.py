@@ -1,4 +1,4 @@
-"""Frozen records that flow between the stages. Millimetres and radians; arrays are read-only."""
+"""Data records: meshes, parts, problems, plans and builds. Lengths in mm, angles in radians; read-only arrays."""
 
 from amprep.arrays import CONTACT_TOLERANCE
 from amprep.geometry.voxels.grid import Grid

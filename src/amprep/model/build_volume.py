@@ -1,4 +1,4 @@
-"""The printable space: build volume and forbidden zones. The plate is z = 0; x and y start at 0."""
+"""Build volume of a printer, with forbidden zones. The plate is at z = 0; x and y start at 0."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -14,14 +14,14 @@ def _no_boxes() -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class BuildVolume:
-    """A box ``[0, x] x [0, y] x [0, z]``, or the upright cylinder inscribed in it (then x = y).
+    """A box ``[0, x] x [0, y] x [0, z]``, or the upright cylinder inscribed in this box, whose x and y are equal.
 
     Attributes
     ----------
     size
         ``(3,)`` mm.
     zone_lo, zone_hi
-        ``(k, 3)`` mm, corners of the forbidden zones.
+        ``(k, 3)`` mm, lowest and highest corners of the forbidden zones.
     """
 
     size: Floats
@@ -34,12 +34,12 @@ class BuildVolume:
         object.__setattr__(self, "zone_lo", frozen(self.zone_lo, np.float64, 3))
         object.__setattr__(self, "zone_hi", frozen(self.zone_hi, np.float64, 3))
         if self.size.shape != (3,) or not (np.isfinite(self.size).all() and (self.size > 0).all()):
-            raise ValueError(f"a build volume needs three positive sizes in mm, got {self.size.tolist()}")
+            raise ValueError(f"size must be three positive lengths in mm, got {self.size.tolist()}")
         if self.shape == "cylinder" and self.size[0] != self.size[1]:
-            raise ValueError("a cylinder needs equal x and y sizes (its diameter)")
+            raise ValueError("the x and y sizes of a cylinder must be equal (its diameter)")
 
     @property
     def volume_mm3(self) -> float:
-        """Volume of the box or cylinder, zones not subtracted."""
+        """Volume of the box or cylinder, including forbidden zones."""
         x, y, z = self.size.tolist()
         return float(x * y * z if self.shape == "box" else np.pi / 4 * x * x * z)

@@ -1,4 +1,4 @@
-"""Deadline, cancellation and progress, handed as arguments to everything long."""
+"""Deadline, cancellation and progress, which every long function takes as arguments."""
 
 import time
 from collections.abc import Callable
@@ -6,23 +6,23 @@ from dataclasses import dataclass, field
 from threading import Event
 
 Progress = Callable[[float, str], None]
-"""Called with the share done in [0, 1] and a few words; must be cheap."""
+"""Callback ``progress(fraction, message)`` with the fraction that is done, in [0, 1]; it must be fast."""
 
 
-def silent(share: float, words: str) -> None:
-    """Report to nobody."""
+def silent(fraction: float, message: str) -> None:
+    """Ignore the progress."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stop:
-    """Tells a long computation to end now and give its best answer so far.
+    """Tells a long computation to end and return its best answer so far.
 
     Attributes
     ----------
     deadline
-        Value of ``time.monotonic()`` after which to stop; None for none.
+        Value of ``time.monotonic()`` at which to stop; None for no deadline.
     cancelled
-        Set when the user interrupts.
+        Event that is set when the user interrupts.
     """
 
     deadline: float | None = None
@@ -30,19 +30,19 @@ class Stop:
 
     @classmethod
     def after(cls, seconds: float | None) -> "Stop":
-        """Stop once `seconds` from now have passed; None never stops."""
+        """Return a stop that becomes true after `seconds`; None for never."""
         return cls(None if seconds is None else time.monotonic() + seconds)
 
     def __call__(self) -> bool:
-        """Whether to stop now."""
+        """Tell whether to stop now."""
         return self.cancelled.is_set() or self.remaining() <= 0.0
 
     def remaining(self) -> float:
-        """Seconds left, ``inf`` without a deadline."""
+        """Return the seconds that are left, ``inf`` without a deadline."""
         return float("inf") if self.deadline is None else self.deadline - time.monotonic()
 
     def within(self, seconds: float | None) -> "Stop":
-        """Return a stop that shares the cancellation and ends after `seconds`, or with this one if earlier."""
+        """Return a stop with the same cancellation and the earlier of this deadline and `seconds` from now."""
         if seconds is None:
             return self
         deadline = time.monotonic() + seconds
@@ -50,5 +50,5 @@ class Stop:
 
     @property
     def reason(self) -> str:
-        """``interrupted`` or ``time limit``; only meaningful once the call says True."""
+        """``interrupted`` or ``time limit``: the reason to stop, once the stop is true."""
         return "interrupted" if self.cancelled.is_set() else "time limit"

@@ -1,4 +1,4 @@
-"""A part as the job asks for it: mesh, quantity, value, rotations, regions, overrides."""
+"""A part of a job: mesh, quantity, value, orientations, regions and settings of its own."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,14 +15,14 @@ Freedom = Literal["list", "about-z", "free"]
 
 @dataclass(frozen=True, eq=False)
 class Orientations:
-    """How a part may be turned: a list of rotation matrices, any angle about z, or freely.
+    """Allowed orientations of a part: a list of rotation matrices, any angle about z, or any rotation.
 
     Attributes
     ----------
     freedom
         ``list`` uses `matrices`; ``about-z`` and ``free`` are continuous and ignore them.
     matrices
-        ``(k, 3, 3)`` float64 rotation matrices; the first is the one preferred.
+        ``(k, 3, 3)`` float64 rotation matrices, of which the first is preferred.
     """
 
     freedom: Freedom = "list"
@@ -34,15 +34,15 @@ class Orientations:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Marks part of a part: some of its triangles, what lies in a mesh, or pieces painted on triangles.
+    """A marked region of a part: some of its triangles, the inside of a mesh, or painted areas of triangles.
 
     Attributes
     ----------
     triangles
-        Indices of the part's triangles; alone, they are marked as wholes.
+        Indices of triangles of the part; without `mesh`, whole triangles are marked.
     mesh
-        In part coordinates. Alone, a closed mesh that marks what lies in it; with `triangles`, triangle i of
-        this mesh is the piece that is painted on the part's triangle ``triangles[i]``.
+        Mesh in part coordinates. Without `triangles`, a closed mesh whose inside is marked; with `triangles`, triangle
+        i of this mesh is a painted area of the triangle ``triangles[i]`` of the part.
     """
 
     kind: RegionKind
@@ -53,7 +53,7 @@ class Region:
 
 @dataclass(frozen=True, eq=False)
 class Overrides:
-    """Settings that hold for one part only; None keeps the job's."""
+    """Settings for one part; None keeps the setting of the job."""
 
     overhang_angle_deg: float | None = None
     lift_mm: float | None = None
@@ -63,7 +63,7 @@ class Overrides:
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
-    """What a part looks like and is made of, kept from input to output.
+    """Colours and material of a part, which are kept from input to output.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Appearance:
     material
         Name of the base material, or None.
     triangle_colours
-        ``(m, 3)`` int64, 0xRRGGBBAA of each triangle's corners, -1 where there is none; or None.
+        ``(m, 3)`` int64, 0xRRGGBBAA of the corners of each triangle, -1 for no colour; or None.
     """
 
     colour: str | None = None
@@ -82,32 +82,32 @@ class Appearance:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A mesh to be printed, as often as `quantity` says.
+    """A part to print.
 
     Attributes
     ----------
     name
         Unique within a job.
     mesh
-        Geometry in part coordinates, mm; never changed after reading.
+        Geometry in part coordinates, mm; it is not changed after reading.
     volume_mm3
-        Volume of the solid; overlapping shells counted once.
+        Volume of the solid; overlapping shells count once.
     value
-        Reward in a fill problem; None means the volume.
+        Value in a fill problem; None stands for the volume.
     is_solid
-        False only when the user allowed a surface that manifold3d refuses.
+        False for a mesh that is not a solid, if the user allowed surfaces.
     boxes
-        ``(k, 6)`` x0 y0 z0 x1 y1 z1 given by hand in the job, or None.
+        ``(k, 6)`` x0 y0 z0 x1 y1 z1 mm, bounding boxes from the job file; or None.
     positions
-        ``(k, 3)`` mm, where the file puts the part's origin, once for each time its build asks for it; only
-        what supports a plate as it lies looks at them. None: one, at the origin.
+        ``(k, 3)`` mm, position of the origin of the part for each of its build items in the file; None stands for one
+        position at the origin. Packing ignores them.
     fixed
-        ``(k, 3)`` mm, least corners of the boxes around the first copies, which stand in the first build already;
-        or None.
+        ``(k, 3)`` mm, lowest corners of the bounding boxes of the copies with a fixed position in the first build; or
+        None.
     notes
-        What reading mended or found, one sentence each, shown to the user.
+        Repairs and findings of the reader, one sentence each, for the user.
     metadata
-        Kept as read: ``(namespace, name) -> value``.
+        Metadata of the file, ``(namespace, name) -> value``, kept unchanged.
     """
 
     name: str

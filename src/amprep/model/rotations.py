@@ -1,4 +1,4 @@
-"""The words for a part's allowed rotations: none, z90, up-x, axis, about-z, free, or a list of matrices."""
+"""Parse the allowed rotations of a part: none, z90, up-x, axis, about-z, free, or a list of matrices."""
 
 import json
 import re
@@ -15,22 +15,22 @@ from amprep.model.part import Orientations
 ROTATION_WORDS = ("none", "z90", "axis", "about-z", "free")
 
 _EXPECTED = (
-    f"one of {', '.join(ROTATION_WORDS)}, up- and the axes that may stand upright as in up-xz, or a list of 3x3 "
+    f"one of {', '.join(ROTATION_WORDS)}, up- with the axes that may point up (up-xz), or a list of 3x3 "
     "rotation matrices"
 )
 _UPRIGHT = re.compile(r"up-([xyz]{1,3})")
-_WRITTEN_ACCURACY = 1e-3  # people write 0.7071
+_WRITTEN_ACCURACY = 1e-3  # tolerance for rounded entries such as 0.7071
 
 
 def parse_rotations(words: str | list[Any]) -> Orientations:
-    """Return what `words` allow; see `ROTATION_WORDS`, or a list of 3x3 matrices, also as JSON text.
+    """Return the orientations for one of `ROTATION_WORDS`, or for a list of 3x3 matrices, also as JSON text.
 
-    Matrices may be rounded to three decimals: the nearest true rotation is taken.
+    Matrices may be rounded to three decimals; the nearest rotation is used.
 
     Raises
     ------
     JobError
-        For an unknown word, or a matrix that is no rotation.
+        For an unknown word, or a matrix that is not a rotation.
     """
     if not isinstance(words, str):
         return Orientations("list", _matrices(words))
@@ -59,7 +59,7 @@ def quarter_turns() -> Floats:
 
 
 def upright_rotations(axes: str) -> Floats:
-    """Return the rotations after which one of the part's `axes` (of ``xyz``) points up, four each, ``(4 k, 3, 3)``."""
+    """Return the rotations that turn one of the axes of the part upwards, four per axis, ``(4 k, 3, 3)``."""
     every = axis_rotations()
     return np.concatenate(
         [every[every[:, 2, axis] == 1.0] for axis in range(2, -1, -1) if "xyz"[axis] in axes]

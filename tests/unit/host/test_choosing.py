@@ -176,7 +176,7 @@ def test_a_wrong_answer_is_refused(kind, record, expected):
 
 def test_a_reader_returns_parts_and_nothing_else():
     listed = Listed("reader", MeshReader("x", "y", run=lambda: ["part"], suffixes=(".x",)), "p", "dist", "1")
-    with pytest.raises(PluginError, match="other things than parts"):
+    with pytest.raises(PluginError, match="items that are not Part"):
         host_of(listed).call(listed)
 
 

@@ -95,27 +95,30 @@ def yielding(record, hook="amprep_packers"):
         (X.replace("yield", "return None #"), "amprep_packers returned nothing"),
         (yielding("'x'"), "yields Packer records, got str"),
         (X + X[X.index("    yield") :], "more than one offer named 'x'"),
-        (GOOD.format(name="Two Words"), "a name is lower-case"),
-        (yielding("Packer('x', '', run=print)"), "a summary is one line"),
+        (GOOD.format(name="Two Words"), "a name must consist of lower-case"),
+        (yielding("Packer('x', '', run=print)"), "a summary must be one line"),
         (yielding("Packer('x', 'y', run=3)"), "run must be callable, got int"),
         (yielding("Packer('x', 'y', run=print, params=dict)"), "params must be a dataclass"),
         (
             yielding("Packer('x', 'y', run=print, accepts=PackerAccepts(objectives=frozenset({'speed'})))"),
-            "accepts.objectives knows builds, fill, height, got speed",
+            "accepts.objectives must be among builds, fill, height, got speed",
         ),
         (
             yielding("VolumeMaker('x', 'y', run=print, makes='ball')", "amprep_volume_makers"),
-            "makes is one of box, boxes, convex, solid, got 'ball'",
+            "makes must be one of box, boxes, convex, solid, got 'ball'",
         ),
         (
             yielding("MeshReader('x', 'y', run=print, suffixes=('STL',))", "amprep_mesh_readers"),
-            "suffixes are lower case and start with a dot",
+            "suffixes must be lower case and start with a dot",
         ),
         (
             yielding("CellEmitter('x', 'y', run=print, material=3)", "amprep_cell_emitters"),
-            "material is a function or None",
+            "material must be a function or None",
         ),
-        (yielding("SupportRouter('x y', 'y', run=print)", "amprep_support_routers"), "a name is lower-case"),
+        (
+            yielding("SupportRouter('x y', 'y', run=print)", "amprep_support_routers"),
+            "a name must consist of lower-case",
+        ),
     ],
 )
 def test_a_broken_plugin_costs_one_warning_and_nothing_else(site, source, reason):
@@ -136,10 +139,10 @@ FROZEN = "@dataclass(frozen=True)\nclass P:\n    "
     ("body", "reason"),
     [
         ("@dataclass\nclass P:\n    a: int = 1", "must be frozen"),
-        (FROZEN + "a: int", "every parameter needs a default; these have none: a"),
+        (FROZEN + "a: int", "every parameter must have a default; these have none: a"),
         (FROZEN + "a: complex = 1j", "use bool, int, float"),
         (FROZEN + "a: 'Nothing' = 1", "name 'Nothing' is not defined"),
-        (FROZEN + "def __post_init__(self): raise ValueError('a is 2')", "break its own rule: a is 2"),
+        (FROZEN + "def __post_init__(self): raise ValueError('a is 2')", "are out of its own bounds: a is 2"),
     ],
 )
 def test_a_params_class_that_cannot_be_set_is_refused_at_once(site, body, reason):

@@ -1,4 +1,4 @@
-"""The settings of a job as frozen records; each checks its own bounds, once."""
+"""The record of a job: inputs, printer and settings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from amprep.validation import require
 
 @dataclass(frozen=True)
 class InputSpec:
-    """A file or folder to read, and how often each of its parts is wanted; None keeps what the file says."""
+    """A file or folder to read, and the number of copies of each part; None keeps the number in the file."""
 
     path: Path
     quantity: int | None = None
@@ -28,7 +28,7 @@ class InputSpec:
 
 @dataclass(frozen=True)
 class ReadingSettings:
-    """Which reader reads which suffix, and the readers' parameters by name."""
+    """Names of readers by suffix, and parameters of readers by name."""
 
     readers: Mapping[str, Any] = field(default_factory=dict)
     params: Mapping[str, Any] = field(default_factory=dict)
@@ -43,16 +43,16 @@ class ReadingSettings:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """Everything `amprep run` is asked to do.
+    """A job: what `amprep run` prints, on which printer, by which rules.
 
     Attributes
     ----------
     name
-        Stem of the job file or of the first input; outputs are named after it.
+        Stem of the job file or of the first input; output files are named after it.
     folder
-        Folder of the job file, where its relative paths start; None without a job file.
+        Folder of the job file, where relative paths start; None without a job file.
     table
-        The keys as they were given; `amprep.job.override` and `apply_sets` make a new job from it.
+        The keys as given, from which `amprep.job.override` and `apply_sets` make a new job.
     """
 
     name: str
@@ -71,5 +71,5 @@ class Job:
 
     @property
     def printer_is_default(self) -> bool:
-        """Whether nobody chose the printer; then the user is told which one it is."""
+        """Whether the job names no printer, so that the default printer is used."""
         return "printer" not in self.table

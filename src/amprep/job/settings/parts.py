@@ -18,7 +18,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class PartSettings:
-    """What a ``[[part]]`` entry says about the parts of one file or name; None keeps what was read."""
+    """Settings in a ``[[part]]`` entry, for the parts of one file or name; None keeps the value that was read."""
 
     file: str | None = None
     name: str | None = None
@@ -48,7 +48,7 @@ class PartSettings:
 
     @property
     def orientations(self) -> Orientations | None:
-        """The rotations allowed, or None."""
+        """Allowed orientations, or None."""
         if self.rotations is None or isinstance(self.rotations, str):
             return None if self.rotations is None else parse_rotations(self.rotations)
         return parse_rotations([[list(row) for row in matrix] for matrix in self.rotations])
