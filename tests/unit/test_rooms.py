@@ -42,11 +42,6 @@ SECTIONS_OF = {
 }
 """Sections that a file or folder may cite, because it implements just these."""
 
-USED_TWICE: set[str] = {
-    "Prices",
-}  # fmt: skip
-"""Class names that still mean two things; the list may only shrink."""
-
 
 def name_of(path):
     return path.relative_to(SOURCE).as_posix()
@@ -119,8 +114,7 @@ def test_a_class_name_means_one_thing():
             if isinstance(node, ast.ClassDef):
                 places[node.name.lstrip("_")].append(name_of(path))
     twice = {name: where for name, where in places.items() if len(where) > 1}
-    assert {name: where for name, where in twice.items() if name not in USED_TWICE} == {}
-    assert set(twice) >= USED_TWICE, f"delete from the list: {sorted(USED_TWICE - set(twice))}"
+    assert twice == {}
 
 
 def cited(text):

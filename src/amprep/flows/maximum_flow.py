@@ -1,74 +1,79 @@
-"""Pushes what flows already to a flow of greatest value: the loop of push-relabel."""
+"""Raise a flow to a maximum flow: the push-relabel loop."""
 
 import numpy as np
 
 from amprep.arrays import Bools
-from amprep.flows.network import Task
+from amprep.flows.network import FlowProblem
 from amprep.kernels.flow.push_relabel import (
-    Discharging,
-    Preflow,
-    activate_all,
+    PushRelabelState,
+    activate,
     discharge,
-    relabel_all,
-    send_back,
+    relabel_globally,
+    return_excess,
 )
-from amprep.kernels.flow.residual import Carried
+from amprep.kernels.flow.records import Flow, ResidualNetwork
 from amprep.model.control import Progress, Stop
 
 _EFFORT = 14
-"""Arcs looked at for each square of the network until all labels are set anew."""
+"""Arcs looked at for each square of the network between two global relabels."""
 
 _SLICE = 10_000_000
-"""Arcs looked at between two questions whether to stop: a fraction of a second."""
+"""Arcs looked at between two calls of `stop`: a fraction of a second."""
 
 
-def push(
-    task: Task, carried: Carried, connected: Bools, *, stop: Stop, progress: Progress
+def maximise_flow(
+    task: FlowProblem, flow: Flow, connected: Bools, *, stop: Stop, progress: Progress
 ) -> tuple[Bools, str]:
-    """Make the flow as great as it can be; return which red squares it connects, and why it ended.
+    """Raise a flow to a maximum flow; return the red squares that it connects, and why the loop ended.
 
-    Labels of 0 are right for any flow, but slow for one that is jammed: they are set anew at once when there
-    is flow already, and whenever the pushes since have cost more than that.
+    Levels of 0 are valid for any flow, but slow for one that is jammed. So levels are set by a global relabel at
+    once if there is flow already, and again whenever the pushes since the last one have cost more than a relabel.
 
     Parameters
     ----------
-    carried
-        Modified in place; has to be the flow of the red squares `connected`.
+    flow
+        Flow of the red squares `connected`; modified in place.
+    connected
+        ``(m,)`` the red squares that have a path.
+
+    Returns
+    -------
+    (m,) bool, str
+        The red squares that have a path now, and ``"finished"`` or the reason of `stop`.
     """
-    network, room = task.network, task.room
-    preflow, discharging = _preflow(2 * network.via.size), _discharging()
-    supply = np.zeros(network.via.size, np.uint8)
-    supply[task.start[task.open]] = 1
-    activate_all(preflow, discharging, task.start[task.open & ~connected])
-    lists = tuple(np.empty(2 * network.via.size, np.int32) for _ in range(3))
-    rounds, effort = 0, int(_EFFORT * network.via.size)
+    residual, states = ResidualNetwork(task.network, flow, task.capacities), 2 * task.network.passable.size
+    work = _initial_state(states)
+    supplied = np.zeros(task.network.passable.size, np.uint8)
+    supplied[task.start[task.reachable]] = 1
+    activate(work, task.start[task.reachable & ~connected])
+    lists = tuple(np.empty(states, np.int32) for _ in range(3))
+    rounds, effort = 0, int(_EFFORT * task.network.passable.size)
     if connected.any():
-        relabel_all(network, carried, room, preflow, discharging, *lists)
+        relabel_globally(residual, work, *lists)
     stop_reason, left = "finished", effort
-    while not discharge(network, carried, room, preflow, discharging, min(left, _SLICE)):
+    while not discharge(residual, work, min(left, _SLICE)):
         if stop():
             stop_reason = stop.reason
             break
         left -= _SLICE
         if left <= 0:
             rounds, left = rounds + 1, effort
-            progress(1.0 - 1.0 / (1.0 + rounds), "pushing flow down")
-            relabel_all(network, carried, room, preflow, discharging, *lists)
-    send_back(network, carried, preflow, supply)
-    return task.open & (supply[task.start] == 1), stop_reason
+            progress(1.0 - 1.0 / (1.0 + rounds), "computing a maximum flow")
+            relabel_globally(residual, work, *lists)
+    return_excess(residual, work, supplied)
+    return task.reachable & (supplied[task.start] == 1), stop_reason
 
 
-def _preflow(states: int) -> Preflow:
-    return Preflow(
+def _initial_state(states: int) -> PushRelabelState:
+    return PushRelabelState(
         excess=np.zeros(states, np.int32),
         level=np.zeros(states, np.int32),
-        arc=np.zeros(states, np.uint8),
-        counts=np.zeros(states + 1, np.int32),
+        current_arc=np.zeros(states, np.uint8),
+        level_count=np.zeros(states + 1, np.int32),
         raised=np.empty(states, np.int32),
-        heads=np.zeros(states + 1, np.int32),
+        bucket=np.zeros(states + 1, np.int32),
         below=np.empty(states, np.int32),
+        lowest=np.zeros(1, np.int64),
+        highest=np.zeros(1, np.int64),
+        raised_count=np.zeros(1, np.int64),
     )
-
-
-def _discharging() -> Discharging:
-    return Discharging(np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64))

@@ -1,28 +1,12 @@
-"""Which red squares can reach the plate."""
-
-import numpy as np
+"""Find the red squares from which a path leads to the plate."""
 
 from amprep.arrays import Bools
-from amprep.model.supports import (
-    SupportProblem,
-    Voxel,
-)
+from amprep.flows.network import build_network, distances_of
+from amprep.kernels.flow.records import UNREACHABLE
+from amprep.model.supports import SupportProblem
 
 
-def has_way(problem: SupportProblem) -> Bools:
-    """Tell which red squares have any white way to the plate: one sweep up, independent of all routers."""
-    top = int(problem.red[:, 0].max(initial=0))
-    reached = problem.green.copy()
-    way = np.zeros(len(problem.red), np.bool_)
-    for plane in range(1, top + 1):
-        white = problem.voxels[plane - 1] == Voxel.FREE
-        below = reached & white
-        reached = below.copy()
-        reached[1:] |= below[:-1]
-        reached[:-1] |= below[1:]
-        reached[:, 1:] |= below[:, :-1]
-        reached[:, :-1] |= below[:, 1:]
-        reached &= white
-        here = problem.red[:, 0] == plane
-        way[here] = reached[problem.red[here, 1], problem.red[here, 2]]
-    return way
+def find_reachable(problem: SupportProblem) -> Bools:
+    """Return for each red square ``(m,)`` whether it is reachable: whether its distance to the plate is finite."""
+    network, start = build_network(problem)
+    return distances_of(network, start, (1, 1))[start] < UNREACHABLE

@@ -12,7 +12,7 @@ from tests.shared.grids import Late, floor_with_holes, random_problem, route
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.model.control import Stop, silent
 from amprep.model.supports import CAPACITY
-from amprep.plugins.routers.min_cost_certificate import find_gaps
+from amprep.plugins.routers.min_cost_certificate import find_optimality_violations
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 
 ROUTERS = ["min-cost-flow", "push-relabel", "shortest-paths"]
@@ -66,7 +66,7 @@ def test_every_red_square_with_a_way_is_served_and_what_was_raised_was_needed(se
     for router in ROUTERS:
         plan = route(router, task)
         assert check_plan(task, plan) == check_raises(task, plan) == []
-    assert find_gaps(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
+    assert find_optimality_violations(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
 
 
 def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():

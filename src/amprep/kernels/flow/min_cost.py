@@ -1,202 +1,193 @@
-"""Min-cost flow kernels: shortest augmenting paths on the implicit grid under potentials.
+"""Min-cost flow kernels: augmentation along shortest paths in the residual network, under potentials.
 
-Strategy: primal-dual. The potential of a state is its distance to the plate in the residual network, so an
-arc's reduced cost ``cost + potential[end] - potential[state]`` is never negative, and paths over arcs of
-reduced cost 0 are shortest. A round of depth-first searches finds as many as it can; then a search in buckets
-(Dial) from what is left finds how much further away the nearest exit has become, and raises the potentials of
-just the states it has been to: time grows with the jam, not with the grid. Potentials are looked at before
-anything else, because they rule out most arcs; the arcs are those of `flow_network`, written out.
+Strategy: primal-dual (Ford and Fulkerson 1962). The potential of a state is its distance to the plate in the
+residual network, so an arc's reduced cost ``cost + potential[head] - potential[state]`` is never negative, and
+paths over admissible arcs, whose reduced cost is 0, are shortest. A round of depth-first searches over admissible
+arcs sends as many units as it can. Then a search with buckets (Dial 1969, DOI 10.1145/363269.363610) from the
+starts that are left finds by how much the distance of the nearest exit has grown, and raises the potentials of
+only the states that it has visited: time grows with the jam, not with the grid. Kernels compare potentials
+before capacities, because potentials rule out most arcs.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from amprep.arrays import Bytes, Int32s, Int64s
-from amprep.kernels.flow.residual import Carried, Room, shift
-from amprep.kernels.flow.shortest_paths import Network
-from amprep.kernels.helper import helper
+from amprep.kernels.flow.records import ResidualNetwork
+from amprep.kernels.flow.residual import ARCS, head_of, inlined, kernel, residual_capacity, reverse_of, send
 
 Potentials = NDArray[np.int16] | NDArray[np.int32]
 
 NO_EXIT = -1
-"""Answer of `search` when no exit can be reached."""
+"""Result of `search_nearest_exit` if no exit can be reached."""
 
 TOO_FAR = -2
-"""Answer of `search` when it needs more buckets or entries; nothing but labels has been changed."""
-
-NO_ARC = 9
-"""Stands for the arc by which a search came to where it started."""
+"""Result of `search_nearest_exit` if it needs more buckets or entries; only labels have changed."""
 
 TOO_HIGH = -3
-"""Answer of `search` when potentials would no longer fit their type; nothing but labels has been changed."""
+"""Result of `search_nearest_exit` if potentials would no longer fit their type; only labels have changed."""
 
 TAKEN = 2
-"""Of an exit: units come into it, although perhaps none goes through its square."""
+"""State of an exit that receives flow, even if none passes through its square."""
+
+_NO_ARC = 9
+"""Stands for the arc by which a search arrived at a start."""
 
 _UNKNOWN = 1 << 40
 
 
-class Prices(NamedTuple):
-    """Cost of a unit over a straight and over an oblique edge."""
+class EdgeCosts(NamedTuple):
+    """Cost of one unit over a vertical and over an oblique edge."""
 
-    straight: int
+    vertical: int
     oblique: int
 
 
 class Exits(NamedTuple):
-    """Where paths may end.
+    """Squares at which paths may end.
 
     Attributes
     ----------
-    open
-        ``(squares,)`` uint8, 1 where a path may end once it has come in, `TAKEN` where one has.
+    state
+        ``(squares,)`` uint8, 1 where a path may end after it has arrived, `TAKEN` where one has ended.
     level
-        Least potential an exit has to be at for ending there to be free; below, the difference is its cost.
+        Potential at which ending is free; at a lower potential the difference is the cost of ending.
     once
         Whether only one path may end at each.
     """
 
-    open: Bytes
+    state: Bytes
     level: int
     once: bool
 
 
-class Search(NamedTuple):
+class SearchArrays(NamedTuple):
     """Work arrays over all states.
 
     Attributes
     ----------
     seen
-        ``(states,)`` number of the round of augmenting that last saw a state, or what a search has found its
-        distance to be, plus the number that the search started from: all that is less is out of date.
-    stack, done
-        ``(states,)`` states to go on from, and those that are done with.
+        ``(states,)`` number of the round that last saw a state, or the distance that a search has found plus
+        the number that the search started from; smaller entries are out of date.
+    stack, visited
+        ``(states,)`` states to continue from, and states that a search has finished.
     arc
-        ``(states,)`` next arcs of what is on the stack, or the arcs by which a search came to each state.
-    heads, entry, below
-        Buckets as stacks: the last entry of each, and of each entry the state and the entry below it.
+        ``(states,)`` next arcs of the states on the stack, or the arc by which a search arrived at each state.
+    bucket, entry, below
+        Buckets as stacks: the last entry of each bucket; for each entry its state and the entry below it.
     """
 
     seen: Potentials
     stack: Int32s
     arc: Bytes
-    done: Int32s
-    heads: Int32s
+    visited: Int32s
+    bucket: Int32s
     entry: Int32s
     below: Int32s
 
 
-@njit(cache=True)
-def augment(
-    network: Network,
-    carried: Carried,
-    room: Room,
-    prices: Prices,
+@inlined
+def _cost_of(costs: EdgeCosts, state: int, arc: int) -> int:
+    """Return the cost of one unit over an arc: negative if the arc undoes flow."""
+    if state & 1:
+        return 0 if arc == 5 else costs.vertical if arc == 0 else costs.oblique
+    return 0 if arc == 0 else -costs.vertical if arc == 5 else -costs.oblique
+
+
+@inlined
+def _arc_count(residual: ResidualNetwork, exits: Exits, state: int) -> int:
+    """Return how many arcs of a state to try: an in state without flow has no arcs back up."""
+    unused = residual.flow.square[state >> 1] == 0 and exits.state[state >> 1] != TAKEN
+    return 1 if not state & 1 and unused else ARCS
+
+
+@inlined
+def _next_admissible(
+    residual: ResidualNetwork,
+    costs: EdgeCosts,
+    potential: Potentials,
+    seen: Potentials,
+    number: int,
+    state: int,
+    first: int,
+    end: int,
+) -> int:
+    """Return the first admissible arc from `first` to `end` of a state to a state not seen yet, or `end`."""
+    for k in range(first, end):
+        t = head_of(residual.network, state, k)
+        if t < 0 or potential[t] + _cost_of(costs, state, k) != potential[state] or seen[t] == number:
+            continue
+        if residual_capacity(residual, state, k, t) > 0:
+            return k
+    return end
+
+
+@kernel
+def augment_shortest(
+    residual: ResidualNetwork,
+    costs: EdgeCosts,
     potential: Potentials,
     exits: Exits,
     starts: Int64s,
     ends: Int64s,
-    work: Search,
+    work: SearchArrays,
     number: int,
 ) -> int:
-    """Send a unit from each square of `starts` that finds a shortest way; return how many do.
+    """Send a unit along a shortest path from each square of `starts` for which one is found; return how many.
 
-    States that a search leaves without success stay closed to the rest of the round.
+    States that a search leaves without success stay closed for the rest of the round.
 
     Parameters
     ----------
+    starts
+        ``(n,)`` squares.
     ends
-        Set to the square where the path from each start ends, -1 for none.
+        ``(n,)``, set to the square at which the path from each start ends, -1 for none.
+    number
+        Number of this round in ``work.seen``.
     """
-    seen, stack, arcs = work.seen, work.stack, work.arc
-    flow, through, edge_room, square_room = carried.flow, carried.through, room.edge, room.square
-    via, offset, stride, top, ending = (
-        network.via,
-        network.offset,
-        network.stride,
-        network.via.size,
-        exits.open,
-    )
-    straight, oblique, each = prices.straight, prices.oblique, room.each
-    found = 0
+    seen, stack, arcs, found = work.seen, work.stack, work.arc, 0
     for i in range(starts.size):
         ends[i] = -1
         length = 0
-        stack[0] = 2 * starts[i]
+        stack[0], arcs[0] = 2 * starts[i], 0
         if seen[stack[0]] == number:
             continue
         seen[stack[0]] = number
-        arcs[0] = 0
         while length >= 0:
-            s = stack[length]
-            u, level, k, to = s >> 1, potential[s], arcs[length], -1
-            if s & 1:
-                while k < 5 and to < 0:
-                    v = u - stride + offset[k]
-                    cost = straight if k == 0 else oblique
-                    tight = potential[2 * v] + cost == level and seen[2 * v] != number and via[v]
-                    if tight and flow[u, k] < edge_room[(5 * u + k) * each]:
-                        to = 2 * v
-                        break
-                    k += 1
-                if k == 5 and potential[s - 1] == level and seen[s - 1] != number and through[u] > 0:
-                    to = s - 1
+            s, k, count = stack[length], arcs[length], ARCS
+            if s & 1:  # each inlined copy has only the arcs of its kind of state
+                k = _next_admissible(residual, costs, potential, seen, number, s | 1, k, ARCS)
             else:
-                if level == exits.level and ending[u] == 1:
+                if potential[s] == exits.level and exits.state[s >> 1] == 1:
                     break
-                if k == 0:
-                    tight = u >= stride and potential[s + 1] == level and seen[s + 1] != number
-                    if tight and through[u] < square_room[u * each]:
-                        to = s + 1
-                    k += to < 0
-                if k > 0 and (through[u] > 0 or ending[u] == TAKEN):
-                    while k < 6 and to < 0:
-                        direction = k if k < 5 else 0
-                        w = u + stride - offset[direction]
-                        if w < top and flow[w, direction] > 0:
-                            cost = oblique if direction else straight
-                            if potential[2 * w + 1] - cost == level and seen[2 * w + 1] != number:
-                                to = 2 * w + 1
-                                break
-                        k += 1
+                count = _arc_count(residual, exits, s)
+                k = _next_admissible(residual, costs, potential, seen, number, s & ~1, k, count)
             arcs[length] = k
-            if to < 0:
+            if k >= count:
                 length -= 1
             else:
                 length += 1
-                stack[length], arcs[length], seen[to] = to, 0, number
+                stack[length], arcs[length] = head_of(residual.network, s, k), 0
+                seen[stack[length]] = number
         if length < 0:
             continue
         found += 1
         ends[i] = stack[length] >> 1
         if exits.once:
-            exits.open[ends[i]] = TAKEN
+            exits.state[ends[i]] = TAKEN
         for j in range(length):
-            shift(network, carried, stack[j], arcs[j], 1)
+            send(residual, stack[j], arcs[j], stack[j + 1], 1)
         for j in range(length + 1):
             seen[stack[j]] = 0
     return found
 
 
-@njit(cache=True)
-def _take_back_to(network: Network, carried: Carried, state: int, arc: int) -> int:
-    """Send a unit over the arc that a search came to `state` by; return where it came from."""
-    u, stride = state >> 1, network.stride
-    if state & 1:
-        direction = arc if arc < 5 else 0
-        origin = 2 * (u - stride + network.offset[direction]) if arc else state - 1
-    else:
-        origin = state + 1 if arc == 5 else 2 * (u + stride - network.offset[arc]) + 1
-    shift(network, carried, origin, arc, 1)
-    return origin
-
-
-@helper
+@inlined
 def _raise_potentials(potential: Potentials, seen: Potentials, states: Int32s, to: int, highest: int) -> bool:
-    """Raise the potential of each state by what it was seen before `to`; return False if one came too high."""
+    """Raise the potential of each state by ``to - seen[state]``, if positive; return False if one exceeds `highest`."""
     for s in states:
         if potential[s] + to - seen[s] > highest:
             return False
@@ -207,117 +198,147 @@ def _raise_potentials(potential: Potentials, seen: Potentials, states: Int32s, t
     return True
 
 
-@njit(cache=True)
-def search(
-    network: Network,
-    carried: Carried,
-    room: Room,
-    prices: Prices,
+@inlined
+def _send_back_along(residual: ResidualNetwork, arrived_by: Bytes, end: int) -> int:
+    """Send a unit along the path by which a search arrived at state `end`; return the state where it starts."""
+    while arrived_by[end] != _NO_ARC:
+        arc = arrived_by[end]
+        tail = head_of(residual.network, end, reverse_of(arc))
+        send(residual, tail, arc, end, 1)
+        end = tail
+    return end
+
+
+@inlined
+def _relax(
+    residual: ResidualNetwork,
+    costs: EdgeCosts,
+    potential: Potentials,
+    work: SearchArrays,
+    state: int,
+    arcs: int,
+    bounds: tuple[int, int, int],
+    at: tuple[int, int, int],
+) -> tuple[int, int, int]:
+    """Relax the first `arcs` arcs of a state: label nearer heads, and put them on the stack or in a bucket.
+
+    Parameters
+    ----------
+    bounds
+        Distance of the state, number of the search, and distance of the nearest exit so far.
+    at
+        Length of the stack, number of entries, and highest bucket in use.
+
+    Returns
+    -------
+    int, int, int
+        As `at`; -1, -1, -1 if there are not enough buckets.
+    """
+    near, base, best = bounds
+    length, count, highest = at
+    offset = near - potential[state]
+    for k in range(arcs - 1, -1, -1):
+        t = head_of(residual.network, state, k)
+        if t < 0:
+            continue
+        reach = offset + potential[t] + _cost_of(costs, state, k)
+        if reach >= best or base <= work.seen[t] <= base + reach:
+            continue
+        if residual_capacity(residual, state, k, t) <= 0:
+            continue
+        if reach >= work.bucket.size:
+            return -1, -1, -1
+        work.seen[t], work.arc[t] = base + reach, k
+        if reach == near:
+            work.stack[length] = t
+            length += 1
+        else:
+            highest = max(highest, reach)
+            work.entry[count], work.below[count], work.bucket[reach] = t, work.bucket[reach], count
+            count += 1
+    return length, count, highest
+
+
+@kernel
+def search_nearest_exit(
+    residual: ResidualNetwork,
+    costs: EdgeCosts,
     potential: Potentials,
     exits: Exits,
     starts: Int64s,
     lift: int,
     highest_potential: int,
-    work: Search,
+    work: SearchArrays,
     base: int,
 ) -> tuple[int, int]:
-    """Send a unit to the nearest exit under reduced costs, and raise potentials by its distance (Dial).
+    """Send a unit to the nearest exit under reduced costs, and raise potentials by its distance (Dial 1969).
 
-    Buckets are stacks, so that free ways are followed down at once; a state that is found again nearer by
-    stays in its old bucket and is passed over there. Without an exit in reach all states that are in reach
-    are raised by `lift` beyond the furthest.
+    Buckets are stacks, so free paths are followed down at once. A state that is found again at a smaller distance
+    stays in its old bucket too, and is passed over there. If no exit can be reached, all states that can be
+    reached are raised by `lift` beyond the furthest of them.
 
     Parameters
     ----------
+    starts
+        ``(n,)`` squares.
     highest_potential
-        What potentials must not exceed.
+        Bound on potentials.
+    base
+        Number of this search in ``work.seen``.
 
     Returns
     -------
     int, int
-        The distance, and the square of `starts` that was served, -1 when none was.
+        The distance, or `NO_EXIT`, `TOO_FAR`, `TOO_HIGH`; the square of `starts` that was served, -1 for none.
     """
-    seen, stack, done, heads, came = work.seen, work.stack, work.done, work.heads, work.arc
-    entry, below, flow, through = work.entry, work.below, carried.flow, carried.through
-    edge_room, square_room, ending = room.edge, room.square, exits.open
-    via, offset, stride, top, each = network.via, network.offset, network.stride, network.via.size, room.each
-    heads[:] = -1
-    highest, settled, bucket, length, count, end = 0, 0, 0, 0, 0, 0
-    best, straight, oblique = _UNKNOWN, prices.straight, prices.oblique
+    seen, stack, visited, bucket, came = work.seen, work.stack, work.visited, work.bucket, work.arc
+    entry, below = work.entry, work.below
+    bucket[:] = -1
+    highest, finished, near, length, count, end, best = 0, 0, 0, 0, 0, 0, _UNKNOWN
     for u in starts:
-        seen[2 * u], came[2 * u] = base, NO_ARC
+        seen[2 * u], came[2 * u] = base, _NO_ARC
         stack[length] = 2 * u
         length += 1
-    while bucket < best:
+    while near < best:
         if length == 0:
-            while bucket <= highest and heads[bucket] < 0:
-                bucket += 1
-            if bucket > highest:
+            while near <= highest and bucket[near] < 0:
+                near += 1
+            if near > highest:
                 break
-            i = heads[bucket]
-            heads[bucket] = below[i]
-            if seen[entry[i]] != base + bucket:
+            i = bucket[near]
+            bucket[near] = below[i]
+            if seen[entry[i]] != base + near:
                 continue
             stack[0], length = entry[i], 1
         length -= 1
         s = stack[length]
-        done[settled] = s
-        settled += 1
-        if count + 6 > entry.size:
+        visited[finished] = s
+        finished += 1
+        if count + ARCS > entry.size:
             return TOO_FAR, -1
-        u, near = s >> 1, bucket - potential[s]
-        inward = not s & 1
-        if inward and ending[u] == 1:
-            if near + exits.level < best:
-                best, end = near + exits.level, s
-            if bucket >= best:
+        if not s & 1 and exits.state[s >> 1] == 1:
+            reach = near - potential[s] + exits.level
+            if reach < best:
+                best, end = reach, s
+            if near >= best:
                 break
-        first = 1 if inward and through[u] == 0 and ending[u] != TAKEN else 6
-        for k in range(first - 1, -1, -1):
-            if inward and k == 0:
-                if u < stride or through[u] >= square_room[u * each]:
-                    continue
-                t = s + 1
-                reach = near + potential[t]
-            elif inward:
-                direction = k if k < 5 else 0
-                w = u + stride - offset[direction]
-                if w >= top or flow[w, direction] == 0:
-                    continue
-                t = 2 * w + 1
-                reach = near + potential[t] - (oblique if direction else straight)
-            elif k == 5:
-                if through[u] == 0:
-                    continue
-                t = s - 1
-                reach = near + potential[t]
-            else:
-                v = u - stride + offset[k]
-                t = 2 * v
-                reach = near + potential[t] + (oblique if k else straight)
-                if reach >= best or base <= seen[t] <= base + reach or not via[v]:
-                    continue
-                if flow[u, k] >= edge_room[(5 * u + k) * each]:
-                    continue
-            if reach >= best or base <= seen[t] <= base + reach:
-                continue
-            if reach >= heads.size:
-                return TOO_FAR, -1
-            seen[t], came[t] = base + reach, k
-            if reach == bucket:
-                stack[length] = t
-                length += 1
-            else:
-                highest = max(highest, reach)
-                entry[count], below[count], heads[reach] = t, heads[reach], count
-                count += 1
+        at = (length, count, highest)
+        if s & 1:  # each inlined copy has only the arcs of its kind of state
+            length, count, highest = _relax(
+                residual, costs, potential, work, s | 1, ARCS, (near, base, best), at
+            )
+        else:
+            arcs = _arc_count(residual, exits, s)
+            length, count, highest = _relax(
+                residual, costs, potential, work, s & ~1, arcs, (near, base, best), at
+            )
+        if length < 0:
+            return TOO_FAR, -1
     raised = best if best < _UNKNOWN else highest + lift
-    if not _raise_potentials(potential, seen, done[:settled], base + raised, highest_potential):
+    if not _raise_potentials(potential, seen, visited[:finished], base + raised, highest_potential):
         return TOO_HIGH, -1
     if best == _UNKNOWN:
         return NO_EXIT, -1
     if exits.once:
-        ending[end >> 1] = TAKEN
-    while came[end] < NO_ARC:
-        end = _take_back_to(network, carried, end, came[end])
-    return best, end >> 1
+        exits.state[end >> 1] = TAKEN
+    return best, _send_back_along(residual, came, end) >> 1

@@ -1,61 +1,60 @@
-"""Routing kernels for paths that are known: taken back, put back, and read from a flow."""
+"""Kernels for known paths: rip up, restore, and decompose a flow into paths."""
 
-from numba import njit
+from amprep.arrays import Int64s
+from amprep.kernels.flow.records import Flow, FlowNetwork
+from amprep.kernels.flow.residual import kernel
+from amprep.kernels.flow.shortest_paths import Paths, RoutingState, add_to_edge, add_to_square
 
-from amprep.arrays import Bytes, Int64s
-from amprep.kernels.flow.shortest_paths import Flows, Network, load, relieve, use
 
-
-@njit(cache=True)
-def erase(
-    network: Network, flows: Flows, start: Int64s, chosen: Int64s, first: Int64s, ways: Bytes, drawn: Bytes
-) -> None:
-    """Take the paths of the chosen red squares back."""
+@kernel
+def rip_up(network: FlowNetwork, state: RoutingState, paths: Paths, chosen: Int64s) -> None:
+    """Remove the paths of the chosen red squares from the flow; their directions stay known."""
+    flow = state.flow
     for r in chosen:
-        if not drawn[r]:
+        if not paths.routed[r]:
             continue
-        u = start[r]
-        for i in range(first[r], first[r + 1]):
-            flows.through[u] -= 1
-            relieve(flows, u, ways[i])
-            u = u - network.stride + network.offset[ways[i]]
-        flows.through[u] -= 1
-        drawn[r] = 0
+        u = paths.start[r]
+        for d in paths.direction[paths.first[r] : paths.first[r + 1]]:
+            flow.square[u] -= 1
+            flow.edge[u, d] -= 1
+            if flow.edge[u, d] == 0:
+                state.edges_used[1 if d else 0] -= 1
+            u = u - network.stride + network.offset[d]
+        flow.square[u] -= 1
+        paths.routed[r] = 0
 
 
-@njit(cache=True)
-def redo(
-    network: Network, flows: Flows, start: Int64s, chosen: Int64s, first: Int64s, ways: Bytes, drawn: Bytes
-) -> None:
-    """Put paths back where `ways` says, for the chosen red squares without one."""
+@kernel
+def restore(network: FlowNetwork, state: RoutingState, paths: Paths, chosen: Int64s) -> None:
+    """Add the known paths of the chosen red squares to the flow again, where they have been ripped up."""
     for r in chosen:
-        if drawn[r]:
+        if paths.routed[r]:
             continue
-        u = start[r]
-        for i in range(first[r], first[r + 1]):
-            use(network, flows, u)
-            load(flows, u, ways[i])
-            u = u - network.stride + network.offset[ways[i]]
-        use(network, flows, u)
-        drawn[r] = 1
+        u = paths.start[r]
+        for d in paths.direction[paths.first[r] : paths.first[r + 1]]:
+            add_to_square(network, state, u)
+            add_to_edge(state, u, d)
+            u = u - network.stride + network.offset[d]
+        add_to_square(network, state, u)
+        paths.routed[r] = 1
 
 
-@njit(cache=True)
-def untangle(network: Network, flows: Flows, start: Int64s, first: Int64s, ways: Bytes, drawn: Bytes) -> None:
-    """Find one path for each drawn red square in the flow; the flow is the same afterwards."""
-    for r in range(start.size):
-        u = start[r]
-        if drawn[r]:
-            for i in range(first[r], first[r + 1]):
+@kernel
+def decompose(network: FlowNetwork, flow: Flow, paths: Paths) -> None:
+    """Decompose a flow into one path for each routed red square; the flow is the same afterwards."""
+    for r in range(paths.start.size):
+        u = paths.start[r]
+        if paths.routed[r]:
+            for i in range(paths.first[r], paths.first[r + 1]):
                 d = 0
-                while flows.flow[u, d] == 0:
+                while flow.edge[u, d] == 0:
                     d += 1
-                flows.flow[u, d] -= 1
-                ways[i] = d
+                flow.edge[u, d] -= 1
+                paths.direction[i] = d
                 u = u - network.stride + network.offset[d]
-    for r in range(start.size):
-        u = start[r]
-        if drawn[r]:
-            for i in range(first[r], first[r + 1]):
-                flows.flow[u, ways[i]] += 1
-                u = u - network.stride + network.offset[ways[i]]
+    for r in range(paths.start.size):
+        u = paths.start[r]
+        if paths.routed[r]:
+            for d in paths.direction[paths.first[r] : paths.first[r + 1]]:
+                flow.edge[u, d] += 1
+                u = u - network.stride + network.offset[d]

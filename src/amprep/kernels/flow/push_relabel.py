@@ -1,254 +1,289 @@
-"""Push-relabel kernels: excess and labels on the implicit grid (Goldberg and Tarjan, 10.1145/48014.61051).
+"""Push-relabel kernels for maximum flow (Goldberg and Tarjan 1988, DOI 10.1145/48014.61051).
 
-Strategy: every way down takes two arcs a plane, so the label of a state is its least number of arcs to the
-plate plus twice a level: the number of times a path from there has to go back up. Levels start at 0, nothing
-is set for squares that the flow never jams, and a push is admissible down to a state of the same level or up
-to one of the level below. What the plate cannot take goes back up to the red squares plane by plane.
+Strategy: every path down takes two arcs a plane, so the distance label of a state is its least number of arcs to
+the plate plus twice a level, and the level is the number of times that a path from the state has to go back up.
+Only levels are stored. They start at 0, so nothing is set for squares that the flow never jams. An arc is
+admissible if it leads down to a state of the same level, or up to a state of the level below.
+
+Active states are kept in buckets by level, and the lowest level is discharged first: flow that runs down freely
+shows the other states which capacity is left. Two heuristics keep the number of relabels small: if a level
+becomes empty, all states above that gap are cut off from the plate; and from time to time all levels are set to
+their exact values by a search from the states with a free path (global relabelling). Excess that cannot reach
+the plate returns to the red squares plane by plane. A full phase takes O(states^2 * sqrt(arcs)) at most; on
+support networks the time grows with the squares in a jam.
 """
 
 from typing import NamedTuple
 
-from numba import njit
-
 from amprep.arrays import Bytes, Int32s, Int64s
-from amprep.kernels.flow.residual import Carried, Room
-from amprep.kernels.flow.shortest_paths import Network
+from amprep.kernels.flow.records import ResidualNetwork
+from amprep.kernels.flow.residual import (
+    ARCS,
+    head_of,
+    inlined,
+    is_backward,
+    kernel,
+    residual_capacity,
+    reverse_of,
+    send,
+)
 
 CUT_OFF = 1 << 29
-"""Level of a state from which the plate is out of reach."""
+"""Level of a state from which no residual path leads to the plate."""
+
+_RELABEL_COST = 12
+"""Arcs looked at in one relabel operation."""
 
 
-class Preflow(NamedTuple):
-    """Excess, level and next arc to look at of all states; modified in place.
+class PushRelabelState(NamedTuple):
+    """Excess, levels, current arcs and buckets of active states; kernels modify all arrays in place.
 
     Attributes
     ----------
-    counts
-        Number of states at each level from 1 to the number of states.
+    excess, level
+        ``(states,)`` int32, units that have arrived and not been sent on, and level (see above).
+    current_arc
+        ``(states,)`` uint8, the next arc to try.
+    level_count
+        ``(states + 1,)`` int32, number of states at each level from 1.
     raised
-        The states at these levels, the first `Discharging.raised` entries.
-    heads, below
-        Active states in stacks by level: the top of each stack and what is below each state, 0 for none.
+        ``(states,)`` int32, the states at level 1 or higher: the first `raised_count` entries.
+    bucket, below
+        ``(states + 1,)`` and ``(states,)`` int32, a stack of active states for each level: its top, and below
+        each state the next one; 0 ends a stack.
+    lowest, highest, raised_count
+        ``(1,)`` int64, range of the levels with active states, and length of `raised`.
     """
 
     excess: Int32s
     level: Int32s
-    arc: Bytes
-    counts: Int32s
+    current_arc: Bytes
+    level_count: Int32s
     raised: Int32s
-    heads: Int32s
+    bucket: Int32s
     below: Int32s
-
-
-class Discharging(NamedTuple):
-    """Numbers that move along, each ``(1,)``: range of the stacks in use, length of the list of `raised`."""
-
     lowest: Int64s
     highest: Int64s
-    raised: Int64s
+    raised_count: Int64s
 
 
-@njit(cache=True)
-def _activate(preflow: Preflow, discharging: Discharging, state: int) -> None:
-    """Put a state on the stack of its level."""
-    level = preflow.level[state]
-    preflow.below[state] = preflow.heads[level]
-    preflow.heads[level] = state
-    discharging.lowest[0] = min(discharging.lowest[0], level)
-    discharging.highest[0] = max(discharging.highest[0], level)
+@inlined
+def _put_in_bucket(work: PushRelabelState, state: int) -> None:
+    """Add a state with excess to the bucket of its level."""
+    level = work.level[state]
+    work.below[state] = work.bucket[level]
+    work.bucket[level] = state
+    work.lowest[0] = min(work.lowest[0], level)
+    work.highest[0] = max(work.highest[0], level)
 
 
-@njit(cache=True)
-def activate_all(preflow: Preflow, discharging: Discharging, starts: Int64s) -> None:
-    """Give each start a unit to push."""
+@kernel
+def activate(work: PushRelabelState, starts: Int64s) -> None:
+    """Give one unit of excess to each square of `starts`."""
     for u in starts:
-        preflow.excess[2 * u] = 1
-        _activate(preflow, discharging, 2 * u)
+        work.excess[2 * u] = 1
+        _put_in_bucket(work, 2 * u)
 
 
-@njit(cache=True)
-def _cut_off(preflow: Preflow, discharging: Discharging, gap: int) -> None:
-    """Cut off all states above an empty level, and keep the others in the list of raised ones."""
+@inlined
+def _cut_off_above(work: PushRelabelState, gap: int) -> None:
+    """Cut off all states above an empty level."""
     kept = 0
-    for i in range(discharging.raised[0]):
-        s = preflow.raised[i]
-        if preflow.level[s] <= gap:
-            preflow.raised[kept] = s
+    for i in range(work.raised_count[0]):
+        s = work.raised[i]
+        if work.level[s] <= gap:
+            work.raised[kept] = s
             kept += 1
-        elif preflow.level[s] < CUT_OFF:
-            preflow.counts[preflow.level[s]] -= 1
-            preflow.level[s] = CUT_OFF
-    discharging.raised[0] = kept
+        elif work.level[s] < CUT_OFF:
+            work.level_count[work.level[s]] -= 1
+            work.level[s] = CUT_OFF
+    work.raised_count[0] = kept
 
 
-@njit(cache=True)
-def discharge(
-    network: Network, carried: Carried, room: Room, preflow: Preflow, discharging: Discharging, effort: int
-) -> bool:
-    """Push excess on until no active state is left or the effort is used up; return whether none is left.
+@inlined
+def _relabel(residual: ResidualNetwork, work: PushRelabelState, state: int) -> None:
+    """Raise a state to the least level at which one of its arcs is admissible; use the gap that this may leave."""
+    level, old, least = work.level, work.level[state], CUT_OFF
+    for k in range(ARCS):
+        head = head_of(residual.network, state, k)
+        if head >= 0:
+            reached = level[head] + is_backward(state, k)
+            if reached < least and residual_capacity(residual, state, k, head) > 0:
+                least = reached
+    if least >= work.level_count.size:
+        least = CUT_OFF
+    level[state] = least
+    if least < CUT_OFF:
+        work.level_count[least] += 1
+        if old == 0:
+            work.raised[work.raised_count[0]] = state
+            work.raised_count[0] += 1
+    if old > 0:
+        work.level_count[old] -= 1
+        if work.level_count[old] == 0:
+            _cut_off_above(work, old)
 
-    States of the lowest level come first: flow that runs down freely shows the others what is left. One that
-    runs out of arcs is lifted to the least level from which it can push; when that leaves a level empty (a
-    gap), all states above it are cut off. Of several ways the straight one is increased first and decreased
-    last (thesis 3.3): see the order of arcs.
-    """
-    excess, level, arcs = preflow.excess, preflow.level, preflow.arc
-    heads, waiting = preflow.heads, preflow.below
-    counts, raised, flow, through = preflow.counts, preflow.raised, carried.flow, carried.through
-    square_room, edge_room, each, via, offset = room.square, room.edge, room.each, network.via, network.offset
-    stride, top, lowest, highest = network.stride, via.size, discharging.lowest[0], discharging.highest[0]
-    while lowest <= highest and effort > 0:
-        s = heads[lowest]
-        if s == 0:
-            lowest += 1
+
+@inlined
+def _discharge_state(residual: ResidualNetwork, work: PushRelabelState, s: int, effort: int) -> int:
+    """Push the excess of a state over admissible arcs, relabel it when all are tried; return the effort left."""
+    network, excess, level = residual.network, work.excess, work.level
+    bucket, below, plate = work.bucket, work.below, 2 * residual.network.stride
+    lowest, highest = work.lowest[0], work.highest[0]
+    k, here = work.current_arc[s], level[s]
+    while excess[s] > 0 and here < CUT_OFF:
+        if k == ARCS:
+            _relabel(residual, work, s)
+            k, here = 0, level[s]
+            effort -= _RELABEL_COST
             continue
-        heads[lowest] = waiting[s]
-        u, k, here = s >> 1, arcs[s], level[s]
-        while excess[s] > 0 and here < CUT_OFF:
-            if k == 6:
-                least = CUT_OFF
-                if s & 1:
-                    for d in range(5):
-                        v = u - stride + offset[d]
-                        if level[2 * v] < least and via[v] and flow[u, d] < edge_room[(5 * u + d) * each]:
-                            least = level[2 * v]
-                    if through[u] > 0:
-                        least = min(least, level[s - 1] + 1)
-                else:
-                    if u >= stride and through[u] < square_room[u * each]:
-                        least = level[s + 1]
-                    for d in range(5):
-                        w = u + stride - offset[d]
-                        if w < top and level[2 * w + 1] + 1 < least and flow[w, d] > 0:
-                            least = level[2 * w + 1] + 1
-                least = least if least < counts.size else CUT_OFF
-                level[s] = least
-                if least < CUT_OFF:
-                    counts[least] += 1
-                    if here == 0:
-                        raised[discharging.raised[0]] = s
-                        discharging.raised[0] += 1
-                if here > 0:
-                    counts[here] -= 1
-                    if counts[here] == 0:
-                        _cut_off(preflow, discharging, here)
-                k, here = 0, level[s]
-                effort -= 12
-                continue
-            effort -= 1
-            up, space = 0, 0
-            if s & 1 and k < 5:
-                t = 2 * (u - stride + offset[k])
-                if level[t] == here and via[t >> 1]:
-                    space = edge_room[(5 * u + k) * each] - flow[u, k]
-            elif s & 1:
-                t, up = s - 1, 1
-                if level[t] + 1 == here:
-                    space = through[u]
-            elif k == 0:
-                t = s + 1
-                if level[t] == here and u >= stride:
-                    space = square_room[u * each] - through[u]
-            else:
-                d, up = k if k < 5 else 0, 1
-                w = u + stride - offset[d]
-                t = 2 * w + 1
-                if w < top and level[t] + 1 == here:
-                    space = flow[w, d]
-            if space <= 0:
-                k += 1
-                continue
-            amount = min(excess[s], space)
-            if s & 1 and k < 5:
-                flow[u, k] += amount
-            elif s & 1:
-                through[u] -= amount
-            elif k == 0:
-                through[u] += amount
-            else:
-                flow[t >> 1, k if k < 5 else 0] -= amount
-            excess[s] -= amount
-            if excess[t] == 0 and t >= 2 * stride:
-                waiting[t] = heads[here - up]
-                heads[here - up] = t
-                lowest, highest = min(lowest, here - up), max(highest, here - up)
-            excess[t] += amount
-        arcs[s] = k
-    discharging.lowest[0], discharging.highest[0] = lowest, highest
-    return bool(discharging.lowest[0] > discharging.highest[0])
+        effort -= 1
+        t, lower = head_of(network, s, k), here - is_backward(s, k)
+        room = 0
+        if t >= 0 and level[t] == lower:
+            room = residual_capacity(residual, s, k, t)
+        if room <= 0:
+            k += 1
+            continue
+        amount = min(excess[s], room)
+        send(residual, s, k, t, amount)
+        excess[s] -= amount
+        if excess[t] == 0 and t >= plate:
+            below[t] = bucket[lower]
+            bucket[lower] = t
+            lowest, highest = min(lowest, lower), max(highest, lower)
+        excess[t] += amount
+    work.current_arc[s] = k
+    work.lowest[0], work.highest[0] = lowest, highest
+    return effort
 
 
-@njit(cache=True)
-def _find_free(
-    network: Network, carried: Carried, room: Room, preflow: Preflow, now: Int32s, waiting: Int32s
-) -> tuple[int, int]:
-    """Set the level of all states to 0 where a way down is free, and cut off all others for now.
+@kernel
+def discharge(residual: ResidualNetwork, work: PushRelabelState, effort: int) -> bool:
+    """Discharge active states, the lowest level first, until none is left or the effort is used up.
 
-    Lists in `now` the free states that a path can be sent back to, in `waiting` all states with excess, and
-    returns how many there are of each.
+    A state pushes its excess over admissible arcs; when it has tried all of them, it is relabelled.
+
+    Parameters
+    ----------
+    effort
+        Number of arcs that may be looked at.
+
+    Returns
+    -------
+    bool
+        Whether no active state is left.
     """
-    stride, width, box, level = network.stride, network.width, network.box, preflow.level
-    via, offset, excess, arcs, flow, through = (
-        network.via,
-        network.offset,
-        preflow.excess,
-        preflow.arc,
-        carried.flow,
-        carried.through,
-    )
-    square_room, edge_room, each = room.square, room.edge, room.each
-    seeds, active = 0, 0
+    bucket, lowest = work.bucket, work.lowest
+    while lowest[0] <= work.highest[0] and effort > 0:
+        s = bucket[lowest[0]]
+        if s == 0:
+            lowest[0] += 1
+            continue
+        bucket[lowest[0]] = work.below[s]
+        if s & 1:  # each inlined copy has only the arcs of its kind of state
+            effort = _discharge_state(residual, work, s | 1, effort)
+        else:
+            effort = _discharge_state(residual, work, s & ~1, effort)
+    return bool(lowest[0] > work.highest[0])
+
+
+@inlined
+def _find_level_0(
+    residual: ResidualNetwork, work: PushRelabelState, seeds: Int32s, active: Int32s
+) -> tuple[int, int]:
+    """Set the level of all states with a free path straight down the planes to 0, and cut off all others for now.
+
+    Lists in `seeds` those of level 0 in squares with flow or excess, in `active` all states with excess, and
+    returns the length of both lists.
+    """
+    network, flow, excess, level = residual.network, residual.flow, work.excess, work.level
+    stride, width, box = network.stride, network.width, network.box
+    seed_count, active_count = 0, 0
     for p in range(1, box.shape[0]):
         for y in range(box[p, 0], box[p, 1] + 1):
             for u in range(p * stride + y * width + box[p, 2], p * stride + y * width + box[p, 3] + 1):
-                used = through[u] > 0 or excess[2 * u] > 0
-                if not used and not via[u]:
-                    level[2 * u] = level[2 * u + 1] = CUT_OFF
+                inward, outward = 2 * u, 2 * u + 1
+                used = flow.square[u] > 0 or excess[inward] > 0
+                if not used and not network.passable[u]:
+                    level[inward] = level[outward] = CUT_OFF
                     continue
                 free = False
                 for d in range(5):
-                    v = u - stride + offset[d]
-                    limit = edge_room[(5 * u + d) * each]
-                    if via[v] and level[2 * v] == 0 and flow[u, d] < limit:
+                    head = head_of(network, outward, d)
+                    if level[head] == 0 and residual_capacity(residual, outward, d, head) > 0:
                         free = True
                         break
-                enter = free and through[u] < square_room[u * each]
-                level[2 * u] = 0 if enter else CUT_OFF
-                level[2 * u + 1] = 0 if free else CUT_OFF
-                arcs[2 * u] = arcs[2 * u + 1] = 0
+                enter = free and residual_capacity(residual, inward, 0, outward) > 0
+                level[inward] = 0 if enter else CUT_OFF
+                level[outward] = 0 if free else CUT_OFF
+                work.current_arc[inward] = work.current_arc[outward] = 0
                 if used:
-                    for s in (2 * u, 2 * u + 1):
+                    for s in (inward, outward):
                         if level[s] == 0:
-                            now[seeds] = s
-                            seeds += 1
+                            seeds[seed_count] = s
+                            seed_count += 1
                         if excess[s] > 0:
-                            waiting[active] = s
-                            active += 1
-    return seeds, active
+                            active[active_count] = s
+                            active_count += 1
+    return seed_count, active_count
 
 
-@njit(cache=True)
-def relabel_all(
-    network: Network,
-    carried: Carried,
-    room: Room,
-    preflow: Preflow,
-    discharging: Discharging,
+@inlined
+def _reset_buckets(work: PushRelabelState) -> None:
+    """Empty all buckets, the list of raised states and the counts of their levels."""
+    for s in work.raised[: work.raised_count[0]]:
+        if work.level[s] < CUT_OFF:
+            work.level_count[work.level[s]] = 0
+    work.bucket[: work.highest[0] + 1] = 0
+    work.lowest[0] = work.highest[0] = work.raised_count[0] = 0
+
+
+@inlined
+def _search_back(
+    residual: ResidualNetwork,
+    level: Int32s,
+    state: int,
+    depth: int,
     now: Int32s,
+    length: int,
     later: Int32s,
-    waiting: Int32s,
+    ahead: int,
+) -> tuple[int, int]:
+    """List the states with residual arcs to `state`: in `now` at the same level, else in `later`; return lengths."""
+    for k in range(ARCS):
+        s, arc = head_of(residual.network, state, k), reverse_of(k)
+        reached = depth + is_backward(s, arc)
+        if s < 2 * residual.network.stride or level[s] <= reached:
+            continue
+        if residual_capacity(residual, s, arc, state) <= 0:
+            continue
+        level[s] = reached
+        if reached > depth:
+            later[ahead] = s
+            ahead += 1
+        else:
+            now[length] = s
+            length += 1
+    return length, ahead
+
+
+@kernel
+def relabel_globally(
+    residual: ResidualNetwork, work: PushRelabelState, now: Int32s, later: Int32s, active: Int32s
 ) -> None:
-    """Set all levels to what they are at least (global relabelling), and stack the active states anew."""
-    level, raised, flow, through = preflow.level, preflow.raised, carried.flow, carried.through
-    via, offset, stride, top = network.via, network.offset, network.stride, network.via.size
-    counts = preflow.counts
-    square_room, edge_room, each = room.square, room.edge, room.each
-    for i in range(discharging.raised[0]):
-        if level[raised[i]] < CUT_OFF:
-            preflow.counts[level[raised[i]]] = 0
-    preflow.heads[: discharging.highest[0] + 1] = 0
-    discharging.lowest[0] = discharging.highest[0] = discharging.raised[0] = 0
-    length, active = _find_free(network, carried, room, preflow, now, waiting)
+    """Set all levels to their exact values, and put the active states in buckets again.
+
+    States of level 0 come first; a search backwards over residual arcs then finds the states of each next level.
+
+    Parameters
+    ----------
+    now, later, active
+        ``(states,)`` int32, work arrays.
+    """
+    level = work.level
+    _reset_buckets(work)
+    length, active_count = _find_level_0(residual, work, now, active)
     depth, count = 0, 0
     while length > 0:
         ahead = 0
@@ -256,68 +291,47 @@ def relabel_all(
             length -= 1
             t = now[length]
             if depth > 0:
-                raised[count] = t
+                work.raised[count] = t
                 count += 1
-                counts[depth] += 1
-            u = t >> 1
+                work.level_count[depth] += 1
             if t & 1:
-                if level[t - 1] > depth and through[u] < square_room[u * each]:
-                    level[t - 1] = depth
-                    now[length] = t - 1
-                    length += 1
-                if through[u] > 0:
-                    for d in range(5):
-                        v = u - stride + offset[d]
-                        if level[2 * v] > depth + 1 and flow[u, d] > 0 and v >= stride:
-                            level[2 * v] = depth + 1
-                            later[ahead] = 2 * v
-                            ahead += 1
-                continue
-            if level[t + 1] > depth + 1 and through[u] > 0:
-                level[t + 1] = depth + 1
-                later[ahead] = t + 1
-                ahead += 1
-            if via[u]:
-                for d in range(5):
-                    w = u + stride - offset[d]
-                    if w < top and level[2 * w + 1] > depth and flow[w, d] < edge_room[(5 * w + d) * each]:
-                        level[2 * w + 1] = depth
-                        now[length] = 2 * w + 1
-                        length += 1
+                length, ahead = _search_back(residual, work.level, t | 1, depth, now, length, later, ahead)
+            else:
+                length, ahead = _search_back(residual, work.level, t & ~1, depth, now, length, later, ahead)
         depth += 1
         for i in range(ahead):
             if level[later[i]] == depth:
                 now[length] = later[i]
                 length += 1
-    discharging.raised[0] = count
-    for i in range(active):
-        if level[waiting[i]] < CUT_OFF:
-            _activate(preflow, discharging, waiting[i])
+    work.raised_count[0] = count
+    for s in active[:active_count]:
+        if level[s] < CUT_OFF:
+            _put_in_bucket(work, s)
 
 
-@njit(cache=True)
-def send_back(network: Network, carried: Carried, preflow: Preflow, supply: Bytes) -> None:
-    """Send excess that is left back up to where it came from, sideways edges first.
+@kernel
+def return_excess(residual: ResidualNetwork, work: PushRelabelState, supplied: Bytes) -> None:
+    """Return the excess that is left to the squares that it came from, over oblique edges first.
 
     Parameters
     ----------
-    supply
-        ``(squares,)`` uint8, 1 at red squares that sent a unit; set to 0 where it comes back.
+    supplied
+        ``(squares,)`` uint8, 1 at red squares that have sent a unit; set to 0 where it returns.
     """
+    network, flow, excess = residual.network, residual.flow, work.excess
     stride, width, box = network.stride, network.width, network.box
     for p in range(1, box.shape[0]):
         for y in range(box[p, 0], box[p, 1] + 1):
             for u in range(p * stride + y * width + box[p, 2], p * stride + y * width + box[p, 3] + 1):
-                back = preflow.excess[2 * u + 1]
-                carried.through[u] -= back
-                back += preflow.excess[2 * u]
-                for k in range(1, 6):
-                    d = k if k < 5 else 0
-                    w = u + stride - network.offset[d]
-                    if back > 0 and w < network.via.size:
-                        amount = min(back, carried.flow[w, d])
-                        carried.flow[w, d] -= amount
-                        preflow.excess[2 * w + 1] += amount
-                        back -= amount
-                if back > 0:
-                    supply[u] = 0
+                left = excess[2 * u + 1]
+                flow.square[u] -= left
+                left += excess[2 * u]
+                for k in range(1, ARCS):
+                    head = head_of(network, 2 * u, k)
+                    if left > 0 and head >= 0:
+                        amount = min(left, residual_capacity(residual, 2 * u, k, head))
+                        send(residual, 2 * u, k, head, amount)
+                        excess[head] += amount
+                        left -= amount
+                if left > 0:
+                    supplied[u] = 0

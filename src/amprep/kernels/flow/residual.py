@@ -1,91 +1,118 @@
-"""What exact flow kernels share: states of squares, residual arcs between them, and first distances.
+"""Kernels for the residual network: arcs between states of squares, and distances to the plate.
 
-A square u has two states, so that its capacity is that of an arc: ``2 * u`` once a path has come in, and
-``2 * u + 1`` once it has been let through. Neither they nor their arcs are stored; arc k of a state is
+Strategy: a square u has two states, so that its capacity is the capacity of an arc: state ``2 * u`` (in) after a
+path has arrived, state ``2 * u + 1`` (out) after the square has let it through. A state has up to six residual
+arcs. Neither states nor arcs are stored; number k of an arc says where it leads:
 
-* in: 0 through the square; 1 to 5 back up an edge that carries flow, sideways ones first;
-* out: 0 to 4 down an edge, the straight one first; 5 back to the square's in state.
+* from an in state: 0 through the square; 1 to 4 back up the oblique edges, 5 back up the vertical edge;
+* from an out state: 0 down the vertical edge, 1 to 4 down the oblique edges; 5 back to the in state.
+
+Kernels try arcs in this order. So flow is increased on vertical edges first and reduced on them last, and paths
+stay straight where there is a choice (thesis 3.3). An arc that undoes flow is a backward arc.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from amprep.arrays import Int32s
-from amprep.kernels.flow.shortest_paths import Network
+from amprep.kernels.flow.records import UNREACHABLE, FlowNetwork, ResidualNetwork
 
-Flowing = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.int32]
+ARCS = 6
+"""Number of arcs of a state."""
 
-UNREACHED = 1 << 30
-"""Distance of a square without a way to the plate."""
+kernel = njit(cache=True, _nrt=False)
+"""Compiles functions that create no arrays: without reference counts, which cost more than the work on arcs."""
 
-
-class Carried(NamedTuple):
-    """What flows: ``(squares, 5)`` down the edges, ``(squares,)`` through squares; modified in place."""
-
-    flow: Flowing
-    through: Flowing
+inlined = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, forceinline=True)
+"""Compiles functions that only kernels call: inlined, so that they cost no call."""
 
 
-class Room(NamedTuple):
-    """Greatest flow through squares above the plate and over edges: one number for all, or one for each.
-
-    Attributes
-    ----------
-    square, edge
-        ``(1,)`` both, or ``(squares,)`` and ``(5 * squares,)``; that of edge d of square u is at ``5 * u + d``.
-    each
-        0 when there is one number for all, else 1: what indices are multiplied by.
-    """
-
-    square: Int32s
-    edge: Int32s
-    each: int
+@inlined
+def is_backward(state: int, arc: int) -> bool:
+    """Tell whether an arc of `state` undoes flow."""
+    return arc > 4 * (state & 1)
 
 
-@njit(cache=True)
-def shift(network: Network, carried: Carried, state: int, arc: int, amount: int) -> None:
-    """Send `amount` over an arc of `state`."""
-    u = state >> 1
+@inlined
+def reverse_of(arc: int) -> int:
+    """Return the number of the arc that leads back, at the other end of an arc."""
+    return arc if 0 < arc < 5 else 5 - arc
+
+
+@inlined
+def head_of(network: FlowNetwork, state: int, arc: int) -> int:
+    """Return the state to which an arc of `state` leads, -1 above the highest plane."""
+    if state & 1:
+        return state - 1 if arc == 5 else state - 1 + 2 * (network.offset[arc] - network.stride)
+    if arc == 0:
+        return state + 1
+    head = state + 1 + 2 * (network.stride - network.offset[arc if arc < 5 else 0])
+    return head if head < 2 * network.passable.size else -1
+
+
+@inlined
+def residual_capacity(residual: ResidualNetwork, state: int, arc: int, head: int) -> int:
+    """Return how many more units an arc of `state`, which leads to `head`, can carry; 0 or less if it is full."""
+    network, flow, capacities = residual.network, residual.flow, residual.capacities
+    u, v = state >> 1, head >> 1
     if state & 1:
         if arc == 5:
-            carried.through[u] -= amount
+            return int(flow.square[u])
+        limit = capacities.edge[(5 * u + arc) * capacities.each]
+        return int(limit) - int(flow.edge[u, arc]) if network.passable[v] else 0
+    if arc == 0:
+        limit = capacities.square[u * capacities.each]
+        return int(limit) - int(flow.square[u]) if u >= network.stride else 0
+    return int(flow.edge[v, arc if arc < 5 else 0])
+
+
+@inlined
+def send(residual: ResidualNetwork, state: int, arc: int, head: int, amount: int) -> None:
+    """Send `amount` units over an arc of `state` that leads to `head`."""
+    flow, u, v = residual.flow, state >> 1, head >> 1
+    if state & 1:
+        if arc == 5:
+            flow.square[u] -= amount
         else:
-            carried.flow[u, arc] += amount
+            flow.edge[u, arc] += amount
     elif arc == 0:
-        carried.through[u] += amount
+        flow.square[u] += amount
     else:
-        direction = arc if arc < 5 else 0
-        carried.flow[u + network.stride - network.offset[direction], direction] -= amount
+        flow.edge[v, arc if arc < 5 else 0] -= amount
 
 
-@njit(cache=True)
-def measure(network: Network, straight: int, oblique: int, distance: Int32s) -> None:
-    """Set the least cost of a way to the plate for all squares in reach, plane by plane from the plate up.
+@kernel
+def find_distances(network: FlowNetwork, vertical: int, oblique: int, distance: Int32s) -> None:
+    """Set the least cost of a path from each square to the plate, plane by plane from the plate up.
 
-    It holds for paths that come in from above; squares that let none through are `UNREACHED`, and squares
-    of `network.via` that lead nowhere are closed.
+    A distance holds for paths that arrive in the square from above. Squares that are not passable are
+    `UNREACHABLE`; passable squares from which no path leads to the plate become impassable.
+
+    Parameters
+    ----------
+    vertical, oblique
+        Costs of an edge.
+    distance
+        ``(squares,)`` int32, written for the squares in `network.box`.
     """
-    stride, width, box, via = network.stride, network.width, network.box, network.via
-    far = np.int32(UNREACHED)
+    stride, width, box, passable = network.stride, network.width, network.box, network.passable
+    far = np.int32(UNREACHABLE)
     for y in range(box[0, 0], box[0, 1] + 1):
         for u in range(y * width + box[0, 2], y * width + box[0, 3] + 1):
-            distance[u] = np.int32(0) if via[u] else far
+            distance[u] = np.int32(0) if passable[u] else far
     for p in range(1, box.shape[0]):
         count = box[p, 3] - box[p, 2] + 1
         for y in range(box[p, 0], box[p, 1] + 1):
             u = p * stride + y * width + box[p, 2]
             v = u - stride
-            here, passable, below = distance[u : u + count], via[u : u + count], distance[v : v + count]
+            here, open_, below = distance[u : u + count], passable[u : u + count], distance[v : v + count]
             west, east = distance[v - 1 : v - 1 + count], distance[v + 1 : v + 1 + count]
             south, north = distance[v - width : v - width + count], distance[v + width : v + width + count]
             for i in range(count):
                 a = west[i] if west[i] < east[i] else east[i]
                 b = south[i] if south[i] < north[i] else north[i]
                 sideways = (a if a < b else b) + np.int32(oblique)
-                down = below[i] + np.int32(straight)
+                down = below[i] + np.int32(vertical)
                 best = down if down < sideways else sideways
-                here[i] = best if passable[i] != 0 and best < far else far
-                passable[i] = here[i] < far
+                here[i] = best if open_[i] != 0 and best < far else far
+                open_[i] = here[i] < far

@@ -15,7 +15,7 @@ amprep_api = 1
 def _min_cost_flow(
     problem: SupportProblem,
     *,
-    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    params: NoParams,  # noqa: ARG001  # the hook fixes the signature
     rng: np.random.Generator,  # noqa: ARG001
     stop: Stop,
     progress: Progress,
@@ -28,7 +28,7 @@ def _min_cost_flow(
 def _push_relabel(
     problem: SupportProblem,
     *,
-    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    params: NoParams,  # noqa: ARG001  # the hook fixes the signature
     rng: np.random.Generator,  # noqa: ARG001
     stop: Stop,
     progress: Progress,
@@ -41,7 +41,7 @@ def _push_relabel(
 def _auto(
     problem: SupportProblem,
     *,
-    params: NoParams,  # noqa: ARG001  # a hook's signature is given
+    params: NoParams,  # noqa: ARG001  # the hook fixes the signature
     rng: np.random.Generator,
     stop: Stop,
     progress: Progress,
@@ -67,7 +67,7 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
     )
     yield SupportRouter(
         name="push-relabel",
-        summary="As many paths as the capacities allow, straight before sideways; the fastest (thesis 3.3).",
+        summary="As many paths as the capacities allow, vertical edges before oblique ones; the fastest (thesis 3.3).",
         run=_push_relabel,
     )
     yield SupportRouter(
@@ -78,6 +78,6 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
     )
     yield SupportRouter(
         name="auto",
-        summary="Picks one of the others by size and capacities, and says why.",
+        summary="Chooses one of the other routers by size and capacities, and reports the reason.",
         run=_auto,
     )

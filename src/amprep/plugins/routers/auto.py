@@ -1,4 +1,4 @@
-"""The router `auto`: picks one of the others by size and capacities, and says why."""
+"""The router `auto`: choose one of the other routers by size and capacities, and report the reason."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -14,40 +14,40 @@ from amprep.plugins.routers.shortest_paths import route_shortest_paths
 from amprep.plugins.routers.tree import route_tree
 
 TIGHT = 2
-"""Capacity up to which so few paths may share an edge that gathering them saves little."""
+"""Capacity up to which gathering paths saves little, because so few may share an edge."""
 
 LARGE_JAM = 2_000_000
-"""Cubes up to which a jam is solved at least cost in seconds rather than minutes."""
+"""Number of voxels up to which a least-cost flow in a jam takes seconds rather than minutes."""
 
 SMALL = 500_000
-"""Cubes up to which searching for the least material takes about a second."""
+"""Number of voxels up to which the search for the least material takes about a second."""
 
 
-class Choice(NamedTuple):
-    """A router's name, and why."""
+class RouterChoice(NamedTuple):
+    """A router's name, and the reason for choosing it."""
 
     router: str
     reason: str
 
 
-def choose(problem: SupportProblem) -> Choice:
-    """Return which router suits a problem."""
+def choose(problem: SupportProblem) -> RouterChoice:
+    """Choose the router that suits a problem."""
     capacity = min((c for c in (problem.edge_capacity, problem.node_capacity) if c), default=0)
     voxels = f"{problem.voxels.size:,} voxels"
     if 0 < capacity <= TIGHT:
         few = f"with a capacity of {capacity} paths can hardly be gathered"
         if problem.voxels.size <= LARGE_JAM:
-            return Choice("min-cost-flow", f"{few}, so they are to be straight")
-        return Choice("push-relabel", f"{few}, and {voxels} are many for a least-cost flow in a jam")
+            return RouterChoice("min-cost-flow", f"{few}, so they are to be straight")
+        return RouterChoice("push-relabel", f"{few}, and {voxels} are many for a least-cost flow in a jam")
     if problem.voxels.size <= SMALL:
-        return Choice("tree", f"{voxels} are few enough to search for the least material")
-    return Choice("shortest-paths", f"it gathers paths quickly, and {voxels} are many for `tree`")
+        return RouterChoice("tree", f"{voxels} are few enough to search for the least material")
+    return RouterChoice("shortest-paths", f"it gathers paths quickly, and {voxels} are many for `tree`")
 
 
 def route_auto(
     problem: SupportProblem, *, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> SupportPlan:
-    """Route by the router of `choose`; the plan's first note says which and why."""
+    """Route by the router of `choose`; the plan's first note names it and the reason."""
     router, reason = choose(problem)
     if router == "min-cost-flow":
         plan = route_min_cost_flow(problem, stop=stop, progress=progress)

@@ -6,32 +6,32 @@ from math import isfinite
 
 @dataclass(frozen=True)
 class ShortestPathsParams:
-    """How `shortest-paths` draws and redraws (thesis 3.4).
+    """Parameters of the router `shortest-paths` (thesis 3.4).
 
-    The thesis has g 1, 0, 0, 0, 1, 2, 3, 4, a ratio of 0.1 and 30 rounds. The defaults here let more paths join
-    and leave it to `paths_per_square` that they do not become too many; the small price of joining keeps a
-    batch from moving as a herd, and smaller batches follow each other's trunks.
+    The thesis has g = 1, 0, 0, 0, 1, 2, 3, 4, a ratio of 0.1 and 30 rounds. The defaults here make joining pay for
+    more paths and leave it to `paths_per_square` to limit them. The small price of joining keeps the paths of a
+    batch from all choosing the same squares, and small batches follow each other's trunks.
 
     Attributes
     ----------
     g
-        Cost factor of one more path on an edge that carries 0, 1, 2, ... paths; beyond the table the last
-        slope continues.
-    redraw_ratio
-        Share of the paths redrawn in each round, in (0, 1].
+        Cost factor of one more path on an edge that carries 0, 1, 2, ... paths; beyond the table the last slope
+        continues.
+    reroute_ratio
+        Fraction of the paths that each round rips up and reroutes, in (0, 1].
     rounds
-        Number of rounds; the budget that decides, so that results are reproducible.
+        Number of rounds. A budget of work, so the same seed gives the same plan.
     seconds
-        Time limit in addition; None for none.
+        Time limit in addition to the rounds; None for none.
     neighbour_discount
-        Share in [0, 1) taken off the cost of an edge beside a square in use.
+        Fraction in [0, 1) by which an edge beside a square in use is cheaper.
     paths_per_square
-        Paths that may meet in a square as long as everything can be connected that way; 0 for any number.
-        The problem's own capacities, when set, take its place.
+        Most paths in a square, as long as everything can be connected within it; 0 for no limit. Capacities of the
+        problem take its place.
     """
 
     g: tuple[float, ...] = (1.0, 0.15, 0.02, 0.0, 0.0)
-    redraw_ratio: float = 0.05
+    reroute_ratio: float = 0.05
     rounds: int = 60
     seconds: float | None = None
     neighbour_discount: float = 0.2
@@ -41,8 +41,8 @@ class ShortestPathsParams:
         object.__setattr__(self, "g", tuple(float(cost) for cost in self.g))
         if not self.g or not all(isfinite(cost) and cost >= 0 for cost in self.g):
             raise ValueError(f"g must be a list of one or more costs >= 0, got {list(self.g)}")
-        if not 0 < self.redraw_ratio <= 1:
-            raise ValueError(f"redraw_ratio must be over 0 and at most 1, got {self.redraw_ratio}")
+        if not 0 < self.reroute_ratio <= 1:
+            raise ValueError(f"reroute_ratio must be over 0 and at most 1, got {self.reroute_ratio}")
         if self.rounds < 0:
             raise ValueError(f"rounds must be 0 or more, got {self.rounds}")
         if self.seconds is not None and not self.seconds > 0:
@@ -57,16 +57,16 @@ class ShortestPathsParams:
 
 @dataclass(frozen=True)
 class TreeParams:
-    """How `tree` searches for the least material.
+    """Parameters of the router `tree`.
 
     Attributes
     ----------
     rounds
-        Number of times that neighbours are redrawn; the budget that decides, so that results are reproducible.
+        Number of reroutes tried. A budget of work, so the same seed gives the same plan.
     neighbours
-        Number of red squares, side by side, whose paths are redrawn at a time.
+        Number of neighbouring red squares that are rerouted at a time.
     seconds
-        Time limit in addition; None for none.
+        Time limit in addition to the rounds; None for none.
     paths_per_square
         As for `shortest-paths`.
     """

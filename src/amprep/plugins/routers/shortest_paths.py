@@ -5,7 +5,7 @@ import numpy as np
 from amprep.model.control import Progress, Stop
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.params import ShortestPathsParams
-from amprep.plugins.routers.path_state import Drawing
+from amprep.plugins.routers.rip_up_and_reroute import Routing
 
 
 def route_shortest_paths(
@@ -16,32 +16,32 @@ def route_shortest_paths(
     stop: Stop,
     progress: Progress,
 ) -> SupportPlan:
-    """Draw a path from every red square, then redraw a random share of them round by round (thesis 3.4).
+    """Route a path from every red square, then rip up and reroute a random part of them in each round (thesis 3.4).
 
-    First every path is shortest by the costs of `problem` alone. In each round the chosen paths are taken
-    back, one sweep finds all distances under ``g(flow) * cost``, and the chosen paths are drawn again one
-    after the other, each pricing its edges by the flow of that moment. Every red square is chosen equally
-    often: the rounds go through random orders of all of them.
+    The first paths are shortest by the costs of `problem` alone. In each round the chosen paths are ripped up, one
+    sweep finds all distances under ``g(flow) * cost``, and the chosen paths are routed again one after another,
+    each at the prices that the flow of that moment gives. The rounds go through random orders of all red squares,
+    so every red square is chosen equally often.
 
-    Capacities are never exceeded: full edges and squares are closed to further paths, and red squares that
-    find no way are connected by augmenting paths, so that the flow is maximal. When capacities may be raised
-    for those that are left, all grow alike before the first round (``uniform``), or those of a minimum cut
-    after the last one (``cut``). Without capacities in the problem, `paths_per_square` acts as one that grows
-    until every red square with a way is connected.
+    Capacities are never exceeded: full edges and squares are closed to further paths, and red squares that find
+    no path are connected by augmentation, so that the flow is maximal. If capacities may be raised for the red
+    squares that are left, all grow alike before the first round (``uniform``), or those of a minimum cut grow
+    after the last round (``cut``). If the problem has no capacities, `paths_per_square` takes their place and
+    grows until every reachable red square is connected.
 
-    Every red square is drawn in ``O(squares)`` a round. Deterministic for one state of `rng`, unless a time
-    limit ends it.
+    A round takes ``O(squares)``, plus ``O(planes)`` for each chosen path. The plan is the same for the same state
+    of `rng`, unless a time limit ends the rounds.
     """
     stop = stop.within(params.seconds)
-    drawing = Drawing(problem, params)
-    drawing.connect_all(stop, progress)
+    routing = Routing(problem, params)
+    routing.connect_all(stop, progress)
     stop_reason = "finished"
-    for done, chosen in enumerate(drawing.choices(rng)):
+    for done, chosen in enumerate(routing.batches(rng)):
         if stop():
             stop_reason = stop.reason
             break
-        drawing.redraw(chosen)
-        progress((done + 1) / params.rounds, "redrawing paths")
+        routing.reroute(chosen)
+        progress((done + 1) / params.rounds, "rerouting paths")
     if stop_reason == "finished":
-        stop_reason = drawing.escalate(stop, progress)
-    return drawing.plan(stop_reason)
+        stop_reason = routing.escalate(stop, progress)
+    return routing.plan(stop_reason)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.flows.complete import complete
-from amprep.flows.reachability import has_way
+from amprep.flows.completion import complete_plan
+from amprep.flows.reachability import find_reachable
 from amprep.model.control import Progress, Stop, silent
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME
 from amprep.model.supports.edges import SupportEdges, square_keys
@@ -87,7 +87,7 @@ def route_shared(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     if not left.size:
         return edges
     posed = network.pose(left, NO_VOXELS)
-    reachable = has_way(posed.problem)[posed.number]
+    reachable = find_reachable(posed.problem)[posed.number]
     network.explain(left[~reachable], ENCLOSED)
     left = left[reachable]
     edges = SupportEdges.concatenate([edges, _route_within_capacity(network, edges, left)]).merged()
@@ -139,7 +139,7 @@ def _complete(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     connected[posed.number[~np.isin(reds, network.unconnected())]] = True
     plane, y, x = posed.corner
     inner = replace(edges, plane=edges.plane - plane, y=edges.y - y, x=edges.x - x)
-    plan = complete(posed.problem, inner, connected, stop=network.stop, progress=silent)
+    plan = complete_plan(posed.problem, inner, connected, stop=network.stop, progress=silent)
     return _with_parts(network.read(plan, posed, reds), network.red, reds)
 
 

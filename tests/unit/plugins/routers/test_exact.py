@@ -14,11 +14,11 @@ from tests.shared.grids import Late, hanging, random_problem
 from amprep.bench.routing.rivals import RIVALS
 from amprep.checks.supports.plan import check_plan
 from amprep.errors import JobError
-from amprep.flows import maximum_flow as pushing
+from amprep.flows import maximum_flow
 from amprep.model.control import Stop, silent
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, Voxel
 from amprep.model.supports.graph import to_networkx
-from amprep.plugins.routers.min_cost_certificate import find_gaps
+from amprep.plugins.routers.min_cost_certificate import find_optimality_violations
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 
 ROUTERS = ["min-cost-flow", "push-relabel"]
@@ -117,7 +117,7 @@ def test_value_and_cost_equal_those_of_networkx_and_are_proven(seed):
     flow = nx.max_flow_min_cost(graph, "source", "sink")
     assert len(task.red) - len(plan.unconnected) == sum(flow["source"].values())
     assert plan.objective == nx.cost_of_flow(graph, flow)
-    assert find_gaps(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
+    assert find_optimality_violations(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
 
 
 def test_values_and_costs_equal_those_of_or_tools_on_hundreds_of_grids():
@@ -135,9 +135,9 @@ def test_values_and_costs_equal_those_of_or_tools_on_hundreds_of_grids():
 
 def test_the_proof_fails_for_a_flow_that_costs_too_much():
     solved = solve_min_cost_flow(hanging((6, 5, 5), [(2, 2)]), stop=Stop(), progress=silent)
-    used = np.flatnonzero(solved.carried.through)
-    solved.carried.flow[used[0]] = solved.carried.flow[used[0]][::-1]
-    assert find_gaps(solved) == ["1 residual arcs up edges have a negative reduced cost"]
+    used = np.flatnonzero(solved.flow.square)
+    solved.flow.edge[used[0]] = solved.flow.edge[used[0]][::-1]
+    assert find_optimality_violations(solved) == ["1 residual arcs up edges have a negative reduced cost"]
 
 
 def test_straight_edges_come_first_where_there_is_a_choice():
@@ -197,12 +197,12 @@ def test_more_paths_than_16_bits_count_meet_in_a_square():
 
 def test_relabelling_all_at_any_time_changes_nothing_in_the_value(monkeypatch):
     assert len(route("push-relabel", crowd()).unconnected) == 72
-    monkeypatch.setattr(pushing, "_EFFORT", 0.01)
+    monkeypatch.setattr(maximum_flow, "_EFFORT", 0.01)
     assert len(route("push-relabel", crowd()).unconnected) == 72
 
 
 def test_a_stopped_run_is_a_legal_plan(monkeypatch):
-    monkeypatch.setattr(pushing, "_EFFORT", 0.01)
+    monkeypatch.setattr(maximum_flow, "_EFFORT", 0.01)
     stop = Stop()
     stop.cancelled.set()
     plan = route("push-relabel", crowd(), stop)
@@ -213,9 +213,9 @@ def test_a_stopped_run_is_a_legal_plan(monkeypatch):
 @given(st.integers(0, 100_000), st.sampled_from([6, 0.05]))
 def test_as_many_are_connected_as_networkx_connects(seed, effort):
     task = random_problem(seed)
-    usual, pushing._EFFORT = pushing._EFFORT, effort
+    usual, maximum_flow._EFFORT = maximum_flow._EFFORT, effort
     try:
         plan = route("push-relabel", task)
     finally:
-        pushing._EFFORT = usual
+        maximum_flow._EFFORT = usual
     assert len(task.red) - len(plan.unconnected) == nx.maximum_flow_value(to_networkx(task), "source", "sink")

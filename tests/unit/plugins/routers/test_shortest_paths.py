@@ -11,7 +11,7 @@ from tests.shared.examples import examples
 from tests.shared.grids import hanging, problem
 
 from amprep.checks.supports.plan import check_plan
-from amprep.flows.reachability import has_way
+from amprep.flows.reachability import find_reachable
 from amprep.model.control import Stop, silent
 from amprep.model.supports import CAPACITY, ENCLOSED, Voxel
 from amprep.model.supports.graph import to_networkx
@@ -144,7 +144,7 @@ def test_a_problem_without_red_squares_gets_an_empty_plan():
     [
         {"g": ()},
         {"g": (-1.0,)},
-        {"redraw_ratio": 0.0},
+        {"reroute_ratio": 0.0},
         {"rounds": -1},
         {"seconds": 0.0},
         {"paths_per_square": -1},
@@ -166,5 +166,6 @@ def test_as_many_are_connected_as_a_maximum_flow_allows(seed, capacities):
     graph = to_networkx(task)
     value = nx.maximum_flow_value(graph, "source", "sink")
     assert len(red) - len(plan.unconnected) == value
+    reachable = find_reachable(task)
     for i, (p, y, x) in enumerate(red):
-        assert has_way(task)[i] == nx.has_path(graph, ("in", p, y, x), "sink")
+        assert reachable[i] == nx.has_path(graph, ("in", p, y, x), "sink")
