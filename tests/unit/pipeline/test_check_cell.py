@@ -1,16 +1,11 @@
-"""A cell judged by itself: each promise is broken by a cell made for it; the commands list and check."""
-
-import json
+"""Each promise of a cell is broken by a cell made for it."""
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from amprep.cells import cell_offer
 from amprep.checks.cells.ports import PORTS
 from amprep.checks.cells.printability import FEATURE, HOLE, POCKET, STEEP
-from amprep.cli.cells import app
-from amprep.geometry.cells.metrology import escape_diameter, smallest_feature
 from amprep.host import Host, Listed
 from amprep.model import DeclaredCell, GraphCell, Mesh, MeshCell, Variant, When
 from amprep.pipeline.check_cell import check_cell
@@ -18,6 +13,8 @@ from amprep.pipeline.resolve import ChosenCell, cell_named
 from amprep.testing.problems import box_mesh
 
 HOST = Host.load(plugins_enabled=False)
+
+
 PIN = GraphCell([[0.5, 0.5, 0], [0.5, 0.5, 1]], [[0, 1]], 0.4)
 
 
@@ -107,59 +104,3 @@ def test_thin_walls_and_narrow_gaps_are_found():
 def test_what_a_cell_promises_about_itself_counts():
     strict = DeclaredCell((Variant(PIN),), smallest_feature=1.5, least_angle_deg=50)
     assert broken(strict) == {STEEP, FEATURE}
-
-
-def test_a_closed_pocket_is_measured():
-    mesh = hollow((0.25, 0.25, 0.25), (0.75, 0.75, 0.75))
-    place = np.array([[x, y, 0] for x in range(3) for y in range(3)])
-    arrays = [(mesh.vertices, mesh.triangles.astype(np.int64))]
-    _, pocket = escape_diameter(arrays, np.zeros(9, np.int64), place, np.full(3, 2.0), 16)
-    assert pocket == pytest.approx(0.125)
-
-
-@pytest.mark.parametrize("width", [0.2, 0.3, 0.5])
-def test_walls_and_gaps_are_measured_to_within_a_voxel(width):
-    mesh = box((0.5 - width / 2, 0, 0), (0.5 + width / 2, 1, 1))
-    place = np.array([[x, y, z] for x in range(3) for y in range(3) for z in range(2)])
-    arrays = (
-        [(mesh.vertices, mesh.triangles.astype(np.int64))],
-        np.zeros(18, np.int64),
-        place,
-        np.full(3, 2.0),
-    )
-    assert smallest_feature(*arrays, 24) == pytest.approx(2 * width, abs=2 / 24 * 1.5)
-    assert escape_diameter(*arrays, 24)[0] == pytest.approx(2 - 2 * width, abs=2 / 24 * 1.5)
-
-
-TOML = """
-name = "tripod"
-summary = "A pin on three legs."
-author = "A. N. Engineer"
-licence = "CC0-1.0"
-points = [[0.5, 0.5, 0], [0.5, 0.5, 1]]
-struts = [[0, 1, 0.4]]
-"""
-
-
-def test_the_commands_list_and_check(tmp_path):
-    run = CliRunner().invoke
-    rows = {row["name"]: row for row in json.loads(run(app, ["list", "--json"]).output)}
-    assert rows["bcc"]["kinds"] == ["graph"]
-    assert rows["x-wall"]["kinds"] == ["code"]
-    assert rows["hatch"]["params"]["wall_mm"] == 0.25
-    assert "strut" in run(app, ["list"]).output
-
-    path, picture = tmp_path / "tripod.toml", tmp_path / "tripod.png"
-    path.write_text(TOML)
-    done = run(app, ["check", str(path), "--picture", str(picture), "--json"])
-    found = json.loads(done.output)
-    assert (done.exit_code, found["violations"], found["kinds"]) == (0, [], ["graph"])
-    assert (found["name"], found["author"], found["licence"]) == ("tripod", "A. N. Engineer", "CC0-1.0")
-    assert found["measures"]["density"] == pytest.approx(np.pi * 0.16 / 4, rel=1e-3)
-    assert picture.read_bytes().startswith(b"\x89PNG")
-
-    flat = run(app, ["check", str(path), "--angle", "60"])
-    assert flat.exit_code == 1
-    assert "steep enough" in flat.output
-    thick = json.loads(run(app, ["check", "strut", "--set", "diameter_mm=1", "--json"]).output)
-    assert thick["measures"]["feature"] == pytest.approx(1.0, abs=0.1)

@@ -1,4 +1,4 @@
-"""Cells of all directions united on arrays, against manifold3d's union of each cell by itself."""
+"""Cells of all directions united on arrays, against the union of each cell by manifold3d."""
 
 import numpy as np
 import pytest
@@ -6,15 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.cells import instances as instances_module
-from amprep.cells.instances import classify, expand_cells
 from amprep.geometry.merging.merge_cells import unite_cells
 from amprep.geometry.merging.union import arrays_of, union
 from amprep.geometry.merging.voxel_contents import ContentsTable
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.topology import degenerate, edges_match
-from amprep.host import Host
-from amprep.model import DIRECTIONS, CellRequest, Grid, Stop, SupportEdges, silent
+from amprep.model import DIRECTIONS
 from amprep.testing.random_lattice import barrel, random_layout
 
 ORIGIN, SIZE = np.array([3.0, 5.0, 0.0]), np.array([2.0, 2.0, 1.5])
@@ -100,63 +97,3 @@ def test_the_same_cells_give_the_same_mesh():
     )
     assert (first[0] == second[0]).all()
     assert (first[1] == second[1]).all()
-
-
-def emitted(cell, seed, count=30, **params):
-    """A built-in cell on random edges with many junctions."""
-    rng = np.random.default_rng(seed)
-    rows = np.unique(rng.integers([1, 2, 2, 0], [4, 6, 6, 5], (count, 4)), axis=0)
-    plane, y, x, direction = rows.T
-    one = np.ones(len(rows))
-    frame = Grid(np.zeros(3), 2.0, 2.0, (12, 9, 9))
-    request = CellRequest(frame, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
-    host = Host.load(plugins_enabled=False)
-    listed = host.choose("cell", cell)
-    return classify(
-        request, host.call(listed, request, params=host.params(listed, params), stop=Stop(), progress=silent)
-    )
-
-
-def each_by_itself(found):
-    solids = []
-    for template, matrix in zip(found.cells.template, found.cells.matrix, strict=True):
-        points, triangles = found.templates[template]
-        solids.append(as_manifold(points @ matrix[:, :3].T + matrix[:, 3], triangles))
-    return union(solids)
-
-
-@pytest.mark.parametrize("cell", ["prism", "x-wall", "strut", "bcc", "hatch"])
-def test_built_in_cells_become_one_closed_mesh_of_the_union_s_volume(cell):
-    found = emitted(cell, seed=len(cell))
-    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_))
-    assert edges_match(mesh[1])
-    assert as_manifold(*mesh).volume() == pytest.approx(each_by_itself(found).volume(), rel=1e-6)
-
-
-def test_struts_have_the_genus_of_the_union_too():
-    """Other built-in cells touch in edges, where manifold3d's answer depends on the order of the cells."""
-    found = emitted("strut", seed=2, count=60)
-    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_))
-    assert as_manifold(*mesh).genus() == each_by_itself(found).genus()
-
-
-def test_seats_are_united_with_the_cells_they_lie_in():
-    found = emitted("strut", seed=1)
-    seats = np.array([[2, 3, 3], [2, 3, 4], [3, 4, 4]])
-    (mesh,) = expand_cells(found, np.ones(len(found.tiles), np.bool_), seats, 0.2)
-    plates = [(square[::-1] - (0, 0, 1)) * 2.0 + (1.0, 1.0, 1.9) for square in seats]
-    from manifold3d import Manifold
-
-    lids = [Manifold.cube((2.0, 2.0, 0.2), True).translate(place.tolist()) for place in plates]
-    expected = union([each_by_itself(found), *lids])
-    assert as_manifold(*mesh).volume() == pytest.approx(expected.volume(), rel=1e-6)
-
-
-def test_cells_that_cannot_be_joined_on_arrays_come_one_mesh_a_direction(monkeypatch):
-    found = emitted("strut", seed=3)
-    every = np.ones(len(found.tiles), np.bool_)
-    (mesh,) = expand_cells(found, every)
-    monkeypatch.setattr(instances_module, "unite_cells", lambda *_: None)
-    meshes = [as_manifold(*each) for each in expand_cells(found, every)]
-    assert len(meshes) >= 5
-    assert union(meshes).volume() == pytest.approx(as_manifold(*mesh).volume(), rel=1e-6)
