@@ -1,4 +1,4 @@
-"""Parts that stand already: where the job says, with the others packed around them."""
+"""Fixed parts keep the positions that the job states; the others are packed around them."""
 
 import json
 import subprocess
@@ -28,7 +28,7 @@ def run(folder, fixtures, quantity):
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
 
 
-def test_a_fixed_copy_stays_where_it_is_and_the_others_keep_their_distance(tmp_path, fixtures):
+def test_a_fixed_copy_keeps_its_position_and_the_others_keep_their_clearance(tmp_path, fixtures):
     done = run(tmp_path, fixtures, 3)
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)
@@ -38,7 +38,7 @@ def test_a_fixed_copy_stays_where_it_is_and_the_others_keep_their_distance(tmp_p
     assert len(corners) == 3
 
 
-def test_more_places_than_copies_are_refused(tmp_path, fixtures):
+def test_more_fixed_positions_than_copies_are_refused(tmp_path, fixtures):
     job = tmp_path / "job.toml"
     places = "[[0, 0, 0], [50, 50, 0]]"
     text = JOB.format(mesh=(fixtures / "table.stl").as_posix(), quantity=1)

@@ -1,4 +1,4 @@
-"""`amprep lattice` from file to file: what is written, what is said, and what a user's mistake gets."""
+"""`amprep lattice` from the command line: files, reports and errors."""
 
 import json
 
@@ -41,7 +41,7 @@ def test_the_web_of_a_wheel_becomes_cells_in_a_file_that_run_packs(amprep, fixtu
     assert (only["name"], only["triangles"]) == ("wheel", part["triangles"])
 
 
-def test_beams_are_written_beside_the_solid_and_cut_off_by_the_part(amprep, fixtures, tmp_path):
+def test_beams_are_written_with_the_solid_and_clipped_by_the_part(amprep, fixtures, tmp_path):
     import lib3mf
 
     file = tmp_path / "beams.3mf"
@@ -62,7 +62,7 @@ def test_beams_are_written_beside_the_solid_and_cut_off_by_the_part(amprep, fixt
     assert (mode, clipping) == (lib3mf.BeamLatticeClipMode.Inside, found["outline of wheel"].GetResourceID())
 
 
-def test_a_mesh_file_marks_a_region_and_locked_in_powder_is_said(amprep, tmp_path):
+def test_a_mesh_file_marks_a_region_and_trapped_powder_is_reported(amprep, tmp_path):
     trimesh.creation.box((20, 20, 20)).export(tmp_path / "block.stl")
     trimesh.creation.box((12, 12, 12)).export(tmp_path / "core.stl")
     done = amprep(
@@ -108,7 +108,7 @@ def test_a_cell_that_does_not_hold_the_part_together_gives_exit_code_1(amprep, t
         (("--region", "open.stl"), "the region 'open' is no closed mesh"),
     ],
 )
-def test_mistakes_get_one_line_and_nothing_is_written(amprep, tmp_path, monkeypatch, words, line):
+def test_user_errors_give_one_line_and_nothing_is_written(amprep, tmp_path, monkeypatch, words, line):
     monkeypatch.chdir(tmp_path)
     box = trimesh.creation.box((8, 8, 8))
     box.export("block.stl")

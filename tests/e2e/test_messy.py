@@ -1,4 +1,4 @@
-"""Messy STL files: each gets supports or a named reason, never a traceback."""
+"""A run of a messy STL file makes supports or states a reason, without a traceback."""
 
 import numpy as np
 import pytest
@@ -77,7 +77,7 @@ def self_intersecting():
 
 
 def klein_like():
-    """A tube that turns inside out on its way."""
+    """A tube whose second half is inside out."""
     soup = trimesh.creation.torus(10, 3, major_sections=24, minor_sections=12).triangles.copy()
     soup[: len(soup) // 3] = soup[: len(soup) // 3, ::-1]
     return soup
@@ -131,7 +131,7 @@ def write_binary(path, soup):
 
 
 def judge(outcome):
-    """A run did something and judged it, or said in one line what is wrong."""
+    """Check that a run was verified, or ended with an error of one line."""
     assert outcome.code in (0, 1, 2)
     assert "Traceback" not in outcome.err
     assert "internal error" not in outcome.err
@@ -153,7 +153,7 @@ def test_messy_meshes_get_supports_or_a_reason(amprep, tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["sound", "flipped", "cubes-on-a-face", "noisy-seams"])
-def test_what_only_looks_messy_is_mended_and_supported(amprep, tmp_path, name):
+def test_meshes_with_repairable_defects_are_repaired_and_supported(amprep, tmp_path, name):
     path = tmp_path / f"{name}.stl"
     write_binary(path, SOUPS[name]())
     outcome = amprep("support", path, "--center", "--cell", "prism", "--dry-run", "--json", "-q")
@@ -176,7 +176,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_files_that_are_no_stl_are_refused_in_one_line(amprep, tmp_path, name):
+def test_files_that_are_not_stl_are_refused_in_one_line(amprep, tmp_path, name):
     path = tmp_path / f"{name}.stl"
     path.write_bytes(FILES[name])
     outcome = amprep("support", path, "--dry-run", "--json", "-q")

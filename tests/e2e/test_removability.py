@@ -1,4 +1,4 @@
-"""What a run says of taking its supports off: contacts, mass, scanned area, powder locked in."""
+"""The report states contacts, mass, scanned area and trapped powder of supports."""
 
 import json
 
@@ -16,14 +16,14 @@ def supports(amprep, tmp_path, fixture, *sets):
     return json.loads((tmp_path / name).read_text(encoding="utf-8"))["builds"][0]["supports"], done
 
 
-def test_low_x_walls_with_gaps_let_all_powder_out_from_below_a_level_plate(amprep, tmp_path):
+def test_low_x_walls_with_gaps_trap_no_powder_below_a_horizontal_plate(amprep, tmp_path):
     trimesh.creation.box((24, 24, 4)).export(tmp_path / "plate.stl")
     found, done = supports(amprep, tmp_path, tmp_path / "plate.stl", "supports.pitch_mm=2")
     assert found["trapped_powder_mm3"] == 0.0
     assert "powder" not in done.out
 
 
-def test_x_walls_without_gaps_lock_powder_in_and_that_is_no_fault(amprep, fixtures, tmp_path):
+def test_x_walls_without_gaps_trap_powder_which_is_not_a_fault(amprep, fixtures, tmp_path):
     joined = ("supports.pitch_mm=4", "cells.params.join_every=1")
     found, done = supports(amprep, tmp_path, fixtures / "table.stl", *joined)
     assert done.code == 0
@@ -34,7 +34,7 @@ def test_x_walls_without_gaps_lock_powder_in_and_that_is_no_fault(amprep, fixtur
 
 
 @pytest.mark.parametrize("name", ["ball", "two-balls"])
-def test_x_walls_with_gaps_lock_in_no_powder_and_joined_ones_do(amprep, fixtures, tmp_path, name):
+def test_x_walls_with_gaps_trap_no_powder_and_joined_ones_do(amprep, fixtures, tmp_path, name):
     gap, done = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
     assert gap["trapped_powder_mm3"] == 0.0
     assert done.code == 0

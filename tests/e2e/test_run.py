@@ -1,4 +1,4 @@
-"""The main job as a user calls it."""
+"""`amprep run` from the command line: files, reports, verification, errors."""
 
 import hashlib
 import json
@@ -19,7 +19,7 @@ def digest(folder: Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory, fixtures) -> Path:
-    """The demo job, run once by a fresh process."""
+    """Run the demo job once, in a new process."""
     folder = tmp_path_factory.mktemp("demo")
     command = [
         sys.executable,
@@ -35,12 +35,12 @@ def demo(tmp_path_factory, fixtures) -> Path:
     return folder
 
 
-def test_the_demo_job_leaves_build_jobs_reports_and_pictures_and_nothing_else(demo):
+def test_the_demo_job_writes_build_files_reports_and_pictures_only(demo):
     names = sorted(path.name for path in demo.iterdir())
     assert names == ["job.build-1.3mf", "job.build-1.png", "job.report.html", "job.report.json"]
 
 
-def test_the_report_says_what_the_issue_promises(demo):
+def test_the_report_contains_the_figures_of_the_demo_job(demo):
     report = json.loads((demo / "job.report.json").read_text())
     assert {"builds", "unplaced", "stages", "seed", "status", "stop_reason", "bound"} <= set(report)
     (build,) = report["builds"]
@@ -54,7 +54,7 @@ def test_the_report_says_what_the_issue_promises(demo):
     assert all(stage["seconds"] >= 0 for stage in report["stages"])
 
 
-def test_what_was_written_verifies_from_the_file_alone(demo, amprep):
+def test_a_written_build_is_verified_from_its_file_alone(demo, amprep):
     outcome = amprep("verify", demo / "job.build-1.3mf", "--json")
     assert outcome.json["violations"] == []
     assert outcome.code == 0
@@ -66,7 +66,7 @@ def test_the_same_job_and_seed_give_the_same_bytes(demo, amprep, fixtures, tmp_p
 
 
 def test_a_moved_part_fails_verification(demo, amprep, tmp_path):
-    """Two parts pushed into one another by editing the file are found out."""
+    """Verification finds two parts that were moved into each other by editing the file."""
     import zipfile
 
     moved = tmp_path / "moved.3mf"
@@ -152,7 +152,7 @@ def test_a_part_too_large_for_any_build_is_unplaced_and_the_rest_is_done(amprep,
     assert not (tmp_path / "alone").exists()
 
 
-def test_a_fill_job_leaves_parts_out_without_complaint(amprep, tmp_path):
+def test_unplaced_parts_of_a_fill_job_are_not_faults(amprep, tmp_path):
     box = _box_stl(tmp_path / "box.stl", 40.0)
     outcome = amprep(
         "run", f"{box}:9", "-o", tmp_path / "out", "--json", "--set", "printer={size_mm=[100.0,100.0,50.0]}",
@@ -186,7 +186,7 @@ def _box_stl(path: Path, side: float) -> Path:
         ["verify", "nothing-there.3mf"],
     ],
 )
-def test_a_mistake_costs_one_clear_error_and_exit_code_2(amprep, fixtures, tmp_path, monkeypatch, arguments):
+def test_a_user_error_gives_one_line_and_exit_code_2(amprep, fixtures, tmp_path, monkeypatch, arguments):
     monkeypatch.chdir(tmp_path)
     shutil.copy(fixtures / "table.stl", tmp_path)
     outcome = amprep(*arguments)
@@ -207,7 +207,7 @@ def test_every_malformed_fixture_is_refused_in_one_line(amprep, fixtures, tmp_pa
         assert not (tmp_path / "out").exists(), path.name
 
 
-def test_an_inside_out_mesh_is_turned_and_that_is_reported(amprep, fixtures, tmp_path):
+def test_an_inside_out_mesh_is_reversed_with_a_note(amprep, fixtures, tmp_path):
     outcome = amprep("run", fixtures / "malformed" / "inside-out.stl", "-o", tmp_path, "--json")
     assert outcome.code == 0
     assert any("inside out" in note or "inside-out" in note for note in outcome.json["notes"])
@@ -215,7 +215,7 @@ def test_an_inside_out_mesh_is_turned_and_that_is_reported(amprep, fixtures, tmp
 
 @pytest.mark.parametrize("seconds", [0.3, 1.5, 3.0, 4.0])
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_leaves_nothing(fixtures, tmp_path, seconds, how):
+def test_an_interrupted_run_writes_nothing(fixtures, tmp_path, seconds, how):
     command = [
         sys.executable,
         "-m",
@@ -239,7 +239,7 @@ def test_an_interrupted_run_leaves_nothing(fixtures, tmp_path, seconds, how):
     assert b"Traceback" not in err
 
 
-def test_help_comes_at_once():
+def test_help_takes_little_processor_time():
     """Processor time of the quickest of three: the wall clock would measure the neighbours' work too."""
     import resource
 

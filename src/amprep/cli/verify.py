@@ -20,9 +20,13 @@ def verify(
 ) -> None:
     """Verify a build from its file alone.
 
-    Checks that parts are inside the build volume, keep their clearance and are unchanged; that supports are closed,
-    stand on the plate and do not penetrate parts; and that every overhang is supported or listed with a reason.
-    Exit codes: 0 if all promises hold, 1 if some are broken, 2 if the file is not a build that amprep wrote.
+    It checks that parts are inside the build volume, keep their clearance
+    and are unchanged; that supports are closed, stand on the plate and do
+    not penetrate parts; and that every overhang is supported, or listed
+    with a reason.
+
+    Exit codes: 0 if all promises hold, 1 if some are broken, 2 if the file
+    is not a build that amprep wrote.
     """
     from amprep import api
 
