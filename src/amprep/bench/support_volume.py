@@ -23,11 +23,10 @@ from amprep.model import (
     Voxel,
     silent,
 )
-from amprep.model.contacts import ConnectorRules
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.plan import PlanningRules, Route, plan_supports
-from amprep.supports.solids.build import build_supports
+from amprep.supports.solids.build import SolidRules, build_supports
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -208,9 +207,7 @@ def _volume(
         layout,
         (part,),
         lambda request: host.call(emitter, request, params=params, stop=stop, progress=silent),
-        overlap=0.1,
-        connector=ConnectorRules(),
-        allow_surface=False,
+        SolidRules(),
         stop=stop,
         progress=silent,
     )

@@ -20,7 +20,7 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.plan import SupportLayout, plan_supports
-from amprep.supports.solids.build import build_supports
+from amprep.supports.solids.build import SolidRules, build_supports
 
 LARGEST_REACH = 5.0
 """mm; however coarse the grid, no face that is farther from a contact counts as held, unless the job says so."""
@@ -145,13 +145,15 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             layout,
             parts,
             lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
-            overlap=settings.overlap,
-            connector=job.cells,
-            base=job.cells,
-            allow_surface=job.target == "generic",
-            beams=_beams(job),
-            gap=job.supports.gap_mm,
-            space=job.printer.space,
+            SolidRules(
+                connector=job.cells,
+                base=job.cells,
+                overlap=settings.overlap,
+                allow_surface=job.target == "generic",
+                beams=_beams(job),
+                gap=job.supports.gap_mm,
+                space=job.printer.space,
+            ),
             stop=stop,
             progress=progress,
         )

@@ -27,7 +27,7 @@ from amprep.model import (
 from amprep.model.contacts import ConnectorRules
 from amprep.model.control import Progress
 from amprep.supports.plan import PlanningRules, SupportLayout, plan_supports
-from amprep.supports.solids.build import build_supports
+from amprep.supports.solids.build import SolidRules, build_supports
 from amprep.testing.case import Case
 from amprep.testing.offers import LoadedOffer
 from amprep.testing.problems import box_mesh
@@ -65,9 +65,7 @@ def _building(
             layout,
             (part,),
             recorded,
-            overlap=0.1,
-            connector=connector,
-            allow_surface=True,
+            SolidRules(connector=connector, allow_surface=True),
             stop=stop,
             progress=silent,
         )

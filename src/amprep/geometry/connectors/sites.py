@@ -165,8 +165,8 @@ def _spots(patches: Patches, fine: ConnectorColumns, cells: _CellContacts, width
     cell, bottom = _lowest_inside(patches, fine, cells)
     inward = cells.centroid[cell] - bottom
     length = np.linalg.norm(inward, axis=1)
-    share = np.minimum(1.0, width / 2.0 / np.maximum(length, 1e-9))
-    spot[cell] = bottom + inward * share[:, None]
+    fraction = np.minimum(1.0, width / 2.0 / np.maximum(length, 1e-9))
+    spot[cell] = bottom + inward * fraction[:, None]
     return np.asarray(spot)
 
 

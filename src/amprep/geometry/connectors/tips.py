@@ -122,8 +122,8 @@ def _shortened(rings: Floats, floor: Floats) -> Floats:
     """Move the root of each tip up to the floor, because other connectors may be further below."""
     low, high = rings[:, 0, 0, 2], rings[:, 1, 0, 2]
     deep = np.flatnonzero((low < floor) & (floor < high))
-    share = ((floor - low)[deep] / (high - low)[deep])[:, None, None]
-    rings[deep, 0] += share * (rings[deep, 1] - rings[deep, 0])
+    fraction = ((floor - low)[deep] / (high - low)[deep])[:, None, None]
+    rings[deep, 0] += fraction * (rings[deep, 1] - rings[deep, 0])
     return rings
 
 

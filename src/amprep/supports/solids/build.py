@@ -1,6 +1,7 @@
 """Build the support bodies of a layout: cells for its edges, connectors up to the parts, bases, all united."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.arrays import CONTACT_TOLERANCE
@@ -22,24 +23,46 @@ from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_o
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-DIRECT = BaseRules()
-"""No bases."""
+
+@dataclass(frozen=True, kw_only=True)
+class SolidRules:
+    """Rules for the bodies of supports.
+
+    Attributes
+    ----------
+    connector
+        Shape of the connectors; walls without thickness always extend up to the part.
+    base
+        Shape of the bases on the build plate.
+    overlap
+        Depth (mm) to which connectors enter parts; a value below `CONTACT_TOLERANCE` counts as that.
+    allow_surface
+        Whether the target reads walls without thickness.
+    beams
+        Whether struts become beams: None leaves it to the parameters of the cell, False forbids it.
+    gap
+        XY distance (mm) between supports and walls of parts; walls without thickness only stay in free voxels.
+    space
+        Build volume, which clips beams and bases; without it struts become meshes.
+    """
+
+    connector: ConnectorRules = field(default_factory=ConnectorRules)
+    base: BaseRules = field(default_factory=BaseRules)
+    overlap: float = 0.1
+    allow_surface: bool = False
+    beams: bool | None = None
+    gap: float = 0.0
+    space: BuildVolume | None = None
 
 
 def build_supports(
     layout: SupportLayout,
     parts: tuple[PlacedPart, ...],
     emit: Emit,
+    rules: SolidRules,
     *,
-    overlap: float,
-    connector: ConnectorRules,
-    base: BaseRules = DIRECT,
-    allow_surface: bool,
     stop: Stop,
     progress: Progress,
-    beams: bool | None = None,
-    gap: float = 0.0,
-    space: BuildVolume | None = None,
 ) -> tuple[SupportBody, ...]:
     """Turn a layout into support bodies: one closed solid per support group, or its walls without thickness.
 
@@ -54,24 +77,12 @@ def build_supports(
         Placed parts of the build.
     emit
         Calls the chosen lattice cell.
-    overlap
-        Depth (mm) to which connectors enter parts; a value below `CONTACT_TOLERANCE` counts as that.
-    connector
-        Shape of the connectors; walls without thickness always extend up to the part.
-    base
-        Shape of the bases on the build plate.
-    allow_surface
-        Whether the target reads walls without thickness.
+    rules
+        Connectors, bases, distances, and the kinds of bodies that the target reads.
     stop
         Checked between groups; groups that are not finished by then are left out.
     progress
         Callback for progress.
-    beams
-        Whether struts become beams: None leaves it to the parameters of the cell, False forbids it.
-    gap
-        XY distance (mm) between supports and walls of parts; walls without thickness only stay in free voxels.
-    space
-        Build volume, which clips beams and bases; without it struts become meshes.
 
     Raises
     ------
@@ -87,18 +98,24 @@ def build_supports(
 
     def ask(*, extend: bool, beams: bool | None) -> CellInstances:
         request = make_request(
-            layout, meshes, overlap=overlap, allow_surface=allow_surface, extend=extend, beams=beams
+            layout,
+            meshes,
+            overlap=rules.overlap,
+            allow_surface=rules.allow_surface,
+            extend=extend,
+            beams=beams,
         )
         return classify(request, checked(request, emit(request)))
 
-    instances, as_beams = _ask(ask, extend=connector.connector == "extend", beams=beams)
+    instances, as_beams = _ask(ask, extend=rules.connector.connector == "extend", beams=rules.beams)
     if instances.sheet.any():
-        _require_no_feet(layout, base)
-    depth = max(overlap, CONTACT_TOLERANCE)
-    obstacles = PartObstacles(parts, WallClearance(layout, gap, depth) if gap > 0.0 else None)
+        _require_no_feet(layout, rules.base)
+    depth = max(rules.overlap, CONTACT_TOLERANCE)
+    clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
+    obstacles = PartObstacles(parts, clearance)
     surfaces = find_column_surfaces(layout, layout.meshes)
     builder = _SupportBuilder(
-        SupportContext(layout, surfaces, obstacles, connector, depth), parts, instances, as_beams, gap
+        SupportContext(layout, surfaces, obstacles, rules.connector, depth), parts, instances, as_beams, rules
     )
     solids, names = [], []
     for group, held in enumerate(layout.group_parts):
@@ -107,10 +124,10 @@ def build_supports(
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
         solids.append(builder.drained_solid(group))
-    bases = make_bases(solids, parts, base, space, gap)
+    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap)
     bodies: list[SupportBody] = []
     for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
-        bodies += builder.bodies(group, name, solid, own_base, space)
+        bodies += builder.bodies(group, name, solid, own_base)
     progress(1.0, "supports finished")
     return tuple(bodies)
 
@@ -159,15 +176,15 @@ class _SupportBuilder(NamedTuple):
         Placed parts of the build.
     instances, as_beams
         Answers of the cell: all cells as meshes; and the answer with beams, if the cell makes any.
-    gap
-        XY distance, mm.
+    rules
+        Rules for the bodies.
     """
 
     context: SupportContext
     parts: tuple[PlacedPart, ...]
     instances: CellInstances
     as_beams: CellInstances | None
-    gap: float
+    rules: SolidRules
 
     def drained_solid(self, group: int) -> Mesh | None:
         """Return the solid of a group, with drain holes where the cell promises them."""
@@ -177,17 +194,15 @@ class _SupportBuilder(NamedTuple):
         held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
         return cut_drain_holes(solid, held, diameter, self.context.foot_boxes(group))
 
-    def bodies(
-        self, group: int, name: str, solid: Mesh | None, base: "Manifold | None", space: BuildVolume | None
-    ) -> list[SupportBody]:
+    def bodies(self, group: int, name: str, solid: Mesh | None, base: "Manifold | None") -> list[SupportBody]:
         """Return the bodies of a group: its solid with its base, and its walls without thickness."""
         held = self.context.layout.group_parts[group]
         whole, found = with_base(solid, base), []
         sheet = sheet_of(self.context, group, self.instances) if self.instances.sheet.any() else None
         if whole is not None and len(whole.triangles):
             lattice = None
-            if self.as_beams is not None and space is not None:
-                lattice = self._lattice(group, self.as_beams, whole, base, space)
+            if self.as_beams is not None and self.rules.space is not None:
+                lattice = self._lattice(group, self.as_beams, whole, base, self.rules.space)
             found.append(SupportBody(f"supports of {name}", whole, held, lattice=lattice))
         if sheet is not None and len(sheet.triangles):
             kind = "walls" if solid else "supports"
@@ -200,7 +215,7 @@ class _SupportBuilder(NamedTuple):
         """Return the beams of a group with their connectors; None where they carry less than the solid does."""
         context, held = self.context, self.context.layout.group_parts[group]
         own = beams_of_group(as_beams.cells, group)
-        beams = clip_beams(own, self.parts, held, space, overlap=context.overlap, gap=self.gap)
+        beams = clip_beams(own, self.parts, held, space, overlap=context.overlap, gap=self.rules.gap)
         coarse = None
         if len(whole.triangles) > MAX_STAND_IN_TRIANGLES:
             prisms = classify(as_beams.request, whole_prisms(as_beams.request))

@@ -49,7 +49,7 @@ class ShapedConnectors(NamedTuple):
 
 
 def sink_depths(layout: SupportLayout, rules: ConnectorRules, *, most: float) -> Floats:
-    """Return how far below each red square its connector may begin, ``(m,)`` mm, to give tips their full height.
+    """Return the depth below each red square at which its connector may begin, ``(m,)`` mm, for tips of full height.
 
     The depth is 0 on the plate and for connectors without tips. Where an oblique edge meets the red square it is at
     most a quarter of a step, so that connector and cell still overlap.

@@ -12,10 +12,10 @@ from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports import footprints
 from amprep.host import Host
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
-from amprep.model.contacts import BaseRules, ConnectorRules
+from amprep.model.contacts import BaseRules
 from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.bases import LEAST_GAP, make_bases
-from amprep.supports.solids.build import build_supports
+from amprep.supports.solids.build import SolidRules, build_supports
 
 SIZE = np.array([60.0, 60.0, 40.0])
 PLAIN = BuildVolume(SIZE)
@@ -72,14 +72,9 @@ def supports(parts, layout, base, cell="prism", space=PLAIN, surface=False, para
         lambda request: host().call(
             emitter, request, params=host().params(emitter, params or {}), stop=Stop(), progress=silent
         ),
-        overlap=0.1,
-        connector=ConnectorRules(),
-        base=base,
-        allow_surface=surface,
-        space=space,
+        SolidRules(base=base, allow_surface=surface, space=space, **more),
         stop=Stop(),
         progress=silent,
-        **more,
     )
 
 

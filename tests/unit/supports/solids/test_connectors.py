@@ -18,7 +18,7 @@ from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPa
 from amprep.model.contacts import ConnectorRules
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.supports.plan import PlanningRules, plan_supports
-from amprep.supports.solids.build import build_supports
+from amprep.supports.solids.build import SolidRules, build_supports
 
 SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
 PITCH, OVERLAP = 2.0, 0.1
@@ -100,12 +100,9 @@ def supports(shape, connector, cell="prism", **more):
         layout,
         (part,),
         lambda request: host().call(emitter, request, params=params, stop=Stop(), progress=silent),
-        overlap=OVERLAP,
-        connector=connector,
-        allow_surface=False,
+        SolidRules(connector=connector, overlap=OVERLAP, **more),
         stop=Stop(),
         progress=silent,
-        **more,
     )
 
 
