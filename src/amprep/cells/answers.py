@@ -12,7 +12,7 @@ Emit = Callable[[CellRequest], Cells]
 
 
 def checked(request: CellRequest, cells: object) -> Cells:
-    """Return the answer of an emitter if it fulfils what the host relies on.
+    """Return the answer of an emitter if the host can rely on it.
 
     Parameters
     ----------

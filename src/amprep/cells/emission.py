@@ -166,7 +166,17 @@ def templates_of(name: str, shape: Shape, linear: Floats, factor: float = 1.0) -
 
 
 def beams_of(shape: GraphCell, request: CellRequest, fitted: Fitted) -> Beams:
-    """Return the struts of a set of edges as round beams."""
+    """Return the struts of a set of edges as round beams.
+
+    Parameters
+    ----------
+    shape
+        Graph whose struts become beams.
+    request
+        Request that contains the edges.
+    fitted
+        The edges, and the factor on the radii.
+    """
     matrix = request.matrices[fitted.edges]
     nodes = np.einsum("nij,vj->nvi", matrix[:, :, :3], shape.points) + matrix[:, None, :, 3]
     first = np.arange(len(matrix)) * len(shape.points)

@@ -49,21 +49,10 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
     """
     beside = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
     table = read_cell_table(beside) if beside.is_file() else {}
-    size = number(table, "size_mm", str(beside), 1.0) or 0.0
-    if not 0.0 < size < 1e6:
-        raise InputError(
-            f"{beside}: size_mm, the edge of the cube in the drawing, must be above 0, got {size:g}"
-        )
     if path != beside:
         table = {**table, "mesh": path.name}
-    variants = [
-        Variant(_shape(each, beside, size, read_mesh), when_of(each, beside))
-        for each in variants_of(table, beside)
-    ]
-    if any(key in table for key in ("mesh", "points")) or not variants:
-        variants.append(Variant(_shape(table, beside, size, read_mesh)))
     cell = DeclaredCell(
-        tuple(variants),
+        _variants(table, beside, read_mesh),
         text(table, "author", str(beside)),
         text(table, "licence", str(beside)),
         number(table, "smallest_feature_mm", str(beside)),
@@ -71,6 +60,22 @@ def read_cell(path: Path, read_mesh: ReadMesh) -> CellFile:
     )
     name = text(table, "name", str(beside)) or path.stem
     return CellFile(name, text(table, "summary", str(beside)) or _SUMMARY, cell)
+
+
+def _variants(table: Mapping[str, Any], beside: Path, read_mesh: ReadMesh) -> tuple[Variant, ...]:
+    """Return the variants that a table declares; the shape at its top, if there is one, is the last variant."""
+    size = number(table, "size_mm", str(beside), 1.0) or 0.0
+    if not 0.0 < size < 1e6:
+        raise InputError(
+            f"{beside}: size_mm, the edge of the cube in the drawing, must be above 0, got {size:g}"
+        )
+    variants = [
+        Variant(_shape(each, beside, size, read_mesh), when_of(each, beside))
+        for each in variants_of(table, beside)
+    ]
+    if any(key in table for key in ("mesh", "points")) or not variants:
+        variants.append(Variant(_shape(table, beside, size, read_mesh)))
+    return tuple(variants)
 
 
 def cells_in(folder: Path | str, read_mesh: ReadMesh | None = None) -> Iterator[CellEmitter]:

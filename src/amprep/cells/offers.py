@@ -76,7 +76,15 @@ def _declaration(
 
 
 def estimate(cell: DeclaredCell, pitch: float, step: float) -> tuple[float, float]:
-    """Return the volume (mm3) of a vertical and of an oblique edge, averaged over the layers of a column."""
+    """Return the volume (mm3) of a vertical and of an oblique edge, averaged over the layers of a column.
+
+    Parameters
+    ----------
+    cell
+        Cell to measure.
+    pitch, step
+        Of the grid, mm.
+    """
     from amprep.cells.emission import emit_declared
     from amprep.cells.samples import single_column
 

@@ -11,7 +11,15 @@ LAYERS = 6
 
 
 def single_column(pitch: float, step: float, direction: int) -> CellRequest:
-    """Return a column of trunk edges of one direction, in a grid of this pitch and step (mm)."""
+    """Return a column of trunk edges of one direction.
+
+    Parameters
+    ----------
+    pitch, step
+        Of the grid, mm.
+    direction
+        Index into `amprep.model.DIRECTIONS`.
+    """
     dy, dx = DIRECTIONS[direction]
     plane = np.arange(2, LAYERS + 2)
     side = LAYERS + 4

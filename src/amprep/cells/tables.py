@@ -63,7 +63,15 @@ def variants_of(table: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
 
 
 def text(table: Mapping[str, Any], key: str, where: str) -> str:
-    """Return a text of one line, or an empty text if the key is missing."""
+    """Return a text of one line, or an empty text if the key is missing.
+
+    Parameters
+    ----------
+    table, key
+        Table, and the key of the text.
+    where
+        File and section, for messages.
+    """
     value = table.get(key, "")
     if not isinstance(value, str) or not value.isprintable() or len(value) > 300:
         raise InputError(f"{where}: {key} must be a text of one line")
@@ -71,7 +79,17 @@ def text(table: Mapping[str, Any], key: str, where: str) -> str:
 
 
 def number(table: Mapping[str, Any], key: str, where: str, default: float | None = None) -> float | None:
-    """Return a finite number, or the default if the key is missing."""
+    """Return a finite number, or the default if the key is missing.
+
+    Parameters
+    ----------
+    table, key
+        Table, and the key of the number.
+    where
+        File and section, for messages.
+    default
+        Value of a missing key.
+    """
     if key not in table:
         return default
     value = table[key]

@@ -152,7 +152,15 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
 
 
 def check_measures(measures: CellMeasures, limits: PrintLimits, accuracy: float) -> list[Violation]:
-    """Judge measurements with an error of `accuracy` mm; that of the smallest feature is less."""
+    """Judge measurements on a block.
+
+    Parameters
+    ----------
+    measures, limits
+        Measurements, and limits to apply.
+    accuracy
+        Error (mm) of the hole; the error of the smallest feature is half of it.
+    """
     found = []
     if measures.feature is not None and measures.feature + accuracy / FINER < limits.feature:
         message = f"expected at least {limits.feature:g} mm, measured {measures.feature:.2g} mm"

@@ -44,11 +44,6 @@ def flush_sides(points: Floats, triangles: Int64s) -> Int64s:
     return np.where(flush.any(axis=1), flush.argmax(axis=1), -1)
 
 
-def outlines(points: Floats, triangles: Int64s, side: int) -> Outlines:
-    """Return the outlines of what lies flush on a side; not simple where outlines touch in a point."""
-    return _loops(_border(triangles[flush_sides(points, triangles) == side]))
-
-
 def conform(points: Floats, triangles: Int64s) -> MeshArrays:
     """Triangulate opposite sides of a closed mesh alike, where their outlines are equal.
 

@@ -80,7 +80,15 @@ def graph_solid(graph: Graph, linear: Floats) -> MeshArrays:
 
 
 def angles_deg(points: Floats, struts: Int64s, linear: Floats) -> Floats:
-    """Return the angle of each mapped strut to the horizontal in degrees, ``(m,)``; vertical struts have 90."""
+    """Return the angle of each mapped strut to the horizontal in degrees, ``(m,)``; vertical struts have 90.
+
+    Parameters
+    ----------
+    points, struts
+        ``(n, 3)`` in the unit cube, and ``(m, 2)`` indices.
+    linear
+        ``(3, 3)`` linear part of the map from the unit cube to mm.
+    """
     along = (points[struts[:, 1]] - points[struts[:, 0]]) @ linear.T
     return np.degrees(np.arctan2(np.abs(along[:, 2]), np.hypot(along[:, 0], along[:, 1])))
 

@@ -16,7 +16,7 @@ Corners are more than twice this distance apart, and rounding moves a crossing b
 _MAX_ROUNDS = 64
 """Number of rounds in which edges are split before outlines are rejected as too fine."""
 
-# Strategy. The surface of the united cells contains, on a shared face, what one voxel covers and the other does not.
+# Strategy. On a shared face, the surface of the united cells consists of the regions that only one voxel covers.
 # 1. Edges of both outlines are split at corners close to them and at crossings, rounded to the integer lattice,
 #    until no edge passes through a point or crosses another edge (`_split_edges`). Both outlines then use the same
 #    points and have common edges wherever they overlap.

@@ -75,7 +75,15 @@ def match_faces(table: ContentsTable, voxels: FilledVoxels) -> MatchedFaces:
 def place_interfaces(
     table: ContentsTable, voxels: FilledVoxels, faces: MatchedFaces
 ) -> list[PlacedInterfaces] | None:
-    """Copy an interface into each face with different outlines; None if an interface cannot be made."""
+    """Copy an interface into each face with different outlines; None if an interface cannot be made.
+
+    Parameters
+    ----------
+    table
+        Makes the interfaces.
+    voxels, faces
+        Filled voxels, and their matched faces.
+    """
     rows = np.column_stack([faces.axis, faces.low, faces.high])
     kinds, kind = np.unique(rows, axis=0, return_inverse=True)
     placed: list[PlacedInterfaces] = []

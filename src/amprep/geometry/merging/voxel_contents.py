@@ -1,4 +1,4 @@
-"""Compute what the cells in one voxel of the grid unite to, once for each set of cells."""
+"""Compute the union of the cells in one voxel of the grid, once for each set of cells."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -60,8 +60,8 @@ class VoxelContents(NamedTuple):
 class ContentsTable:
     """Computes voxel contents and interfaces between them, each once.
 
-    A voxel part is what one cell fills of one voxel. An oblique cell has two parts, because it passes from the voxel
-    of its upper square into the voxel of its lower one; an upright cell has one.
+    A voxel part is the portion of one cell inside one voxel. An oblique cell has two parts, because it passes from the
+    voxel of its upper square into the voxel of its lower one; an upright cell has one.
 
     Parameters
     ----------
