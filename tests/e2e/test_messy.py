@@ -77,7 +77,7 @@ def self_intersecting():
 
 
 def klein_like():
-    """A tube whose second half is inside out."""
+    """A torus of which a third is inside out."""
     soup = trimesh.creation.torus(10, 3, major_sections=24, minor_sections=12).triangles.copy()
     soup[: len(soup) // 3] = soup[: len(soup) // 3, ::-1]
     return soup
