@@ -1,7 +1,10 @@
-"""Flood kernels for loose powder: upright lines through solids, the free runs on them, and what those join to.
+"""Flood fill kernels for trapped powder: vertical lines through solids, their free intervals, and pockets.
 
-Lines stand on a square grid in plan, numbered row by row: line (y, x) is ``y * nx + x``. Float32s are mm; a
-run is an interval of a line without solid.
+Strategy: lines are on a square grid, numbered row by row: line (y, x) is ``y * nx + x``. Each solid is cut by all
+lines exactly; where a line is free of solids, it has an interval of heights in mm. A ball fits where such an interval,
+shortened by the radius, meets the intervals of the four neighbouring lines. Intervals of neighbouring lines that
+overlap belong to the same pocket (union-find); a pocket that touches the border or has no top is the outside.
+All kernels but the sorting of crossings walk through sorted lists once, so they are linear in their number.
 """
 
 import numpy as np
@@ -23,8 +26,17 @@ def cross_lines(
 ) -> None:
     """Find where the lines ``((x + 0.5) * spacing, (y + 0.5) * spacing)`` cross triangles.
 
-    `place` ``(ny * nx,)`` counts the crossings of each line; with room in `heights` and `signs`, it says
-    where the next one goes. A sign of 1 enters the solid on the way up, -1 leaves it.
+    Parameters
+    ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``, a closed mesh.
+    spacing, shape
+        Distance of lines in mm, and their numbers (ny, nx).
+    place
+        ``(ny * nx,)`` counts the crossings of each line. If `heights` and `signs` are not empty, it is where the
+        next crossing of each line is written.
+    heights, signs
+        ``(k,)`` mm, and 1 where a line enters the solid from below, -1 where it leaves it; or empty arrays.
     """
     ny, nx = shape
     for t in range(triangles.shape[0]):
@@ -39,7 +51,7 @@ def cross_lines(
             up, down = ends_in_row(points, triangles, t, y)
             if np.isinf(up) or np.isinf(down):
                 continue
-            sign = 1 if up < down else -1  # clockwise seen from above: it looks down, the solid begins
+            sign = 1 if up < down else -1  # clockwise seen from above: the face looks down, the solid begins
             first = int(np.ceil(min(up, down) / spacing - 0.5))
             last = int(np.ceil(max(up, down) / spacing - 0.5)) - 1
             for ix in range(max(first, 0), min(last, nx - 1) + 1):
@@ -52,19 +64,21 @@ def cross_lines(
 
 
 @njit(cache=True, nogil=True)
-def free_runs(
+def free_intervals(
     first: Int64s, heights: Float32s, signs: Int8s, top: float, start: Int64s, low: Float32s, high: Float32s
 ) -> int:
-    """Write the runs between height 0 and `top` of each line, upwards; return how many there are.
+    """Write the free intervals of each line between height 0 and `top`, lowest first; return their number.
 
     Parameters
     ----------
     first
-        ``(lines + 1,)`` where the crossings of each line begin, from `cross_lines`; they get sorted here.
+        ``(lines + 1,)`` where the crossings of each line begin, from `cross_lines`.
+    heights, signs
+        ``(k,)`` crossings; sorted in place for each line.
     start
-        ``(lines + 1,)`` written: where the runs of each line begin.
+        ``(lines + 1,)``, written: where the intervals of each line begin.
     low, high
-        Written: one more for each line than crossings is enough.
+        Written; ``k + lines`` entries are enough.
     """
     count = 0
     for line in range(first.size - 1):
@@ -72,7 +86,7 @@ def free_runs(
         start[line] = count
         for i in range(begin + 1, end):
             z, sign, j = heights[i], signs[i], i
-            # of equal heights the one that enters comes first: solids that touch leave nothing between them
+            # at equal heights the entering crossing comes first: solids that touch leave no interval between them
             while j > begin and (heights[j - 1] > z or (heights[j - 1] == z and signs[j - 1] < sign)):
                 heights[j], signs[j] = heights[j - 1], signs[j - 1]
                 j -= 1
@@ -94,15 +108,17 @@ def free_runs(
 
 
 @njit(cache=True)
-def _meet(spare: Float32s, now: int, held: int, low: Float32s, high: Float32s, begin: int, end: int) -> int:
-    """Write to ``spare[1 - now]`` what the `held` intervals of ``spare[now]`` share with runs; return how many."""
+def _intersect(
+    work: Float32s, now: int, held: int, low: Float32s, high: Float32s, begin: int, end: int
+) -> int:
+    """Write the intersection of the first `held` intervals of ``work[now]`` with others to ``work[1 - now]``."""
     kept, i, j = 0, 0, begin
     while i < held and j < end:
-        bottom, lid = max(spare[now, 0, i], low[j]), min(spare[now, 1, i], high[j])
-        if bottom < lid:
-            spare[1 - now, 0, kept], spare[1 - now, 1, kept] = bottom, lid
+        bottom, top = max(work[now, 0, i], low[j]), min(work[now, 1, i], high[j])
+        if bottom < top:
+            work[1 - now, 0, kept], work[1 - now, 1, kept] = bottom, top
             kept += 1
-        if spare[now, 1, i] < high[j]:
+        if work[now, 1, i] < high[j]:
             i += 1
         else:
             j += 1
@@ -117,55 +133,76 @@ def find_wide(
     high: Float32s,
     line: Int64s,
     bottom: Float32s,
-    lid: Float32s,
-    spare: Float32s,
+    top: Float32s,
+    work: Float32s,
     wide: Bools,
 ) -> None:
-    """Tell which parts of runs, `bottom` to `lid` on a line each, have room across as well: on the diagonal lines.
+    """Find the intervals that have room on the four diagonal lines too.
 
-    `spare` is as for `roomy_runs`.
+    Parameters
+    ----------
+    shape
+        Numbers of lines (ny, nx).
+    start, low, high
+        Free intervals of all lines, as `free_intervals` writes them.
+    line, bottom, top
+        ``(n,)`` intervals to check: line, and heights in mm.
+    work
+        Work array as for `centre_intervals`.
+    wide
+        ``(n,)`` bool, written.
     """
     ny, nx = shape
     for n in range(line.size):
         iy, ix = line[n] // nx, line[n] % nx
-        spare[0, 0, 0], spare[0, 1, 0] = bottom[n], lid[n]
+        work[0, 0, 0], work[0, 1, 0] = bottom[n], top[n]
         now, held = 0, 1
         for side in range(4):
             jy, jx = iy + 2 * (side // 2) - 1, ix + 2 * (side % 2) - 1
             if 0 <= jy < ny and 0 <= jx < nx:
                 other = jy * nx + jx
-                held = _meet(spare, now, held, low, high, start[other], start[other + 1])
+                held = _intersect(work, now, held, low, high, start[other], start[other + 1])
                 now = 1 - now
         wide[n] = held > 0
 
 
 @njit(cache=True, nogil=True)
-def roomy_runs(
+def centre_intervals(
     shape: tuple[int, int],
     radius: float,
     start: Int64s,
     low: Float32s,
     high: Float32s,
-    room: Int64s,
-    room_low: Float32s,
-    room_high: Float32s,
-    spare: Float32s,
+    centre_start: Int64s,
+    centre_low: Float32s,
+    centre_high: Float32s,
+    work: Float32s,
 ) -> int:
-    """Write the parts of runs where a ball has room: `radius` up and down, and one line to each side.
+    """Write the intervals where the centre of a ball can be; return their number.
 
-    Beyond the border all is free. `room` is as `start`; five times as many runs as there are is enough
-    room in `room_low` and `room_high`. `spare` ``(2, 2, most)`` is for work, `most` the greatest number
-    of runs on five lines that meet. Returns how many runs there are.
+    A centre is `radius` away from the ends of its interval, and the four neighbouring lines are free beside it. All
+    lines beyond the border are free.
+
+    Parameters
+    ----------
+    shape
+        Numbers of lines (ny, nx).
+    start, low, high
+        Free intervals of all lines, as `free_intervals` writes them.
+    centre_start, centre_low, centre_high
+        Written in the same way; five times as many entries as there are free intervals are enough.
+    work
+        ``(2, 2, most)`` float32, work array; `most` is the greatest number of intervals on five neighbouring lines.
     """
     ny, nx = shape
     count = 0
     for line in range(ny * nx):
-        room[line] = count
+        centre_start[line] = count
         iy, ix = line // nx, line % nx
         held = 0
         for i in range(start[line], start[line + 1]):
             if high[i] - low[i] > 2.0 * radius:
-                spare[0, 0, held], spare[0, 1, held] = low[i] + radius, high[i] - radius
+                work[0, 0, held], work[0, 1, held] = low[i] + radius, high[i] - radius
                 held += 1
         now = 0
         for side in range(4):
@@ -180,12 +217,12 @@ def roomy_runs(
                 other = line + nx
             if other == line:
                 continue
-            held = _meet(spare, now, held, low, high, start[other], start[other + 1])
+            held = _intersect(work, now, held, low, high, start[other], start[other + 1])
             now = 1 - now
         for i in range(held):
-            room_low[count], room_high[count] = spare[now, 0, i], spare[now, 1, i]
+            centre_low[count], centre_high[count] = work[now, 0, i], work[now, 1, i]
             count += 1
-    room[ny * nx] = count
+    centre_start[ny * nx] = count
     return count
 
 
@@ -198,13 +235,22 @@ def _root(parent: Int32s, node: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def join_runs(
-    shape: tuple[int, int], start: Int64s, low: Float32s, high: Float32s, lid: float, parent: Int32s
+def connect_intervals(
+    shape: tuple[int, int], start: Int64s, low: Float32s, high: Float32s, top: float, parent: Int32s
 ) -> None:
-    """Join runs of neighbouring lines that overlap, and what is open to the outside.
+    """Connect the intervals of neighbouring lines that overlap, and open intervals with the outside.
 
-    `parent` ``(runs + 1,)`` is written: the least run of each run's pocket; 0 is the outside, and run i
-    is number i + 1. Runs are open that reach up to `lid` or lie on a line at the border.
+    Parameters
+    ----------
+    shape
+        Numbers of lines (ny, nx).
+    start, low, high
+        Intervals of all lines, as `free_intervals` writes them.
+    top
+        Intervals that reach this height (mm), or are on a line at the border, are open.
+    parent
+        ``(intervals + 1,)``, written: the smallest number in the pocket of each interval. Interval i has the number
+        i + 1; 0 is the outside.
     """
     ny, nx = shape
     for i in range(parent.size):
@@ -213,7 +259,7 @@ def join_runs(
         iy, ix = line // nx, line % nx
         border = iy == 0 or ix == 0 or iy == ny - 1 or ix == nx - 1
         for i in range(start[line], start[line + 1]):
-            if border or high[i] >= lid:
+            if border or high[i] >= top:
                 parent[_root(parent, i + 1)] = 0
         for side in range(2):
             if (side == 0 and ix + 1 == nx) or (side == 1 and iy + 1 == ny):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from amprep.arrays import Floats
 from amprep.geometry.merging.union import arrays_of, evaluated, finish
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.powder.drain_holes import find_drains
+from amprep.geometry.powder.drain_holes import find_drain_holes
 from amprep.model import Mesh
 from amprep.supports.solids.keep_out import drop_floating
 
@@ -38,7 +38,7 @@ def cut_drain_holes(
     whole = as_manifold(solid.vertices, solid.triangles)
     arrays, found = (solid.vertices, solid.triangles), False
     for _ in range(_ROUNDS):
-        holes = find_drains(arrays, around, diameter)
+        holes = find_drain_holes(arrays, around, diameter)
         if not holes:
             break
         cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in holes]

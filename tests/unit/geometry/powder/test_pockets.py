@@ -1,10 +1,10 @@
-"""Powder that cannot leave, and contacts with parts: cases known by hand."""
+"""Trapped powder, drain holes and contacts with parts: cases known by hand."""
 
 import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.geometry.powder.drain_holes import find_drains
+from amprep.geometry.powder.drain_holes import find_drain_holes
 from amprep.geometry.powder.pockets import find_pockets
 from amprep.geometry.supports.contact_area import measure_contact
 
@@ -22,8 +22,8 @@ CASE = box((6, 5, 7), (0, 0, 0)) - box((4, 3, 5), (1, 1, 1))
 PART = box((12, 12, 2), (-3, -3, 8))
 
 
-def test_a_closed_box_locks_in_exactly_its_inside():
-    (pocket,) = find_pockets([arrays(CASE)], [], hole=0.2)
+def test_a_closed_box_traps_exactly_its_inside():
+    (pocket,) = find_pockets([arrays(CASE)], [], diameter=0.2)
     assert pocket.closed
     assert pocket.volume == pytest.approx(60.0, rel=1e-5)
     np.testing.assert_allclose([pocket.lo, pocket.hi], [(1, 1, 1), (5, 4, 6)], atol=0.11)
@@ -31,19 +31,19 @@ def test_a_closed_box_locks_in_exactly_its_inside():
     assert (np.array(pocket.hi) > pocket.point).all()
 
 
-def test_four_walls_between_the_plate_and_a_part_lock_in_what_is_between_them():
+def test_four_walls_between_the_plate_and_a_part_trap_the_powder_between_them():
     walls = box((6, 5, 8), (0, 0, 0)) - box((4, 3, 9), (1, 1, -0.5))
-    (pocket,) = find_pockets([arrays(walls)], [arrays(PART)], hole=0.2)
+    (pocket,) = find_pockets([arrays(walls)], [arrays(PART)], diameter=0.2)
     assert pocket.closed
     assert pocket.volume == pytest.approx(4 * 3 * 8, rel=1e-5)
-    assert find_pockets([arrays(walls)], [], hole=0.2) == []
+    assert find_pockets([arrays(walls)], [], diameter=0.2) == []
 
 
 @pytest.mark.parametrize(("width", "count"), [(0.15, 1), (0.35, 0)])
 @pytest.mark.parametrize("turn", [0, 90])
 def test_a_slit_lets_powder_out_when_it_is_wider_than_the_hole(width, count, turn):
     slit = CASE - box((2, width, 3), (4.5, 2, 2))
-    found = find_pockets([arrays(slit.rotate((0, 0, turn)))], [], hole=0.2)
+    found = find_pockets([arrays(slit.rotate((0, 0, turn)))], [], diameter=0.2)
     assert len(found) == count
     for pocket in found:
         assert not pocket.closed
@@ -53,48 +53,48 @@ def test_a_slit_lets_powder_out_when_it_is_wider_than_the_hole(width, count, tur
 @pytest.mark.parametrize(("width", "count"), [(0.13, 1), (0.35, 0)])
 def test_a_slit_along_a_diagonal_closes_when_it_is_narrower_than_seven_tenths_of_the_hole(width, count):
     slit = CASE - box((2, width, 3), (4.5, 2, 2))
-    assert len(find_pockets([arrays(slit.rotate((0, 0, 45)))], [], hole=0.2)) == count
+    assert len(find_pockets([arrays(slit.rotate((0, 0, 45)))], [], diameter=0.2)) == count
 
 
 @pytest.mark.parametrize(("side", "count"), [(0.25, 0), (0.45, 1)])
 @pytest.mark.parametrize("turn", [0, 45])
-def test_a_place_that_hardly_has_room_for_the_ball_is_no_pocket(side, count, turn):
+def test_a_cavity_hardly_wider_than_the_ball_is_no_pocket(side, count, turn):
     block = box((4, 4, 4), (-2, -2, 0)) - box((side, side, 1), (-side / 2, -side / 2, 1)).rotate((0, 0, turn))
-    assert len(find_pockets([arrays(block)], [], hole=0.2)) == count
+    assert len(find_pockets([arrays(block)], [], diameter=0.2)) == count
 
 
 @pytest.mark.parametrize(("height", "count"), [(0.19, 1), (0.21, 0)])
 def test_a_level_slit_is_measured_without_steps(height, count):
     slit = CASE - box((2, 2, height), (4.5, 1.5, 3))
-    assert len(find_pockets([arrays(slit)], [], hole=0.2)) == count
+    assert len(find_pockets([arrays(slit)], [], diameter=0.2)) == count
 
 
-def test_a_cavity_that_a_part_has_by_itself_is_none_of_the_supports_doing():
+def test_a_cavity_of_a_part_itself_does_not_count():
     hollow = box((8, 8, 8), (0, 0, 4)) - box((2, 2, 2), (3, 3, 7))
     post = box((1, 1, 4.1), (3.5, 3.5, 0))
-    assert find_pockets([arrays(post)], [arrays(hollow)], hole=0.2) == []
+    assert find_pockets([arrays(post)], [arrays(hollow)], diameter=0.2) == []
 
 
 def test_two_chambers_with_a_door_are_one_pocket_and_without_it_two():
     walls = CASE + box((0.5, 3, 5), (2.75, 1, 1))
-    assert len(find_pockets([arrays(walls)], [], hole=0.2)) == 2
+    assert len(find_pockets([arrays(walls)], [], diameter=0.2)) == 2
     door = walls - box((1, 1, 1), (2.5, 2, 2))
-    (pocket,) = find_pockets([arrays(door)], [], hole=0.2)
+    (pocket,) = find_pockets([arrays(door)], [], diameter=0.2)
     assert pocket.volume == pytest.approx(60 - 0.5 * 15 + 0.5, rel=2e-2)
 
 
-def test_a_way_out_is_cut_where_it_is_shortest_and_never_through_a_part():
-    (way,) = find_drains(arrays(CASE), [], hole=0.2)
-    cut_drain_holes = CASE - box((way[1] - way[0]).tolist(), way[0].tolist())
-    assert find_pockets([arrays(cut_drain_holes)], [], hole=0.2) == []
-    assert (way[0] > (-1, -1, 0)).all()
+def test_a_drain_hole_is_cut_where_it_is_shortest_and_never_through_a_part():
+    (hole,) = find_drain_holes(arrays(CASE), [], diameter=0.2)
+    cut_drain_holes = CASE - box((hole[1] - hole[0]).tolist(), hole[0].tolist())
+    assert find_pockets([arrays(cut_drain_holes)], [], diameter=0.2) == []
+    assert (hole[0] > (-1, -1, 0)).all()
     shell = box((8, 7, 9), (-1, -1, -1)) - box((6, 5, 7), (0, 0, 0))
-    assert find_drains(arrays(CASE), [arrays(shell)], hole=0.2) == []
+    assert find_drain_holes(arrays(CASE), [arrays(shell)], diameter=0.2) == []
 
 
 def test_the_same_solids_give_the_same_pockets_wherever_they_stand():
-    here = find_pockets([arrays(CASE)], [], hole=0.2)
-    there = find_pockets([arrays(CASE.translate((100.03, 57.77, 0)))], [], hole=0.2)
+    here = find_pockets([arrays(CASE)], [], diameter=0.2)
+    there = find_pockets([arrays(CASE.translate((100.03, 57.77, 0)))], [], diameter=0.2)
     assert there[0].volume == pytest.approx(here[0].volume, rel=1e-5)
 
 
