@@ -24,6 +24,7 @@ from amprep.kernels.boxes.positions import (
     WORK,
     PassState,
     Point,
+    Span,
     add_crossings,
     add_round_positions,
     choose,
@@ -75,9 +76,8 @@ def _residual_space(point: Point, space: Point, lo: Point, hi: Point) -> Point:
 
 
 @helper
-def _shorten_points(room: Floats, state: PassState) -> None:
+def _shorten_points(room: Floats, placed: Floats, points: Floats, cursor: Int64s) -> None:
     """Shorten the residual spaces by the newest box; drop points that it covers or that are of no more use."""
-    points, placed, cursor = state.points, state.placed, state.cursor
     new = cursor[PLACED] - 1
     lo = placed[new, 0], placed[new, 1], placed[new, 2]
     hi = placed[new, 3], placed[new, 4], placed[new, 5]
@@ -111,9 +111,9 @@ def _projection(point: Point, axis: int, room: Floats, placed: Floats, count: in
 
 
 @helper
-def _add_point(x: float, y: float, z: float, room: Floats, state: PassState) -> None:
+def _add_point(point: Point, room: Floats, placed: Floats, points: Floats, cursor: Int64s) -> None:
     """Add a point with its residual space, unless a box covers it or it is known."""
-    points, placed, cursor = state.points, state.placed, state.cursor
+    x, y, z = point
     known = cursor[POINTS]
     for p in range(known):
         if abs(points[p, 0] - x) + abs(points[p, 1] - y) + abs(points[p, 2] - z) <= PAIR_SLACK:
@@ -136,9 +136,8 @@ def _add_point(x: float, y: float, z: float, room: Floats, state: PassState) -> 
 
 
 @helper
-def _add_lines(new: int, state: PassState) -> None:
+def _add_lines(new: int, placed: Floats, lines: Floats, cursor: Int64s) -> None:
     """Note the sides of a box in x and in y as lines, unless they are known."""
-    placed, lines, cursor = state.placed, state.lines, state.cursor
     for side in range(6):
         if side % 3 < 2:
             axis, known = side % 3, False
@@ -150,16 +149,24 @@ def _add_lines(new: int, state: PassState) -> None:
 
 
 @helper
-def _add_box(b: int, boxes: Floats, position: Point, room: Floats, state: PassState) -> None:
+def _add_box(
+    b: int,
+    boxes: Floats,
+    position: Point,
+    room: Floats,
+    placed: Floats,
+    points: Floats,
+    lines: Floats,
+    cursor: Int64s,
+) -> None:
     """Add box b, moved to a position, to the build: shorten points, add its extreme points and its lines."""
-    placed, cursor = state.placed, state.cursor
     x, y, z = position
     new = cursor[PLACED]
     for axis in range(3):
         shift = x if axis == 0 else y if axis == 1 else z
         placed[new, axis], placed[new, axis + 3] = boxes[b, axis] + shift, boxes[b, axis + 3] + shift
     cursor[PLACED] = new + 1
-    _shorten_points(room, state)
+    _shorten_points(room, placed, points, cursor)
     cursor[WORK] += 7 * cursor[POINTS] + 12 * new
     flat = room[FLAT] != 0.0
     for axis in range(2 if flat else 3):
@@ -175,20 +182,21 @@ def _add_box(b: int, boxes: Floats, position: Point, room: Floats, state: PassSt
                     py = rest
                 else:
                     pz = rest
-                _add_point(px, py, room[2] if flat else pz, room, state)
-    _add_lines(new, state)
+                _add_point((px, py, room[2] if flat else pz), room, placed, points, cursor)
+    _add_lines(new, placed, lines, cursor)
 
 
 @helper
 def _open_build(standing: int, instance: BoxInstance, state: PassState) -> None:
     """Open a build: the least corner is its first point, the walls are its first lines; add the obstacles."""
-    room, cursor, lines = instance.room, state.cursor, state.lines
+    room, obstacles = instance.room, instance.obstacles
+    placed, points, lines, cursor = state.placed, state.points, state.lines, state.cursor
     cursor[PLACED], cursor[POINTS], cursor[MOVED] = 0, 0, 0
     cursor[LINES], cursor[LINES + 1] = 1, 1
     lines[0, 0], lines[1, 0] = room[0], room[1]
-    _add_point(room[0], room[1], room[2], room, state)
+    _add_point((room[0], room[1], room[2]), room, placed, points, cursor)
     for j in range(standing):
-        _add_box(j, instance.obstacles, (0.0, 0.0, 0.0), room, state)
+        _add_box(j, obstacles, (0.0, 0.0, 0.0), room, placed, points, lines, cursor)
 
 
 @helper
@@ -204,22 +212,20 @@ def _measure_build(build: int, zones: int, state: PassState) -> None:
 
 
 @helper
-def _add_candidates(orientation: int, instance: BoxInstance, state: PassState) -> int:
-    """Write the candidates of an orientation at the extreme points; return how many there are.
-
-    In an empty build its known feasible position is a candidate too.
-    """
-    points, candidates, cursor = state.points, state.candidates, state.cursor
-    room, boxes, orientations = instance.room, instance.boxes, instance.orientations
-    found, first, last = 0, instance.first_box[orientation], instance.first_box[orientation + 1]
+def _add_candidates(
+    own: Span,
+    size: Point,
+    boxes: Floats,
+    room: Floats,
+    points: Floats,
+    candidates: Floats,
+    cursor: Int64s,
+) -> int:
+    """Write the candidates of an orientation at the extreme points; return how many there are."""
+    found, (first, last), (size_x, size_y, size_z) = 0, own, size
     # a single box that is longer than the residual space of a point cannot lie there
     least = -room[SLACK] if last - first == 1 else -np.inf
     flat = room[FLAT] != 0.0
-    size_x, size_y, size_z = (
-        orientations[orientation, 0],
-        orientations[orientation, 1],
-        orientations[orientation, 2],
-    )
     count = cursor[POINTS]
     cursor[WORK] += count
     for p in range(count):
@@ -232,41 +238,14 @@ def _add_candidates(orientation: int, instance: BoxInstance, state: PassState) -
                 candidates[found, 3] = over_x + over_y + over_z
                 candidates[found, 4] = p
                 found += 1
-    if cursor[MOVED] == 0 and not np.isnan(orientations[orientation, 3]):
-        for i in range(3):
-            candidates[found, i] = orientations[orientation, 3 + i]
-        candidates[found, 3], candidates[found, 4] = 1e9, -1.0
-        found += 1
     return found
-
-
-@helper
-def _place_item(item: int, standing: int, instance: BoxInstance, rule: Floats, state: PassState) -> bool:
-    """Write the best position of an item in the open build to `state.best`; return whether there is one."""
-    cursor, best = state.cursor, state.best
-    best[MERIT] = np.inf
-    grid = cursor[LINES] * cursor[LINES + 1] <= rule[GRID]
-    item_type = instance.type_of[item]
-    for orientation in range(
-        instance.first_orientation[item_type], instance.first_orientation[item_type + 1]
-    ):
-        found = _add_candidates(orientation, instance, state)
-        fixed_height = found
-        if instance.room[RADIUS] > 0.0:
-            found = add_round_positions(orientation, instance, rule, state, found)
-        if grid:
-            own = (instance.first_box[orientation], instance.first_box[orientation + 1])
-            found = add_crossings(own, instance, state, found)
-        if found:
-            cursor[WORK] += found
-            choose(orientation, fixed_height, found, standing, instance, rule, state)
-    return bool(best[MERIT] < np.inf)
 
 
 @njit(cache=True)
 def pack(
     order: Int64s,
     instance: BoxInstance,
+    first_obstacles: int,
     rule: Floats,
     most_builds: int,
     work: float,
@@ -282,6 +261,8 @@ def pack(
     ----------
     order
         ``(m,)`` int64 items.
+    first_obstacles
+        Number of obstacles in the first build; every other build has the zones alone.
     rule
         ``(6,)`` placement rule, see `MERIT_OF`.
     arrangement, state
@@ -292,22 +273,45 @@ def pack(
     int
         FINISHED, PAUSED or GAVE_UP.
     """
-    cursor, best, failed = state.cursor, state.best, state.failed
+    type_of, first_orientation, first_box, orientations, boxes, room, _, zones = instance
+    placed, points, lines, candidates, failed, cursor, best, _ = state
     cursor[WORK] = 0
     while cursor[BUILD] < most_builds:
         build = cursor[BUILD]
-        standing = instance.obstacles.shape[0] if build == 0 else instance.zones
+        standing = first_obstacles if build == 0 else zones
         if cursor[INDEX] == 0:
             _open_build(standing, instance, state)
         while cursor[INDEX] < order.size:
             if cursor[WORK] > work:
                 return PAUSED
             item = order[cursor[INDEX]]
-            item_type = instance.type_of[item]
+            item_type = type_of[item]
             cursor[INDEX] += 1
             if arrangement.build[item] >= 0 or failed[item_type] == build:
                 continue
-            if not _place_item(item, standing, instance, rule, state):
+            best[MERIT] = np.inf
+            grid = cursor[LINES] * cursor[LINES + 1] <= rule[GRID]
+            for o in range(first_orientation[item_type], first_orientation[item_type + 1]):
+                own, size = (
+                    (first_box[o], first_box[o + 1]),
+                    (orientations[o, 0], orientations[o, 1], orientations[o, 2]),
+                )
+                found = _add_candidates(own, size, boxes, room, points, candidates, cursor)
+                if cursor[MOVED] == 0 and not np.isnan(orientations[o, 3]):
+                    # in an empty build the known feasible position is a candidate too
+                    for i in range(3):
+                        candidates[found, i] = orientations[o, 3 + i]
+                    candidates[found, 3], candidates[found, 4] = 1e9, -1.0
+                    found += 1
+                fixed_height = found
+                if room[RADIUS] > 0.0:
+                    found = add_round_positions(o, instance, rule, state, found)
+                if grid:
+                    found = add_crossings(own, instance, state, found)
+                if found:
+                    cursor[WORK] += found
+                    choose(o, fixed_height, found, standing, instance, rule, state)
+            if best[MERIT] == np.inf:
                 failed[item_type] = build
                 continue
             chosen = int(best[ORIENTATION])
@@ -315,11 +319,11 @@ def pack(
             for i in range(3):
                 arrangement.position[item, i] = best[POSITION + i]
             position = (best[POSITION], best[POSITION + 1], best[POSITION + 2])
-            for k in range(instance.first_box[chosen], instance.first_box[chosen + 1]):
-                _add_box(k, instance.boxes, position, instance.room, state)
+            for k in range(first_box[chosen], first_box[chosen + 1]):
+                _add_box(k, boxes, position, room, placed, points, lines, cursor)
             cursor[MOVED] += 1
             cursor[LEFT] -= 1
-        _measure_build(build, instance.zones, state)
+        _measure_build(build, zones, state)
         cursor[BUILD] += 1
         cursor[INDEX] = 0
         if cursor[LEFT] == 0:

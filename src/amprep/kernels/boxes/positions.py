@@ -81,7 +81,8 @@ def feasible_height(
     own: Span,
     position: Point,
     highest: float,
-    instance: BoxInstance,
+    boxes: Floats,
+    room: Floats,
     placed: Floats,
     count: int,
     standing: int,
@@ -93,13 +94,14 @@ def feasible_height(
     Parameters
     ----------
     own
-        Boxes of the orientation.
+        Boxes of the orientation, a span of `boxes`.
+    boxes, room
+        As in `BoxInstance`.
     placed
         ``(m, 6)`` mm boxes of the build; the first `count` are used.
     standing
         The first `standing` of them are obstacles, which give by the slack of the walls.
     """
-    boxes, room = instance.boxes, instance.room
     slack = room[SLACK]
     x, y, z = position
     first, last = own
@@ -134,9 +136,10 @@ def feasible_height(
 
 
 @helper
-def contact_area(own: Span, position: Point, instance: BoxInstance, placed: Floats, count: int) -> float:
+def contact_area(
+    own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, count: int
+) -> float:
     """Return the area in which the boxes touch walls and other boxes (Lodi, Martello, Vigo 2002)."""
-    boxes, room = instance.boxes, instance.room
     area, near = 0.0, room[SLACK]
     x, y, z = position
     for k in range(own[0], own[1]):
@@ -163,14 +166,13 @@ def contact_area(own: Span, position: Point, instance: BoxInstance, placed: Floa
 
 
 @helper
-def _merit(orientation: int, position: Point, instance: BoxInstance, rule: Floats) -> float:
+def _merit(orientation: int, position: Point, orientations: Floats, room: Floats, rule: Floats) -> float:
     """Return the merit of a position under `LOW` or `CENTRE`; it does not fall when z grows."""
-    room = instance.room
     x, y, z = position
     x1, y1, z1 = (
-        x + instance.orientations[orientation, 0],
-        y + instance.orientations[orientation, 1],
-        z + instance.orientations[orientation, 2],
+        x + orientations[orientation, 0],
+        y + orientations[orientation, 1],
+        z + orientations[orientation, 2],
     )
     if rule[MERIT_OF] == CENTRE:
         far_x = max(room[AXIS_X] - x, x1 - room[GAP] - room[AXIS_X])
@@ -181,11 +183,10 @@ def _merit(orientation: int, position: Point, instance: BoxInstance, rule: Float
 
 @helper
 def _in_the_way(
-    j: int, own: Span, position: Point, instance: BoxInstance, placed: Floats, standing: int
+    j: int, own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, standing: int
 ) -> bool:
     """Return whether placed box j overlaps one of the boxes of an orientation."""
-    boxes = instance.boxes
-    give = instance.room[SLACK] if j < standing else PAIR_SLACK
+    give = room[SLACK] if j < standing else PAIR_SLACK
     x, y, z = position
     for k in range(own[0], own[1]):
         over_x = x + boxes[k, 0] < placed[j, 3] - give and placed[j, 0] + give < x + boxes[k, 3]
@@ -227,34 +228,39 @@ def choose(
         Number of obstacles in the build.
     """
     placed, points, cursor, best = state.placed, state.points, state.cursor, state.best
-    candidates = state.candidates
+    candidates, orientations, boxes, room = (
+        state.candidates,
+        instance.orientations,
+        instance.boxes,
+        instance.room,
+    )
     count = cursor[PLACED]
     own = (instance.first_box[orientation], instance.first_box[orientation + 1])
     simple = rule[MERIT_OF] == LOW or rule[MERIT_OF] == CENTRE
     for c in range(found):
         x, y, z = candidates[c, 0], candidates[c, 1], candidates[c, 2]
-        merit = _merit(orientation, (x, y, z), instance, rule) if simple else candidates[c, 3]
+        merit = _merit(orientation, (x, y, z), orientations, room, rule) if simple else candidates[c, 3]
         if rule[MERIT_OF] != TOUCHING and merit >= best[MERIT]:
             continue
         highest, point = z, int(candidates[c, 4]) if c < fixed_height else -1
         if point >= 0 and points[point, LAST] >= 0.0:
             cursor[WORK] += 1
             j = int(points[point, LAST])
-            if _in_the_way(j, own, (x, y, z), instance, placed, standing):
+            if _in_the_way(j, own, (x, y, z), boxes, room, placed, standing):
                 continue
-        if c >= fixed_height and instance.room[FLAT] == 0.0:
+        if c >= fixed_height and room[FLAT] == 0.0:
             highest = z + (best[MERIT] - merit) / rule[WEIGHT + 2] if simple else np.inf
         cursor[WORK] += count
-        height = feasible_height(own, (x, y, z), highest, instance, placed, count, standing)
+        height = feasible_height(own, (x, y, z), highest, boxes, room, placed, count, standing)
         if height < 0.0:
             if point >= 0 and height <= -2.0:
                 points[point, LAST] = -2.0 - height
             continue
         if rule[MERIT_OF] == TOUCHING:
             low = rule[WEIGHT] * x + rule[WEIGHT + 1] * y + rule[WEIGHT + 2] * height
-            merit = 1e-9 * low - contact_area(own, (x, y, height), instance, placed, count)
+            merit = 1e-9 * low - contact_area(own, (x, y, height), boxes, room, placed, count)
         elif simple:
-            merit = _merit(orientation, (x, y, height), instance, rule)
+            merit = _merit(orientation, (x, y, height), orientations, room, rule)
         if merit < best[MERIT]:
             best[MERIT], best[ORIENTATION] = merit, orientation
             best[POSITION], best[POSITION + 1], best[POSITION + 2] = x, y, height

@@ -45,7 +45,7 @@ class Arrangement(NamedTuple):
     position: Floats
 
     @classmethod
-    def empty(cls, items: int) -> Self:
+    def unassigned(cls, items: int) -> Self:
         """Return an arrangement of `items` items, all of them in no build."""
         return cls(np.full(items, -1, np.int64), np.zeros(items, np.int64), np.zeros((items, 3)))
 

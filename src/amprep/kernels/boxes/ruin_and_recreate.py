@@ -200,16 +200,6 @@ def search(
     last = spent[SPENT] + work
     key = np.empty(order.size)
     fixed = instance.obstacles.shape[0] > instance.zones
-    without_fixed = BoxInstance(
-        instance.type_of,
-        instance.first_orientation,
-        instance.first_box,
-        instance.orientations,
-        instance.boxes,
-        instance.room,
-        instance.obstacles[: instance.zones],
-        instance.zones,
-    )
     while spent[SPENT] < last:
         ruined = min(builds, 1 + int(_random(random) * ruin_size))
         _choose_builds(ruined, builds, state)
@@ -238,8 +228,8 @@ def search(
         pass_state.cursor[LEFT] = count
         pass_state.failed[:] = -1
         rule = rules[int(_random(random) * rules.shape[0])]
-        room = instance if fixed and chosen[0] == 0 else without_fixed
-        pack(sorted_order, room, rule, ruined, MOST_A_STEP, repacked, pass_state)
+        first_obstacles = instance.obstacles.shape[0] if chosen[0] == 0 else instance.zones
+        pack(sorted_order, instance, first_obstacles, rule, ruined, MOST_A_STEP, repacked, pass_state)
         spent[SPENT] += pass_state.cursor[WORK] + items.size + 20 * count
         spent[STEPS] += 1
         for i in range(0 if fixed else ruined):

@@ -152,10 +152,10 @@ def _best_position(
                 if j >= 0 and not _meets(2, p, boxes, (x, y, z), placed, j):
                     continue
                 cursor[WORK] += count
-                if feasible_height((first, last), (x, y, z), z, instance, placed, count, zones) < 0.0:
+                if feasible_height((first, last), (x, y, z), z, boxes, room, placed, count, zones) < 0.0:
                     continue
                 cursor[WORK] += count
-                area = contact_area((first, last), (x, y, z), instance, placed, count)
+                area = contact_area((first, last), (x, y, z), boxes, room, placed, count)
                 if area > best[0] + PAIR_SLACK:
                     best[0], best[1], best[2] = area, build, orientation
                     best[3], best[4], best[5] = x, y, z

@@ -134,16 +134,16 @@ class PassRunner:
 
         Without a `best`, the items that have no position yet are packed into rows where that is possible.
         """
-        n = len(self.instance.type_of)
+        n, boxes = len(self.instance.type_of), self.instance.boxes
         most = 1 if self.instance.filling else n if best is None else int(best.rank[1])
-        arrangement, state = Arrangement.empty(n), self.state
+        arrangement, state = Arrangement.unassigned(n), self.state
         state.cursor[:] = 0
         state.cursor[LEFT] = len(tried.order)
         state.failed[:] = -1
         state.extents[:] = 0.0
         code = PAUSED
         while code == PAUSED and len(tried.order):
-            code = pack(tried.order, self.instance.boxes, tried.rule, most, PAUSE, arrangement, state)
+            code = pack(tried.order, boxes, len(boxes.obstacles), tried.rule, most, PAUSE, arrangement, state)
             self.work += int(state.cursor[WORK])
             if stop():
                 break

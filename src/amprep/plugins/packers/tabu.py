@@ -158,7 +158,7 @@ class TabuSearch:
 
     def _start(self) -> Arrangement:
         """Return the first arrangement: of the heuristic, or with every item in its own build."""
-        self.current = Arrangement.empty(len(self.instance.type_of))
+        self.current = Arrangement.unassigned(len(self.instance.type_of))
         packed = self._heuristic() if self.params.start == "heuristic" and len(self.items) else None
         if packed is None:
             self._separate(self.items)
@@ -169,7 +169,7 @@ class TabuSearch:
         n, boxes = len(self.items), self.state.open_builds.placed.shape[1]
         if n * boxes > MOST_BOXES:
             return None
-        packed = Arrangement.empty(len(self.instance.type_of))
+        packed = Arrangement.unassigned(len(self.instance.type_of))
         used = kernel.sub_heuristic(
             self.items, self.instance.boxes, n, packed, _open_builds(n, boxes), self.state.cursor
         )
@@ -208,9 +208,9 @@ class TabuSearch:
             chosen=np.zeros(most, np.int64),
             wanted=np.zeros(2 * n + most + 2, np.bool_),
             order=np.zeros(2 * n, np.int64),
-            trial=Arrangement.empty(n),
-            merged=Arrangement.empty(n),
-            kept=Arrangement.empty(n),
+            trial=Arrangement.unassigned(n),
+            merged=Arrangement.unassigned(n),
+            kept=Arrangement.unassigned(n),
             open_builds=_open_builds(most + 1, boxes),
             least=np.full(1, np.inf),
             cursor=np.zeros(3, np.int64),

@@ -57,7 +57,7 @@ class RuinAndRecreate:
             met=no_builds(n, int(np.ceil(len(self.items) / max(self.builds, 1)))),
             random=rng.integers(1, 2**63, 1, dtype=np.uint64),
             spent=self.spent,
-            repacked=Arrangement.empty(n),
+            repacked=Arrangement.unassigned(n),
             pass_state=runner.state,
             chosen=np.zeros(params.ruin_size, np.int64),
             order=np.zeros(n, np.int64),
@@ -130,7 +130,7 @@ class RuinAndRecreate:
         chosen = choose_builds(pool, demand, np.arange(self.builds), self.builds - 1, stop)
         if chosen is None:
             return None
-        found = Arrangement.empty(len(type_of))
+        found = Arrangement.unassigned(len(type_of))
         waiting = [self.items[type_of_own == k].tolist() for k in range(len(types))]
         for number, row in enumerate(chosen.tolist()):
             for at in range(start[row], start[row + 1]):

@@ -127,7 +127,7 @@ def _reason(workers: Sequence[Worker], best: Worker, stop: Stop) -> str:
 
 def _arrangement(prepared: PreparedInstance, instance: IntegerInstance, packed: PackedBoxes) -> Arrangement:
     """Return the packed boxes with an item assigned to each."""
-    found = Arrangement.empty(len(prepared.type_of))
+    found = Arrangement.unassigned(len(prepared.type_of))
     left = [list(items) for items in instance.items]
     for box, corners in zip(packed.box.tolist(), packed.corners, strict=True):
         item = left[instance.boxes.item_type[box]].pop(0)

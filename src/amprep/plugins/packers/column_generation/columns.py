@@ -71,7 +71,7 @@ def remaining_items(instance: PreparedInstance, taken: Int64s) -> Int64s:
 
 def arrangement_from(instance: PreparedInstance, columns: Iterable[Column]) -> Arrangement:
     """Return a cover as an arrangement: each item takes the first position of its type that is left."""
-    found = Arrangement.empty(len(instance.type_of))
+    found = Arrangement.unassigned(len(instance.type_of))
     waiting = [
         np.flatnonzero(instance.free & (instance.type_of == k)).tolist() for k in range(len(instance.types))
     ]

@@ -113,7 +113,7 @@ def _corner(
 
 def _arrangement(data: ModelData, placed: dict[int, PlacedCopy], positions: Floats) -> Arrangement:
     """Return the placed copies as an arrangement, with builds numbered from 0 without gaps."""
-    found = Arrangement.empty(len(data.instance.type_of))
+    found = Arrangement.unassigned(len(data.instance.type_of))
     # a solver may leave a build empty; fixed items keep the first one
     fixed = {0} if data.instance.problem.fixed else set()
     used = sorted({copy.build for copy in placed.values()} | fixed)
