@@ -1,4 +1,4 @@
-"""Bounding volumes: what a packer moves instead of the part. All in part coordinates, mm."""
+"""Bounding volumes, which packers place instead of the parts; all in part coordinates, mm."""
 
 from dataclasses import dataclass
 
@@ -44,7 +44,7 @@ class ConvexPieces:
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A closed mesh that contains the part, or is the part's own."""
+    """A closed mesh that contains the part, or the mesh of the part itself."""
 
     mesh: Mesh
 

@@ -1,4 +1,4 @@
-"""The packing problem and its answer."""
+"""The packing problem, and the packing that solves it."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -16,14 +16,16 @@ Status = Literal["optimal", "feasible", "infeasible"]
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """One copy of a part, as the packer sees it.
+    """One copy of a part in a packing problem.
 
     Attributes
     ----------
     part, copy
-        Index of the part in the job and of its copy, from 0.
+        Index of the part in the job, and of the copy, from 0.
     volume
-        Shared by all copies, in part coordinates.
+        Bounding volume in part coordinates, mm; all copies share it.
+    value
+        Contribution to the objective of a fill problem.
     """
 
     part: int
@@ -55,18 +57,19 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class PackingProblem:
-    """Which items go into which space, under which rules.
+    """Items, the build volume for them, an objective, and rules.
 
     Attributes
     ----------
     fixed
-        Placements that stand in the first build already and must stay.
+        Placements in the first build that must stay as they are.
     clearance
-        Least distance between parts and from parts to walls and lid, mm; volumes are made without it.
+        Least distance between parts, and between parts and the walls and top of the build volume, mm. Bounding volumes
+        do not include it.
     lift
         Height of the lowest parts above the plate, mm.
     stacking
-        Whether parts may lie above one another; off: all stand at `lift`.
+        Whether parts may be above one another; if not, all of them are at `lift`.
     """
 
     items: tuple[Item, ...]
@@ -80,7 +83,7 @@ class PackingProblem:
 
 @dataclass(frozen=True)
 class Unplaced:
-    """An item that found no place, and why: ``too large``, ``no room left``, ``out of time``."""
+    """An item in no build, and the reason: ``too large``, ``no room left`` or ``out of time``."""
 
     item: int
     reason: str
@@ -93,7 +96,7 @@ class Packing:
     Attributes
     ----------
     bound
-        What cannot be beaten: fewest builds, greatest value or least height; None when unknown.
+        Proven bound on the objective: no packing has fewer builds, more value or less height. None when unknown.
     """
 
     builds: tuple[tuple[Placement, ...], ...]

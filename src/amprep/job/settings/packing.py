@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from amprep.model.packing import Objective
-from amprep.validation import require
+from amprep.validation import require_bounds
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,5 @@ class PackingSettings:
     volume_params: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        require(self.clearance_mm >= 0, "clearance_mm is at least 0", self.clearance_mm)
-        require(self.lift_mm >= 0, "lift_mm is at least 0", self.lift_mm)
-        require(
-            self.time_limit_s is None or self.time_limit_s > 0, "time_limit_s is above 0", self.time_limit_s
-        )
+        require_bounds(self, "clearance_mm", "lift_mm", at_least=0)
+        require_bounds(self, "time_limit_s", above=0)
