@@ -69,7 +69,7 @@ def test_a_mesh_file_marks_a_region_and_trapped_powder_is_reported(amprep, tmp_p
         "lattice", tmp_path / "block.stl", "--region", tmp_path / "core.stl", "--cell", "strut", "--dry-run"
     )
     assert done.code == 0
-    assert "of powder in 1 pockets cannot leave" in " ".join(done.out.split())
+    assert "of powder in 1 pocket cannot leave" in " ".join(done.out.split())
     assert sorted(path.name for path in tmp_path.iterdir()) == ["block.stl", "core.stl"]
 
 
@@ -100,12 +100,12 @@ def test_a_cell_that_does_not_hold_the_part_together_gives_exit_code_1(amprep, t
     [
         ((), "no region to fill: mark one as a modifier"),
         (("--region", "nowhere.stl"), "nowhere.stl: no such file"),
-        (("--shell", "-1"), "--shell is in mm and above 0, got -1"),
-        (("--shell", "9"), "block is nowhere thicker than twice the shell"),
-        (("--shell", "2", "--region-name", "x"), "give it without --region and --region-name"),
+        (("--shell", "-1"), "--shell must be above 0 and below 10000 mm, got -1"),
+        (("--shell", "9"), "block must be thicker than twice the shell of 9 mm"),
+        (("--shell", "2", "--region-name", "x"), "use it without --region and --region-name"),
         (("--shell", "2", "--cell", "bbc"), "no lattice cell is called 'bbc' (did you mean 'bcc'?)"),
-        (("--region", "far.stl"), "the region lies outside all parts"),
-        (("--region", "open.stl"), "the region 'open' is no closed mesh"),
+        (("--region", "far.stl"), "the region is outside all parts"),
+        (("--region", "open.stl"), "the region 'open' is not a closed mesh"),
     ],
 )
 def test_user_errors_give_one_line_and_nothing_is_written(amprep, tmp_path, monkeypatch, words, line):

@@ -56,7 +56,7 @@ def test_every_hook_is_documented_and_tested(hook):
 
 
 def test_every_key_at_the_top_is_documented():
-    keys = documented(section("At the top"))
+    keys = documented(section("Top level"))
     assert set(keys) | {"packing", "supports", "cells", "reading", "part"} == set(KEYS)
 
 

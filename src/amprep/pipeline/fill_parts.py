@@ -156,10 +156,7 @@ def _check(options: LatticeOptions) -> None:
 
 def _read(job: Job, host: Host, options: LatticeOptions, progress: Progress) -> list[Part]:
     def read(path: Path) -> list[Part]:
-        reader = host.reader_for(path, job.reading.readers)
-        return host.call(
-            reader, path, params=host.params(reader, job.reading.params.get(reader.offer.name, {}))
-        )
+        return host.read(path, job.reading.readers, job.reading.params)
 
     files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
     return with_files(read_all(files, read, progress=progress), options.regions, read)
