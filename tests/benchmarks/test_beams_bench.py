@@ -1,4 +1,4 @@
-"""How small and how quickly a lattice of very many beams is written."""
+"""File size and time of writing a lattice of very many beams."""
 
 import numpy as np
 

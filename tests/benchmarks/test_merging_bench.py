@@ -1,4 +1,4 @@
-"""How quickly cells become one mesh, beside manifold3d's batch union in the same run."""
+"""Time to unite cells to one mesh, compared with manifold3d's batch union in the same run."""
 
 import pytest
 

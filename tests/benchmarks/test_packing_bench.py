@@ -1,6 +1,6 @@
-"""Packing benchmarks: builds and time on instances of Martello, Pisinger and Vigo, and on one plate.
+"""Packing benchmarks: number of builds and time on published instances and on one plate.
 
-Run with ``pytest tests/benchmarks/test_packing_bench.py``; rivals take part when they can be imported.
+Run with ``pytest tests/benchmarks/test_packing_bench.py``. Other packages are compared if they are installed.
 """
 
 import importlib
@@ -12,27 +12,16 @@ from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
 from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.params import ExtremePointsParams
+from amprep.testing.packing_instances import MPV_SIDE, mpv_instance
 
-SIDE = {1: 100, 4: 100, 5: 100, 6: 10, 7: 40, 8: 100}
+CLASSES = [1, 4, 5, 6, 7, 8]
+"""Classes of Martello, Pisinger and Vigo; 2 and 3 are class 1 with the axes exchanged."""
 
 
-def instance(kind, n, index):
-    """Sizes ``(n, 3)`` by the authors' generator (Operations Research 48, 2000)."""
-    state, side = ((index + n) << 16) + 0x330E, SIDE[kind]
-
-    def draw(first, last):
-        nonlocal state
-        state = (0x5DEECE66D * state + 0xB) % 2**48
-        return first + (state >> 17) % (last - first + 1)
-
-    short, long = (1, side // 2), (2 * side // 3, side)
-    ranges = {1: (short, long, long), 2: (long, short, long), 3: (long, long, short), 5: (short,) * 3}
-    ranges |= {4: ((side // 2, side),) * 3, 6: ((1, 10),) * 3, 7: ((1, 35),) * 3, 8: ((1, 100),) * 3}
-    sizes = []
-    for _ in range(n):
-        other = draw(1, 10) if kind <= 5 else kind
-        sizes.append([draw(*r) for r in ranges[other if other <= 5 else kind]])
-    return sizes
+def boxes_of(class_, n, index):
+    """Return the sides of the boxes of a published instance."""
+    items = mpv_instance(class_, n, index).problem.items
+    return [item.volume.hi[0].astype(int).tolist() for item in items]
 
 
 def problem(sizes, side, **rules):
@@ -45,10 +34,10 @@ def pack(task):
     return pack_extreme_points(task, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent)
 
 
-@pytest.mark.parametrize("kind", sorted(SIDE))
+@pytest.mark.parametrize("class_", CLASSES)
 @pytest.mark.parametrize("n", [50, 100, 200])
-def test_mean_builds_of_ten_instances(benchmark, kind, n):
-    tasks = [problem(instance(kind, n, index), SIDE[kind]) for index in range(1, 11)]
+def test_mean_builds_of_ten_instances(benchmark, class_, n):
+    tasks = [problem(boxes_of(class_, n, index), MPV_SIDE[class_]) for index in range(1, 11)]
     pack(tasks[0])
     packings = benchmark.pedantic(lambda: [pack(task) for task in tasks], rounds=1)
     assert all(check_packing(task, packing) == [] for task, packing in zip(tasks, packings, strict=True))
@@ -65,7 +54,7 @@ def test_three_thousand_small_boxes_on_plates(benchmark):
 
 
 def py3dbp_builds(sizes, side):
-    """Builds of `py3dbp`, which is kept from turning boxes by leaving it one rotation."""
+    """Return the number of builds of `py3dbp`; only the given orientation is allowed."""
     py3dbp = pytest.importorskip("py3dbp")
     importlib.import_module("py3dbp.constants").RotationType.ALL[:] = [0]
     left, builds = [py3dbp.Item(str(i), *size, 1) for i, size in enumerate(sizes)], 0
@@ -81,7 +70,7 @@ def py3dbp_builds(sizes, side):
 
 
 def packvium_builds(sizes, side):
-    """Builds of `packvium` with its balanced settings and one rotation; what it leaves out is packed again."""
+    """Return the number of builds of `packvium` with balanced settings; unplaced boxes are packed again."""
     packvium = pytest.importorskip("packvium")
     as_given = importlib.import_module("packvium.geometry").Rotation.all()[:1]
     room = packvium.Container.create("bin", packvium.Dimensions.mm(*map(str, (side,) * 3)))
@@ -99,7 +88,7 @@ def packvium_builds(sizes, side):
 
 
 def u_nesting_builds(sizes, side):
-    """Builds of `u-nesting` by its extreme points, one build after another."""
+    """Return the number of builds of `u-nesting` with extreme points, one build after another."""
     u_nesting = pytest.importorskip("u_nesting")
     room, left, builds = {"dimensions": [float(side)] * 3}, dict(enumerate(sizes)), 0
     while left:
@@ -114,12 +103,12 @@ def u_nesting_builds(sizes, side):
 
 
 @pytest.mark.parametrize("n", [50, 200])
-@pytest.mark.parametrize("kind", sorted(SIDE))
+@pytest.mark.parametrize("class_", CLASSES)
 @pytest.mark.parametrize("rival", [py3dbp_builds, packvium_builds, u_nesting_builds])
-def test_no_quick_rival_needs_fewer_builds(benchmark, rival, kind, n):
-    tasks = [instance(kind, n, index) for index in range(1, 11)]
-    theirs = benchmark.pedantic(lambda: [rival(sizes, SIDE[kind]) for sizes in tasks], rounds=1)
-    ours = [len(pack(problem(sizes, SIDE[kind])).builds) for sizes in tasks]
+def test_no_other_fast_packer_needs_fewer_builds(benchmark, rival, class_, n):
+    tasks = [boxes_of(class_, n, index) for index in range(1, 11)]
+    theirs = benchmark.pedantic(lambda: [rival(sizes, MPV_SIDE[class_]) for sizes in tasks], rounds=1)
+    ours = [len(pack(problem(sizes, MPV_SIDE[class_])).builds) for sizes in tasks]
     benchmark.extra_info["builds"], benchmark.extra_info["ours"] = (
         float(np.mean(theirs)),
         float(np.mean(ours)),

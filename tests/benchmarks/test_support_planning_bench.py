@@ -1,4 +1,4 @@
-"""Speed of planning supports, warm, on two cores: voxelising a full plate, and a ball from mesh to file.
+"""Time of planning supports after a warm-up, on two cores: voxelise a full plate, and process a ball from mesh to file.
 
 Run with ``pytest tests/benchmarks``.
 """

@@ -1,4 +1,4 @@
-"""How long the stages of support planning take on the scenes of the references; ratios are judged."""
+"""Time of the stages of support planning on named scenes; the ratios to other solvers have limits."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_route(benchmark, router, name, size):
 
 @pytest.mark.parametrize("router", ["push-relabel", "min-cost-flow"])
 @pytest.mark.parametrize("capacity", [1, 4])
-def test_route_a_jam(benchmark, router, capacity):
+def test_route_with_two_red_squares_that_cannot_be_connected(benchmark, router, capacity):
     task = support_scene("plate", SIDES["D"], capacity=capacity)
     plan = benchmark.pedantic(lambda: route(router, task), rounds=1, warmup_rounds=1)
     assert check_plan(task, plan) == []
@@ -41,14 +41,14 @@ def test_route_a_jam(benchmark, router, capacity):
 
 
 @pytest.mark.parametrize("name", ["ball", "two-balls"])
-def test_shortest_paths_gather_without_piling_up(name):
+def test_rerouting_merges_paths_without_exceeding_nine_per_square(name):
     (result,) = run_scene(["shortest-paths"], name, "E", capacity=0, seed=0)
     assert result.squares_final <= 0.45 * result.squares_initial
     assert result.max_paths_per_square <= 9
     assert result.peak_mb is None or result.peak_mb <= 1024
 
 
-def test_many_times_faster_than_or_tools_in_one_run():
+def test_routers_are_many_times_faster_than_or_tools_in_the_same_run():
     pytest.importorskip("ortools")
     results = run_scene(["push-relabel", "min-cost-flow"], "two-balls", "D", capacity=1, seed=0, rivals=True)
     times = {each.router: each.time_ratio for each in results if each.validated}

@@ -6,7 +6,7 @@ from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem
 
 
 def boxes_problem(sizes, room=(10, 10, 10), *, values=None, orientations=None, **rules):
-    """Each size is an item of one box, worth its volume unless said; `room` is its sides, one number a cube."""
+    """Return a problem of one box per size; values default to volumes, and one number for `room` means a cube."""
     values = [float(np.prod(size)) for size in sizes] if values is None else values
     turns = orientations or Orientations()
     items = tuple(
@@ -18,7 +18,7 @@ def boxes_problem(sizes, room=(10, 10, 10), *, values=None, orientations=None, *
 
 
 def cut(rng, size, count):
-    """Boxes that fill a room: the greatest is cut in two until there are `count`."""
+    """Return boxes that fill a container exactly: the largest one is cut in two until there are `count`."""
     boxes = [list(size)]
     while len(boxes) < count:
         box = boxes.pop(int(np.argmax([np.prod(b) for b in boxes])))
