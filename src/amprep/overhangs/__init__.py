@@ -1,1 +1,1 @@
-"""What needs support, which regions block or enforce it, and what stayed unsupported."""
+"""Overhangs of placed parts, with blockers and enforcers; contacts with supports; unsupported overhangs."""

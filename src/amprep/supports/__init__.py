@@ -1,1 +1,1 @@
-"""From overhangs to support bodies."""
+"""Plan supports and build their solids."""

@@ -141,7 +141,7 @@ def test_a_ceiling_in_a_closed_room_is_listed_as_enclosed():
     assert plan.reason_at(0, np.array([[15.0, 15.2, 9.0]])) == (ENCLOSED,)
 
 
-def test_an_overhang_right_above_material_is_listed_as_no_white_cube_below():
+def test_an_overhang_right_above_material_is_listed_as_no_free_voxel_below():
     slot = box((12, 12, 12), (10, 10, 0)) - box((6, 12, 0.5), (13, 10, 5.2))
     plan = layout(placed(slot))
     assert len(plan.red) == 0

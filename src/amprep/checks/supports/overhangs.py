@@ -278,7 +278,7 @@ def _around(points: Floats) -> list[Floats]:
 
 
 def _without_small_patches(samples: OverhangSamples, spacing: float, min_area: float) -> OverhangSamples:
-    """Leave out what blockers leave of faces where it may be smaller than the smallest area."""
+    """Remove the patches of samples, left over by blockers, that may be smaller than the smallest area."""
     from scipy.spatial import KDTree
 
     pairs = KDTree(samples.points).query_pairs(2.0 * spacing, output_type="ndarray")

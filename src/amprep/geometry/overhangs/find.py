@@ -19,7 +19,7 @@ from amprep.geometry.overhangs.tips import minimum_plateaus, tips_of
 
 
 class Modifiers(NamedTuple):
-    """Support modifiers: what must be supported, and what must not be.
+    """Support modifiers: triangles that must be supported, and triangles and vertices that must not be.
 
     Attributes
     ----------

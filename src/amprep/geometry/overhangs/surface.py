@@ -48,7 +48,7 @@ def merge_vertices(vertices: Floats, triangles: NDArray[Any]) -> Surface:
     new[1:] = (keys[order[1:]] != keys[order[:-1]]).any(axis=1)
     merged = np.empty(len(order), np.int64)
     merged[order] = np.cumsum(new) - 1
-    first = order[new]  # lexsort is stable: the least index of each position
+    first = order[new]  # lexsort is stable: the smallest index of each position
     corners = merged[triangles]
     sound = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     half_face = np.repeat(np.flatnonzero(sound), 3)

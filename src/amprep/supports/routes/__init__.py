@@ -1,1 +1,1 @@
-"""Routing of the support network."""
+"""Route the support network: routers, sharing between parts, columns on parts, cross-bracing."""

@@ -1,4 +1,4 @@
-"""Pose support problems on the grid of a build, and keep what the router answers."""
+"""Pose support problems on the grid of a build, call the router, and keep the reasons and notes of its plans."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -129,7 +129,7 @@ class SupportNetwork:
         return PosedProblem(problem, corner, number)
 
     def read(self, plan: SupportPlan, posed: PosedProblem, reds: Ints) -> SupportEdges:
-        """Note what a plan says about the requested red squares, and return its edges in the whole grid."""
+        """Keep the reasons and notes of a plan for the requested red squares; return its edges in the whole grid."""
         sentences = list(plan.notes)
         if plan.raised and self.rules.escalation != "none":
             sentences.append(f"capacities are raised by up to {plan.raised}, as supports.escalation allows")

@@ -64,7 +64,7 @@ def test_two_slender_columns_become_one_piece_by_struts_of_oblique_edges():
     assert pieces(SupportEdges.concatenate([edges, joined.edges])) == 1
 
 
-def test_struts_go_round_what_is_not_white_and_never_touch_other_parts_supports():
+def test_struts_go_round_voxels_that_are_not_free_and_never_touch_other_parts_supports():
     edges = SupportEdges.from_rows(column(4, 3, 30) + column(4, 8, 30))
     frame, voxels = grid((slice(None), slice(None), 5))
     assert add_cross_bracing(frame, voxels, edges, 8.0).alone == 2
