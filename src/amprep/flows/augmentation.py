@@ -1,4 +1,4 @@
-"""Augment a flow by a few units: beyond a jam, or after capacities have grown."""
+"""Augment a flow by a few units: beyond congestion, or after capacities have grown."""
 
 from functools import cached_property
 

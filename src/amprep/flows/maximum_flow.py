@@ -26,7 +26,7 @@ def maximise_flow(
 ) -> tuple[Bools, str]:
     """Raise a flow to a maximum flow; return the red squares that it connects, and why the loop ended.
 
-    Levels of 0 are valid for any flow, but slow for one that is jammed. So levels are set by a global relabel at
+    Levels of 0 are valid for any flow, but slow for a congested one. So levels are set by a global relabel at
     once if there is flow already, and again whenever the pushes since the last one have cost more than a relabel.
 
     Parameters

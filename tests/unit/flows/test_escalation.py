@@ -1,4 +1,4 @@
-"""Capacities that give way: on grids small enough to know the answer, and needed by scipy's greatest flow."""
+"""Escalation: on small grids with known answers, and necessary by scipy's maximum flow."""
 
 from dataclasses import replace
 

@@ -1,6 +1,6 @@
 """Kernel for augmentation: depth-first searches for paths to the plate, and the states that they reach.
 
-Strategy: a few units are missing from a maximum flow, because they lie beyond a jam or because capacities have
+Strategy: a few units are missing from a maximum flow, because the network is congested or capacities have
 grown. Each start searches the residual network depth first and sends a unit along the first path to the plate.
 A state that a search leaves without success stays closed to the searches after it, so all searches together
 look at each arc once. A later augmentation can open such a state again, so a path may be overlooked; but if

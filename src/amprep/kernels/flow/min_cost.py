@@ -5,7 +5,7 @@ residual network, so an arc's reduced cost ``cost + potential[head] - potential[
 paths over admissible arcs, whose reduced cost is 0, are shortest. A round of depth-first searches over admissible
 arcs sends as many units as it can. Then a search with buckets (Dial 1969, DOI 10.1145/363269.363610) from the
 starts that are left finds by how much the distance of the nearest exit has grown, and raises the potentials of
-only the states that it has visited: time grows with the jam, not with the grid. Kernels compare potentials
+only the states that it has visited: time grows with the congested region, not with the grid. Kernels compare potentials
 before capacities, because potentials rule out most arcs.
 """
 

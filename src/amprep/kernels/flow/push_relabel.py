@@ -2,7 +2,7 @@
 
 Strategy: every path down takes two arcs a plane, so the distance label of a state is its least number of arcs to
 the plate plus twice a level, and the level is the number of times that a path from the state has to go back up.
-Only levels are stored. They start at 0, so nothing is set for squares that the flow never jams. An arc is
+Only levels are stored. They start at 0, so nothing is set for squares without congestion. An arc is
 admissible if it leads down to a state of the same level, or up to a state of the level below.
 
 Active states are kept in buckets by level, and the lowest level is discharged first: flow that runs down freely
@@ -10,7 +10,7 @@ shows the other states which capacity is left. Two heuristics keep the number of
 becomes empty, all states above that gap are cut off from the plate; and from time to time all levels are set to
 their exact values by a search from the states with a free path (global relabelling). Excess that cannot reach
 the plate returns to the red squares plane by plane. A full phase takes O(states^2 * sqrt(arcs)) at most; on
-support networks the time grows with the squares in a jam.
+support networks the time grows with the congested squares.
 """
 
 from typing import NamedTuple

@@ -16,10 +16,10 @@ from amprep.plugins.routers.tree import route_tree
 TIGHT = 2
 """Capacity up to which gathering paths saves little, because so few may share an edge."""
 
-LARGE_JAM = 2_000_000
-"""Number of voxels up to which a least-cost flow in a jam takes seconds rather than minutes."""
+LARGEST_CONGESTED = 2_000_000
+"""Number of voxels up to which a congested least-cost flow takes seconds rather than minutes."""
 
-SMALL = 500_000
+LARGEST_SEARCHED = 500_000
 """Number of voxels up to which the search for the least material takes about a second."""
 
 
@@ -36,10 +36,10 @@ def choose(problem: SupportProblem) -> RouterChoice:
     voxels = f"{problem.voxels.size:,} voxels"
     if 0 < capacity <= TIGHT:
         few = f"with a capacity of {capacity} paths can hardly be gathered"
-        if problem.voxels.size <= LARGE_JAM:
+        if problem.voxels.size <= LARGEST_CONGESTED:
             return RouterChoice("min-cost-flow", f"{few}, so they are to be straight")
-        return RouterChoice("push-relabel", f"{few}, and {voxels} are many for a least-cost flow in a jam")
-    if problem.voxels.size <= SMALL:
+        return RouterChoice("push-relabel", f"{few}, and {voxels} are many for a congested least-cost flow")
+    if problem.voxels.size <= LARGEST_SEARCHED:
         return RouterChoice("tree", f"{voxels} are few enough to search for the least material")
     return RouterChoice("shortest-paths", f"it gathers paths quickly, and {voxels} are many for `tree`")
 

@@ -1,4 +1,4 @@
-"""The exact routers on grids small enough to know the answer, against networkx, and by their proof."""
+"""The exact routers on small grids with known answers, against networkx, and by their certificate."""
 
 from dataclasses import replace
 
@@ -159,8 +159,8 @@ def test_what_does_not_fit_through_a_hole_is_listed():
     assert (plan.objective, plan.bound, plan.status) == (2.0, 2.0, "optimal")
 
 
-def crowd():
-    """More red squares over a small hole in a high room than fit, after much pushing to and fro."""
+def congested():
+    """More red squares over a small hole than fit, in a high room: excess is pushed to and fro many times."""
     task = hanging((14, 9, 9), [(y, x) for y in range(9) for x in range(9)], node_capacity=1)
     voxels = task.voxels.copy()
     voxels[2] = Voxel.OCCUPIED
@@ -196,16 +196,16 @@ def test_more_paths_than_16_bits_count_meet_in_a_square():
 
 
 def test_relabelling_all_at_any_time_changes_nothing_in_the_value(monkeypatch):
-    assert len(route("push-relabel", crowd()).unconnected) == 72
+    assert len(route("push-relabel", congested()).unconnected) == 72
     monkeypatch.setattr(maximum_flow, "_EFFORT", 0.01)
-    assert len(route("push-relabel", crowd()).unconnected) == 72
+    assert len(route("push-relabel", congested()).unconnected) == 72
 
 
 def test_a_stopped_run_is_a_legal_plan(monkeypatch):
     monkeypatch.setattr(maximum_flow, "_EFFORT", 0.01)
     stop = Stop()
     stop.cancelled.set()
-    plan = route("push-relabel", crowd(), stop)
+    plan = route("push-relabel", congested(), stop)
     assert (plan.status, plan.stop_reason, plan.bound) == ("feasible", "interrupted", None)
 
 

@@ -1,4 +1,4 @@
-"""The routers `tree` and `auto`: never more material than the routers they start from; reasons that are told."""
+"""The routers `tree` and `auto`: no more material than the routers they start from; choices with reasons."""
 
 from dataclasses import replace
 
@@ -85,7 +85,7 @@ def test_parameters_out_of_bounds_are_refused(wrong):
 
 
 @pytest.mark.parametrize(
-    ("rules", "small", "jam", "expected"),
+    ("rules", "searched", "congested", "expected"),
     [
         ({}, 10**6, 10**6, "tree"),
         ({}, 10, 10**6, "shortest-paths"),
@@ -94,9 +94,9 @@ def test_parameters_out_of_bounds_are_refused(wrong):
         ({"edge_capacity": 3}, 10**6, 10**6, "tree"),
     ],
 )
-def test_auto_picks_by_size_and_capacity_and_says_so(monkeypatch, rules, small, jam, expected):
-    monkeypatch.setattr(auto, "SMALL", small)
-    monkeypatch.setattr(auto, "LARGE_JAM", jam)
+def test_auto_picks_by_size_and_capacity_and_says_so(monkeypatch, rules, searched, congested, expected):
+    monkeypatch.setattr(auto, "LARGEST_SEARCHED", searched)
+    monkeypatch.setattr(auto, "LARGEST_CONGESTED", congested)
     task = replace(support_scene("ball", 16), **rules)
     plan, chosen = route("auto", task), route(expected, task)
     assert plan.notes[0].startswith(f"auto chose the router {expected}: ")
