@@ -1,4 +1,4 @@
-"""Regions filled with cells: volumes known by hand, the part unchanged around them, nothing loose, powder found."""
+"""Filled regions have volumes known by hand; the part around them is unchanged, and trapped powder is found."""
 
 from pathlib import Path
 
@@ -93,7 +93,7 @@ def test_cells_of_files_fill_a_core(tmp_path):
     assert volumes["pin.toml"] == pytest.approx(4 * np.pi / 4 * 8, rel=0.1)
 
 
-def test_a_region_of_whole_cells_holds_whole_cells_that_reach_over_its_faces():
+def test_a_region_of_whole_cells_is_filled_with_whole_cells_that_extend_beyond_it():
     filled = fill_region(BLOCK, [CORE], POST, size=4.0)
     assert filled.count == 4**3, "2 x 2 x 2 of them in the region, and those that its faces touch"
     assert filled.cells_mm3 == pytest.approx(4 * 2 * 2 * 8)
@@ -104,7 +104,7 @@ def test_a_region_of_whole_cells_holds_whole_cells_that_reach_over_its_faces():
 
 @given(st.floats(1.0, 3.0), st.floats(3.0, 5.0), st.floats(3.0, 5.0), st.integers(0, 3))
 @examples(5)
-def test_promises_hold_wherever_the_region_and_the_grid_lie(corner, size, height, turns):
+def test_promises_hold_for_every_position_of_region_and_grid(corner, size, height, turns):
     region = Mesh(
         *arrays_of(Manifold.cube([7.3, 6.1, 13.0]).rotate([11 * turns, 7, 0]).translate([corner] * 3))
     )
@@ -118,7 +118,7 @@ def test_prisms_leave_the_part_as_it_was():
     assert filled.density == pytest.approx(1.0)
 
 
-def test_several_regions_are_one_and_what_sticks_out_of_the_part_stays_empty():
+def test_regions_are_united_and_their_volume_outside_the_part_stays_empty():
     regions = [box_mesh((-3, 2, 2), (9, 8, 8)), box_mesh((4, 2, 2), (12, 8, 8))]
     filled = fill_region(BLOCK, regions, POST, size=4.0)
     assert filled.region.signed_volume == pytest.approx(12 * 8 * 8)
@@ -126,14 +126,14 @@ def test_several_regions_are_one_and_what_sticks_out_of_the_part_stays_empty():
     assert judged(BLOCK, regions, filled) == []
 
 
-def test_pieces_that_nothing_holds_are_dropped_and_counted():
+def test_disconnected_components_are_dropped_and_counted():
     filled = fill_region(BLOCK, [CORE], FLOATING, size=4.0)
     assert (filled.dropped_components, filled.dropped_volume_mm3) == (8, pytest.approx(8 * 2**3))
     assert filled.mesh.signed_volume == pytest.approx(12**3 - 8**3)
     assert judged(BLOCK, [CORE], filled) == []
 
 
-def test_of_a_part_that_lies_in_the_region_altogether_the_largest_piece_stays():
+def test_of_a_part_completely_inside_the_region_the_largest_component_remains():
     region = box_mesh((-1, -1, -1), (14, 14, 14))
     filled = fill_region(BLOCK, [region], offered("bcc", diameter_mm=1.0), size=4.0)
     assert filled.mesh.signed_volume > 100
@@ -146,7 +146,7 @@ def test_cells_that_do_not_hold_a_part_together_are_found():
     assert [found.promise for found in judged(BLOCK, [cut], filled)] == [WHOLE]
 
 
-def test_the_judge_finds_what_is_wrong():
+def test_the_judge_finds_each_broken_promise():
     filled = fill_region(BLOCK, [CORE], POST, size=4.0)
 
     def broken(after):
@@ -160,7 +160,7 @@ def test_the_judge_finds_what_is_wrong():
     assert broken(BLOCK) == {CELLS}
 
 
-def test_what_cannot_be_filled_is_said():
+def test_regions_that_cannot_be_filled_are_refused():
     with pytest.raises(JobError, match="outside the part"):
         fill_region(BLOCK, [box_mesh((20, 0, 0), (5, 5, 5))], POST, size=4.0)
     with pytest.raises(JobError, match="at most 50000000 voxels"):
@@ -173,7 +173,7 @@ def test_what_cannot_be_filled_is_said():
         fill_region(BLOCK, [CORE], POST, size=4.0, beams=True)
 
 
-def test_powder_is_locked_in_by_a_closed_core_and_leaves_through_an_open_one():
+def test_a_closed_core_traps_powder_and_an_open_one_does_not():
     closed = fill_region(BLOCK, [CORE], POST, size=4.0)
     (pocket,) = pockets_of(closed.mesh, 0.3)
     assert pocket.closed
@@ -205,7 +205,7 @@ def test_the_inside_of_a_box_is_a_smaller_box_nowhere_nearer_than_the_shell():
     assert as_manifold(points, triangles).volume() == pytest.approx(9**3, rel=0.03)
 
 
-def test_what_is_thinner_than_two_shells_has_no_inside():
+def test_a_part_thinner_than_two_shells_has_no_inside():
     _, triangles = offset_inwards(np.array(BLOCK.vertices), BLOCK.triangles.astype(np.int64), 6.5, 2.0)
     assert len(triangles) == 0
 
@@ -231,7 +231,7 @@ def test_parts_written_come_back_as_they_were(tmp_path):
     )
 
 
-def test_modifiers_of_cura_mark_the_parts_that_they_lie_in():
+def test_modifiers_of_cura_mark_the_parts_that_contain_them():
     role = cura_role({(CURA_NAMESPACE, "infill_mesh"): "True"}, "core")
     assert (role.kind, role.name) == ("modifier", "core")
     assert cura_role({(CURA_NAMESPACE, "infill_mesh"): "False"}, "core") is None

@@ -72,7 +72,17 @@ def sample(nodes: Floats, struts: Ints, radii: Floats, step: float = 0.5) -> Bea
 
 
 def too_deep(points: Floats, vertices: Floats, triangles: Ints, depth: float) -> Bools:
-    """Tell which points are in a closed mesh together with the point `depth` mm below them."""
+    """Tell which points are in a closed mesh together with the point `depth` below them.
+
+    Parameters
+    ----------
+    points
+        ``(k, 3)`` mm.
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
+    depth
+        Permitted depth, mm.
+    """
     found = inside(points, vertices, triangles)
     within = np.flatnonzero(found)
     found[within] = inside(points[within] - (0.0, 0.0, depth), vertices, triangles)
@@ -105,7 +115,17 @@ def balls_too_deep(
 
 
 def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints) -> Bools:
-    """Tell which points may have a triangle within `reach` mm; all other points have none."""
+    """Tell which points may have a triangle within `reach`; all other points have none.
+
+    Parameters
+    ----------
+    points
+        ``(k, 3)`` mm.
+    reach
+        Distance, mm.
+    vertices, triangles
+        The mesh, ``(n, 3)`` mm and ``(m, 3)``.
+    """
     near = np.zeros(len(points), np.bool_)
     if not len(triangles) or not len(points):
         return near

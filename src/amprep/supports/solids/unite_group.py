@@ -166,7 +166,17 @@ def _top_area(points: Floats, triangles: Ints) -> float:
 
 
 def sheet_of(context: SupportContext, group: int, instances: CellInstances) -> Mesh | None:
-    """Return the walls without thickness of a support group, up to the overhangs; None when it has none."""
+    """Return the walls without thickness of a support group, up to the overhangs; None when it has none.
+
+    Parameters
+    ----------
+    context
+        Data of all groups.
+    group
+        Number of the group.
+    instances
+        Answer of the cell emitter.
+    """
     mine = instances.of(group) & instances.sheet
     cells, surfaces = instances.cells, context.surfaces
     sheets = [extra.mesh.arrays for extra in cells.extra if extra.group == group and extra.surface]

@@ -1,4 +1,4 @@
-"""The gap between supports and walls of parts: exact on shapes known by hand, against slices of solids."""
+"""The XY distance between supports and walls of parts is exact on shapes known by hand and on slices of solids."""
 
 from dataclasses import replace
 
@@ -77,7 +77,7 @@ def test_below_a_knife_edge_a_post_may_come_up_as_far_as_the_overlap():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_cut_off_is_all_that_is_nearer_to_a_solid_than_the_gap_in_its_own_plane(seed):
+def test_exactly_the_points_nearer_than_the_xy_distance_in_their_plane_are_cut_off(seed):
     """Against slices of a tumbled box, whose distance to a point is known by brute force; 2 % for the polygon."""
     rng = np.random.default_rng(seed)
     part = box((0, 0, 0), rng.uniform(1, 5, 3)).rotate(rng.uniform(0, 360, 3).tolist())
@@ -122,7 +122,7 @@ def wall_side(outlines, points):
     return inside
 
 
-def test_no_triangle_that_is_near_a_box_is_overlooked():
+def test_no_triangle_near_a_box_is_missed():
     rng = np.random.default_rng(0)
     corners = rng.uniform(0, 40, (300, 1, 3)) + rng.uniform(-2, 2, (300, 3, 3))
     lo = rng.uniform(0, 40, (40, 3))
@@ -136,7 +136,7 @@ def test_no_triangle_that_is_near_a_box_is_overlooked():
     assert not occupancy_of(lo[:0], hi[:0]).near(corners, GAP).any()
 
 
-def test_points_on_triangles_leave_no_place_farther_than_their_spacing():
+def test_points_on_triangles_are_nowhere_farther_apart_than_their_spacing():
     rng = np.random.default_rng(1)
     corners = rng.uniform(0, 3, (20, 3, 3))
     points = sample_triangles(corners, 0.3)
@@ -147,7 +147,7 @@ def test_points_on_triangles_leave_no_place_farther_than_their_spacing():
         assert nearest.max() < 0.3
 
 
-def test_walls_know_no_level_faces_none_held_and_none_that_look_up_where_supports_may_stand():
+def test_level_faces_overhangs_and_upper_faces_that_supports_stand_on_are_no_walls():
     mesh = mesh_of(TABLE)
     needs = find_overhangs(mesh.vertices, mesh.triangles, angle_deg=45.0)
     walls = walls_of(mesh.vertices, mesh.triangles, needs, 0.1)
@@ -162,7 +162,7 @@ def test_walls_know_no_level_faces_none_held_and_none_that_look_up_where_support
     assert isinstance(sides, PartWalls)
 
 
-def test_supports_that_nothing_trimmed_are_found_too_near_and_trimmed_ones_are_not():
+def test_the_judge_finds_unclipped_supports_and_accepts_clipped_ones():
     post, table = box((12, 9, 0), (15, 11, 10.1)), mesh_of(TABLE)
     build = build_of(post)
     assert len(check_xy_distance(build, Stop())) == 1

@@ -1,4 +1,4 @@
-"""Connectors fill the space below what they hold, up to the lowest face in the way, whatever lies above."""
+"""Connectors fill the space below overhangs up to the lowest face, whatever is above that."""
 
 from collections.abc import Sequence
 
@@ -26,7 +26,7 @@ ONE_COLUMN = ConnectorColumns(
 
 
 def tiles(count: int, height: float, *, side: float = 2.0, slope: float = 0.0) -> Floats:
-    """Return triangles that look down and cut a square from the origin into `count` x `count` tiles."""
+    """Return triangles that face down and divide a square into `count` x `count` tiles."""
     ends = np.linspace(0.0, side, count + 1)
     x, y = (each.ravel() for each in np.meshgrid(ends[:-1], ends[:-1]))
     step = side / count
@@ -39,13 +39,13 @@ _SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 def patches_of(layers: Sequence[Floats]) -> Patches:
-    """Return all triangles of several layers, cut to the one column."""
+    """Return the triangles of several layers, clipped to the one column."""
     corners = np.concatenate(list(layers))
     return clip_to_columns(ONE_COLUMN, corners, np.arange(len(corners)), np.array([True]))
 
 
 def volume_of(layers: Sequence[Floats]) -> float:
-    """Return the volume of connectors that hold all the layers; they overlap nowhere."""
+    """Return the volume of connectors that support all layers; they do not overlap."""
     patches = patches_of(layers)
     own = np.ones(len(patches.owner), np.bool_)
     meshes = connect(patches, patches, base=np.zeros(1), top=np.array([11.0]), overlap=OVERLAP, own=own)
@@ -54,13 +54,13 @@ def volume_of(layers: Sequence[Floats]) -> float:
     return float(union(solids).volume())
 
 
-def test_what_lies_above_the_lowest_layer_adds_nothing():
+def test_layers_above_the_lowest_add_nothing():
     lowest, above = tiles(2, 3.0), [tiles(3, 4.0), tiles(2, 5.0, slope=0.2)]
     assert volume_of([lowest, *above]) == pytest.approx(4.0 * (3.0 + OVERLAP), rel=1e-6)
 
 
-def test_columns_crowded_with_hidden_layers_hold_the_lowest():
-    """Forty layers of 18 triangles each: most are left out as hidden, and the volume stays."""
+def test_columns_with_many_hidden_layers_support_the_lowest():
+    """Forty layers of 18 triangles each: most are culled as hidden, and the volume is the same."""
     layers = [tiles(3, 1.0 + 0.2 * each, slope=0.05 * (each % 3)) for each in range(40)]
     assert sum(map(len, layers)) > 10 * connectors.MAX_PATCHES_UNCULLED
     assert volume_of(layers) == pytest.approx(4.0 * (1.0 + OVERLAP), rel=1e-5)
@@ -73,7 +73,7 @@ def test_columns_crowded_with_hidden_layers_hold_the_lowest():
         min_size=1, max_size=5,
     )
 )  # fmt: skip
-def test_connectors_reach_the_lowest_of_what_is_above_them(layers):
+def test_connectors_reach_the_lowest_face_above_them(layers):
     """The volume is the integral of the lower envelope, summed on a fine lattice."""
     ends = (np.arange(400) + 0.5) / 200
     x, y = np.meshgrid(ends, ends)
@@ -87,7 +87,7 @@ def test_connectors_reach_the_lowest_of_what_is_above_them(layers):
     assert volume_of(pieces) == pytest.approx(expected, rel=0.02)
 
 
-def test_patches_below_held_ones_are_found_and_only_those():
+def test_exactly_the_patches_below_supported_ones_are_found():
     held, surface = patches_of([tiles(1, 5.0, side=1.0)]), patches_of([tiles(1, 4.0), tiles(1, 6.0)])
     held = held._replace(owner=held.owner + (0, 100))
     lower = surface.owner[:, 1] < 2

@@ -1,4 +1,4 @@
-"""Surfaces with fewer triangles: closed, as many handles, near the old one, nothing locked moved."""
+"""Decimated meshes are closed, have the same genus, are near the original, and keep locked vertices."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from amprep.model import Mesh, Template
 FREE = np.zeros(100_000, np.int64)
 
 
-def test_of_a_finely_cut_box_hardly_more_than_its_corners_stay():
+def test_a_finely_divided_box_keeps_hardly_more_than_its_corners():
     points, triangles = arrays_of(Manifold.cube([1.0, 1.0, 1.0]).refine(5))
     corner = np.isin(points, (0.0, 1.0)).all(axis=1)
     own = np.where(corner, 1 << np.cumsum(corner), 0)  # a plane for each corner, so that all of them stay

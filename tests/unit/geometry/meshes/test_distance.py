@@ -1,4 +1,4 @@
-"""Distances of boxes, solids and triangles, with manifold3d and sampling as second opinions."""
+"""Distances of boxes, solids and triangles agree with manifold3d and with sampling."""
 
 import numpy as np
 import pytest
@@ -30,14 +30,14 @@ def test_near_pairs_are_those_whose_boxes_come_close_along_every_axis():
     assert near_pairs(lo, lo + 12, -1.5) == []
 
 
-def test_the_gap_of_boxes_is_euclidean_and_negative_by_the_depth():
+def test_the_distance_of_boxes_is_euclidean_and_minus_the_depth_if_they_overlap():
     one = np.zeros((1, 3)), np.ones((1, 3))
     assert box_distance(*one, np.full((1, 3), 2.0), np.full((1, 3), 3.0)) == pytest.approx(np.sqrt(3))
     assert box_distance(*one, np.array([[0.75, 0.5, 0.0]]), np.full((1, 3), 3.0)) == pytest.approx(-0.25)
     assert box_distance(*one, np.array([[1.0, 0.0, 0.0]]), np.full((1, 3), 3.0)) == 0.0
 
 
-def test_a_slab_is_as_thick_as_it_is():
+def test_the_thickness_of_a_slab_is_its_height():
     assert thickness(Manifold.cube([100, 100, 0.01])) == pytest.approx(0.01, rel=1e-3)
     assert thickness(Manifold()) == 0.0
 
@@ -51,7 +51,7 @@ def test_solids_are_as_far_apart_as_known():
 
 @examples(40)
 @given(st.integers(0, 10**6))
-def test_triangle_gap_agrees_with_manifold3d_on_solids_that_are_apart(seed):
+def test_triangle_distance_agrees_with_manifold3d_on_solids_that_are_apart(seed):
     rng = np.random.default_rng(seed)
     one = Manifold.hull_points(rng.uniform(0, 1, (8, 3)))
     other = Manifold.hull_points(rng.uniform(0, 1, (8, 3)) + rng.uniform(-1.5, 1.5, 3))

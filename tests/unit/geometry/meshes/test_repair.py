@@ -1,4 +1,4 @@
-"""Settling meshes: manifold3d judges, the shape stays, every change is reported."""
+"""Repair keeps the shape of meshes, reports every change, and accepts the solids that manifold3d accepts."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_a_good_mesh_stays_bit_for_bit_as_it_is():
     assert repaired.volume == pytest.approx(BALL_VOLUME, rel=1e-12)
 
 
-def test_separate_corners_become_shared_vertices_and_that_is_said():
+def test_equal_vertices_are_merged_and_reported():
     soup = CUBE[0][CUBE[1]].reshape(-1, 3)
     repaired = repair_mesh(soup, np.arange(36).reshape(-1, 3))
     assert len(repaired.vertices) == 8
@@ -61,7 +61,7 @@ def test_separate_corners_become_shared_vertices_and_that_is_said():
     assert repaired.notes == ("merged 28 vertices with others at the same place",)
 
 
-def test_degenerate_and_repeated_triangles_are_dropped_and_that_is_said():
+def test_degenerate_and_repeated_triangles_are_dropped_and_reported():
     extra = np.vstack([CUBE[1], [[0, 0, 1]], np.roll(CUBE[1][:1], 1, axis=1)])
     repaired = repair_mesh(CUBE[0], extra)
     assert repaired.notes == ("dropped 1 degenerate triangle", "dropped 1 repeated triangle")
@@ -74,7 +74,7 @@ def test_vertices_no_triangle_uses_do_not_stretch_the_box():
     assert repaired.vertices.max() == 1.0
 
 
-def test_an_inside_out_mesh_is_turned_and_that_is_said():
+def test_an_inside_out_mesh_is_turned_and_reported():
     repaired = repair_mesh(*inverted(BALL))
     assert repaired.notes == ("the mesh was inside out: turned",)
     assert repaired.volume == pytest.approx(BALL_VOLUME)
@@ -152,7 +152,7 @@ def test_many_shells_are_measured_in_short_time_and_overlaps_still_count_once():
     assert repaired.volume == pytest.approx(cells.sum())
 
 
-def test_where_too_many_shells_overlap_that_is_said(monkeypatch):
+def test_too_many_overlapping_shells_are_reported(monkeypatch):
     for module in (shells_module, solids_module):
         monkeypatch.setattr(module, "MAX_UNITED", 1)
     repaired = repair_mesh(*together(CUBE, scaled(CUBE, 1.0, (0.5, 0, 0))))
@@ -160,7 +160,7 @@ def test_where_too_many_shells_overlap_that_is_said(monkeypatch):
     assert "counts overlaps repeatedly" in repaired.notes[0]
 
 
-def test_a_seam_narrower_than_the_tolerance_is_sewn_and_that_is_said():
+def test_a_seam_narrower_than_the_tolerance_is_closed_and_reported():
     soup = CUBE[0][CUBE[1]].reshape(-1, 3)
     torn = soup + np.random.default_rng(1).uniform(-1e-5, 1e-5, soup.shape)
     repaired = repair_mesh(torn, np.arange(36).reshape(-1, 3))
@@ -191,7 +191,7 @@ def test_a_gap_wider_than_the_tolerance_is_not_closed():
         (CUBE[0] * [1, 1, 0], CUBE[1], "volume is zero"),
     ],
 )
-def test_what_is_no_solid_gets_a_reason_in_words(vertices, triangles, words):
+def test_a_mesh_that_is_not_a_solid_gets_a_reason(vertices, triangles, words):
     repaired = repair_mesh(vertices, triangles)
     assert words in repaired.problem
     assert "\n" not in repaired.problem
@@ -208,7 +208,7 @@ def test_the_place_of_a_hole_is_named():
     st.lists(st.lists(st.integers(0, 5), min_size=3, max_size=3), max_size=1),
     st.integers(0, 1000),
 )
-def test_what_manifold3d_accepts_is_never_refused(tetrahedra, more, seed):
+def test_a_mesh_that_manifold3d_accepts_is_never_rejected(tetrahedra, more, seed):
     """Tetrahedra over six points that often coincide; the oracle is manifold3d on the arrays as they come."""
     vertices = np.random.default_rng(seed).integers(0, 3, (6, 3)).astype(float)
     faces = [[p[0], p[2], p[1]] for p in tetrahedra] + [[p[0], p[1], p[3]] for p in tetrahedra]
@@ -224,13 +224,13 @@ def test_what_manifold3d_accepts_is_never_refused(tetrahedra, more, seed):
         assert again.status().name == "NoError"
 
 
-def test_a_settled_part_keeps_the_promise_and_an_unsettled_one_is_found_out():
+def test_a_repaired_part_keeps_the_promise_and_the_judge_finds_one_that_is_not():
     part = part_of(inverted(BALL))
     assert {violation.promise for violation in check_part(part)} == {"orientation", "volume"}
     assert check_part(repair_part(part, allow_surface=False)) == []
 
 
-def test_a_part_that_is_no_solid_is_refused_by_name_and_reason():
+def test_a_part_that_is_not_a_solid_is_refused_by_name_and_reason():
     with pytest.raises(MeshError, match=r"thing is not a solid: 3 edges .*--allow-surface"):
         repair_part(part_of((CUBE[0], CUBE[1][1:])), allow_surface=False)
 

@@ -1,4 +1,4 @@
-"""Flanges and rafts: as wide and high as asked, on the plate, apart from parts, zones and other supports."""
+"""Flanges and rafts have the sizes of the rules and keep their distance from parts, zones and other supports."""
 
 from functools import cache
 
@@ -124,7 +124,7 @@ def alone(base, cell="prism", space=PLAIN, at=20.0):
     return [solid_of(supports(parts, layout, each, cell, space)[0].mesh) for each in (BaseRules(), base)]
 
 
-def test_a_flange_widens_every_foot_by_the_width_asked_up_to_the_height_asked():
+def test_a_flange_widens_every_foot_by_its_margin_up_to_its_height():
     bare, wide = alone(FLANGE)
     feet, sole = bare.slice(0.4), wide.slice(0.4)
     assert (footprints.grown(feet, 1.49) - sole).area() < 1e-3
@@ -132,7 +132,7 @@ def test_a_flange_widens_every_foot_by_the_width_asked_up_to_the_height_asked():
     assert wide.slice(0.81).area() == pytest.approx(bare.slice(0.81).area(), rel=1e-4)
 
 
-def test_a_raft_is_one_pad_that_reaches_the_margin_beyond_all_feet():
+def test_a_raft_is_one_plate_with_a_margin_around_all_feet():
     bare, wide = alone(RAFT, "strut")
     feet, pad = bare.slice(0.02), wide.slice(0.25)
     assert feet.num_contour() > 1
@@ -166,15 +166,15 @@ def test_bases_end_at_the_build_volume_and_at_forbidden_zones(shape):
     assert low(solid_of(bodies[0].mesh), 0.5).bounding_box()[3] <= at + 9.0
 
 
-def test_what_parts_cut_off_from_all_feet_is_left_out():
-    """A wall on the plate runs through the pad; beyond it nothing is left."""
+def test_pieces_of_a_base_without_a_foot_are_dropped():
+    """A wall on the plate divides the raft; the piece beyond it is dropped."""
     parts = (placed("slab", box((20, 20, 10), (28, 28, 12))), placed("wall", box((29, 0, 0), (29.5, 60, 5))))
     layout = layout_of(parts)
     (body,) = supports(parts, layout, BaseRules("raft", raft_margin_mm=5.0, raft_height_mm=0.5))
     assert low(solid_of(body.mesh), 0.5).bounding_box()[3] == pytest.approx(29.0 - LEAST_GAP, abs=0.01)
 
 
-def test_a_pad_stays_below_no_part_that_hangs_lower_than_it_is_high():
+def test_there_is_no_raft_below_a_part_that_is_closer_than_its_height():
     part = placed("part", box((20, 20, 0.7), (28, 28, 3)))
     feet = mesh_of(box((21, 21, 0), (22, 22, 0.7)))
     (pad,) = make_bases(

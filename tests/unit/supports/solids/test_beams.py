@@ -1,4 +1,4 @@
-"""Beams: written, read back, kept out of parts, and judged together with the solids that they carry."""
+"""Beams are written, read back, clipped at parts, and judged together with the solids that they carry."""
 
 import zipfile
 from dataclasses import replace
@@ -46,7 +46,7 @@ def promises(build):
     return [violation.promise for violation in check_bodies(build, Stop())]
 
 
-def test_a_leg_that_stands_and_carries_a_plate_keeps_every_promise():
+def test_a_leg_on_the_plate_that_carries_a_solid_keeps_every_promise():
     assert promises(built(pin())) == []
 
 
@@ -80,7 +80,7 @@ def test_a_file_gives_the_beams_back(tmp_path):
     assert promises(read_build(path)) == []
 
 
-def test_lib3mf_reads_beams_strictly_as_a_solid_support_with_a_mesh_that_stands_in(tmp_path):
+def test_lib3mf_reads_beams_strictly_as_a_solid_support_with_a_representation_mesh(tmp_path):
     import lib3mf
 
     path = tmp_path / "beams.3mf"
@@ -111,7 +111,7 @@ def test_slicers_get_the_mesh(tmp_path, target, beams):
 
 
 @pytest.mark.parametrize(("wish", "kind"), [("support", b"solidsupport"), ("model", b"model")])
-def test_supports_are_of_the_type_asked_for(tmp_path, wish, kind):
+def test_supports_have_the_requested_type(tmp_path, wish, kind):
     build = built(pin())
     path = tmp_path / "beams.3mf"
     write_build(replace(build, settings=replace(build.settings, supports_as=wish)), path)
@@ -148,7 +148,7 @@ def test_beams_are_shortened_before_a_part_and_dropped_inside_it():
     assert max(x for x in apart.nodes[apart.struts, 0].ravel().tolist() if x < 30) <= 8.6
 
 
-def test_no_place_near_a_surface_is_missed():
+def test_no_point_near_a_surface_is_missed():
     rng = np.random.default_rng(0)
     mesh = box((10, 10, 10), (20, 20, 12))
     points = rng.uniform(5, 25, (5000, 3))
@@ -159,7 +159,7 @@ def test_no_place_near_a_surface_is_missed():
     assert not near[outside > 4.0].any()
 
 
-def test_places_run_from_end_to_end_with_the_radius_between():
+def test_balls_are_placed_from_end_to_end_with_interpolated_radii():
     places = sample(np.array([[0.0, 0, 0], [0, 0, 4]]), np.array([[0, 1]]), np.array([[1.0, 2.0]]))
     assert places.centres[:, 2].tolist() == pytest.approx(np.linspace(0, 4, 9).tolist())
     assert places.radii.tolist() == pytest.approx(np.linspace(1, 2, 9).tolist())

@@ -1,4 +1,4 @@
-"""Cells on small layouts: volumes known by hand, walls that part, and the judge of finished supports."""
+"""Cells on small layouts have volumes known by hand; the judge of finished supports finds each broken promise."""
 
 from dataclasses import replace
 
@@ -90,7 +90,7 @@ def test_neighbouring_x_walls_meet_only_in_every_third_layer():
     assert pieces == [2, 2, 1, 2, 2, 1]
 
 
-def test_the_wall_s_thickness_gives_the_cross_section_of_the_x():
+def test_the_wall_thickness_gives_the_cross_section_of_the_x():
     """Two strips of width t along the diagonals of a square s, clipped to it: 2 t d - t^2 - t^2, d = s sqrt 2."""
     wall, side = 0.3, 2.0
     area = solid_of("x-wall", request_of(column(3)), wall_mm=wall).slice(5.0).area()
@@ -152,11 +152,11 @@ def test_a_part_that_a_body_does_not_hold_may_not_be_entered_at_all():
 
 
 def test_contact_along_a_steep_wall_is_no_penetration():
-    """The wall is entered sideways by less than the contact tolerance, over its whole height."""
+    """The wall is entered horizontally by less than the contact tolerance, over its whole height."""
     assert broken(build_of(box((30 - 0.0009, 15, 0), (32, 17, 15)))) == set()
 
 
-def test_a_floating_piece_and_a_void_inside_a_piece_are_told_apart():
+def test_a_floating_component_and_a_void_are_distinguished():
     outer, void = box((0, 0, 0), (4, 4, 4)), box((1, 1, 1), (2, 2, 2))
     hollow = Mesh(
         np.vstack([outer.vertices, void.vertices]),
@@ -173,7 +173,7 @@ def test_a_floating_piece_and_a_void_inside_a_piece_are_told_apart():
     assert Mesh(points, triangles).signed_volume == pytest.approx(64 - 1)
 
 
-def test_carving_leaves_the_overlap_in_what_is_held_and_nothing_in_others():
+def test_subtracting_parts_leaves_the_overlap_in_held_parts_and_nothing_in_others():
     mesh = box((15, 15, 0), (17, 17, 12))
     post = as_manifold(mesh.vertices, mesh.triangles.astype(np.int64))
     build = build_of()

@@ -1,4 +1,4 @@
-"""Connectors of every kind hold true surfaces exactly; teeth, points, necks and windows measure what they should."""
+"""Connectors of every kind end in the true surface; tips, necks and openings have the sizes of the rules."""
 
 from functools import cache
 
@@ -144,7 +144,7 @@ def test_the_judge_finds_a_red_square_without_contact():
 @pytest.mark.parametrize(
     ("cell", "shape"), [("x-wall", "bracket"), ("strut", "bracket"), ("bcc", "slab"), ("hatch", "slab")]
 )
-def test_teeth_and_points_stand_on_every_cell(cell, shape):
+def test_teeth_and_points_fit_every_cell(cell, shape):
     for kind in ("necked teeth", "point") if cell != "hatch" else ("point",):
         assert judged(shape, supports(shape, KINDS[kind], cell)) == []
 
@@ -186,7 +186,7 @@ def flat(connector):
     return solid_of(support.mesh)
 
 
-def test_teeth_have_the_pitch_and_width_asked_and_stand_on_shoulders():
+def test_teeth_have_the_pitch_and_width_of_the_rules_and_are_on_shoulders():
     teeth = flat(ConnectorRules("teeth", 1.0, 0.4, 0.7))
     bounds, areas = sections(teeth, 9.9)
     assert len(areas) == 64
@@ -208,7 +208,7 @@ def test_teeth_have_the_pitch_and_width_asked_and_stand_on_shoulders():
         (ConnectorRules("point", point_mm=0.6, point_height_mm=1.0, neck_mm=0.3, neck_height_mm=0.3), 16),
     ],
 )
-def test_necks_have_the_diameter_asked_at_the_height_asked(connector, count):
+def test_necks_have_the_width_and_height_of_the_rules(connector, count):
     solid = flat(connector)
     bounds, areas = sections(solid, 9.9 - connector.neck_height_mm)
     assert len(areas) == count
@@ -219,7 +219,7 @@ def test_necks_have_the_diameter_asked_at_the_height_asked(connector, count):
         assert around.min() > 1.1 * areas.max()
 
 
-def test_points_are_round_and_as_many_as_asked():
+def test_points_are_round_and_have_the_pitch_of_the_rules():
     for pitch, count in ((None, 16), (1.0, 64)):
         _, areas = sections(
             flat(ConnectorRules("point", point_pitch_mm=pitch, point_mm=0.5, point_height_mm=0.8)), 9.9
@@ -227,7 +227,7 @@ def test_points_are_round_and_as_many_as_asked():
         assert areas == pytest.approx(np.full(count, 3.0 * 0.25**2), rel=1e-3)  # of twelve sides
 
 
-def test_windows_go_straight_through_and_leave_posts():
+def test_openings_go_straight_through_and_leave_posts():
     """Two rows of diamonds fit below the slab; lines through their middles meet nothing."""
     whole, pierced = flat(ConnectorRules()), flat(ConnectorRules(perforation_mm=0.6))
     tall = 0.6 * np.tan(np.radians(55.0))
@@ -242,7 +242,7 @@ def test_windows_go_straight_through_and_leave_posts():
     assert len(pierced.decompose()) == len(whole.decompose())
 
 
-def test_a_point_stands_at_the_lowest_spot_of_its_square():
+def test_a_point_is_at_the_lowest_spot_of_its_square():
     """Below a ball that hangs over the middle of a square, not over its centre."""
     low = body("ball", "point") ^ Manifold.cube((4.0, 4.0, 0.2)).translate((13.3, 12.9, 3.02))
     middle = np.array(low.bounding_box()).reshape(2, 3).mean(axis=0)[:2]
