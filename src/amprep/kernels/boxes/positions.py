@@ -227,13 +227,8 @@ def choose(
     standing
         Number of obstacles in the build.
     """
-    placed, points, cursor, best = state.placed, state.points, state.cursor, state.best
-    candidates, orientations, boxes, room = (
-        state.candidates,
-        instance.orientations,
-        instance.boxes,
-        instance.room,
-    )
+    placed, points, _, candidates, _, cursor, best, _ = state
+    orientations, boxes, room = instance.orientations, instance.boxes, instance.room
     count = cursor[PLACED]
     own = (instance.first_box[orientation], instance.first_box[orientation + 1])
     simple = rule[MERIT_OF] == LOW or rule[MERIT_OF] == CENTRE

@@ -146,16 +146,15 @@ def _remember_build(build: int, items: Int64s, arrangement: Arrangement, met: Me
 
 
 @helper
-def _choose_builds(count: int, builds: int, state: SearchState) -> None:
-    """Write `count` different builds to `state.chosen`.
+def _choose_builds(count: int, builds: int, random: NDArray[np.uint64], chosen: Int64s) -> None:
+    """Write `count` different builds to `chosen`.
 
     Build 0 comes first when it is among them: obstacles of the first build are in the first build of a pass.
     """
-    chosen = state.chosen
     for i in range(count):
         again = True
         while again:
-            chosen[i] = int(_random(state.random) * builds)
+            chosen[i] = int(_random(random) * builds)
             again = False
             for j in range(i):
                 again = again or chosen[j] == chosen[i]
@@ -202,7 +201,7 @@ def search(
     fixed = instance.obstacles.shape[0] > instance.zones
     while spent[SPENT] < last:
         ruined = min(builds, 1 + int(_random(random) * ruin_size))
-        _choose_builds(ruined, builds, state)
+        _choose_builds(ruined, builds, random, chosen)
         row = int(_random(random) * keys.shape[0])
         noise = 1.2 * _random(random)
         unassigned_first = _random(random) < 0.3
