@@ -39,9 +39,9 @@ def scene(name, **rules):
     red[0] = False
     red[1:] &= voxels[:-1] == Voxel.FREE
     red = np.argwhere(red)
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
     nothing = np.zeros(len(red), np.int32)
-    return SupportProblem(frame, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, **rules)
+    return SupportProblem(grid, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, **rules)
 
 
 @pytest.mark.parametrize("router", ROUTERS)

@@ -17,8 +17,8 @@ def problem(voxels, red, **rules):
     voxels = np.asarray(voxels, np.uint8)
     red = np.array(red, np.int32).reshape(-1, 3)
     nothing = np.zeros(len(red), np.int32)
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
-    return SupportProblem(frame, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, **rules)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    return SupportProblem(grid, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, **rules)
 
 
 def hanging(shape, squares, **rules):

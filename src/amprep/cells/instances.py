@@ -82,36 +82,36 @@ def expand_cells(
         Thickness of the plates, mm.
     """
     cells, request = instances.cells, instances.request
-    frame, index = request.frame, np.flatnonzero(chosen & instances.tiles)
+    grid, index = request.grid, np.flatnonzero(chosen & instances.tiles)
     edge, template = cells.edge[index], cells.template[index].astype(np.int64)
     square = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 1)
     shift = np.array(DIRECTIONS, np.int64)[request.edges.direction[edge]][:, ::-1]
     if len(edge) and instances.whole[template].all():
-        yield unite_prisms(square, shift, frame.origin, _voxel_size(frame))
+        yield unite_prisms(square, shift, grid.origin, _voxel_size(grid))
         template, square, shift = template[:0], square[:0], shift[:0]
     if plates is not None and len(plates):
         below = plates[:, ::-1].astype(np.int64) - (0, 0, 1)
-        plate = instances.contents.plate(thickness / frame.step)
+        plate = instances.contents.plate(thickness / grid.step)
         template = np.concatenate([template, np.full(len(below), plate)])
         square, shift = np.concatenate([square, below]), np.concatenate([shift, np.zeros_like(below[:, :2])])
     if len(template):
-        yield from _united(instances.contents, template, square, shift, frame)
+        yield from _united(instances.contents, template, square, shift, grid)
     for other in np.flatnonzero(chosen & ~instances.tiles):
         one = np.array([cells.template[other]]), cells.matrix[other : other + 1]
         points, triangles, _ = expand(instances.templates, *one)
         yield points, triangles
 
 
-def _voxel_size(frame: Grid) -> np.ndarray:
-    return np.array([frame.pitch, frame.pitch, frame.step])
+def _voxel_size(grid: Grid) -> np.ndarray:
+    return np.array([grid.pitch, grid.pitch, grid.step])
 
 
 def _united(
-    contents: ContentsTable, template: Int64s, square: Int64s, shift: Int64s, frame: Grid
+    contents: ContentsTable, template: Int64s, square: Int64s, shift: Int64s, grid: Grid
 ) -> Iterator[MeshArrays]:
     """Yield the union of cells as one closed mesh; where the array union fails, one or two meshes a direction."""
-    size = _voxel_size(frame)
-    united = unite_cells(contents, template, square, shift, frame.origin, size)
+    size = _voxel_size(grid)
+    united = unite_cells(contents, template, square, shift, grid.origin, size)
     if united is not None:
         yield round_as_stored(united[0]), united[1]
         return
@@ -119,8 +119,8 @@ def _united(
         own = (shift == each).all(axis=1)
         matrix = np.zeros((int(own.sum()), 3, 4))
         matrix[:, [0, 1, 2], [0, 1, 2]] = size
-        matrix[:, :2, 2] = -each * frame.pitch
-        matrix[:, :, 3] = frame.origin + (square[own] + (*each, 0)) * size
+        matrix[:, :2, 2] = -each * grid.pitch
+        matrix[:, :, 3] = grid.origin + (square[own] + (*each, 0)) * size
         # consecutive cells of one direction form a column of tiles under the same shear
         place = square[own] + np.outer(square[own, 2], (*each, 0))
         yield from tile(contents.templates, Tiles(template[own], place, matrix))

@@ -53,7 +53,7 @@ def cell_offer(
     def emit(request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
         from amprep.cells.emission import emit_declared
 
-        made = declare(request.frame.pitch, request.frame.step, params)
+        made = declare(request.grid.pitch, request.grid.step, params)
         return emit_declared(made, request, solid=getattr(params, "solid", True))
 
     def material(pitch: float, step: float, params: Any) -> tuple[float, float]:

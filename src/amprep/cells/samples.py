@@ -23,8 +23,8 @@ def single_column(pitch: float, step: float, direction: int) -> CellRequest:
     dy, dx = DIRECTIONS[direction]
     plane = np.arange(2, LAYERS + 2)
     side = LAYERS + 4
-    frame = Grid(np.zeros(3), pitch, step, (LAYERS + 2, 2 * side, 2 * side))
-    return _request(frame, plane, side - dy * plane, side - dx * plane, direction, Role.TRUNK)
+    grid = Grid(np.zeros(3), pitch, step, (LAYERS + 2, 2 * side, 2 * side))
+    return _request(grid, plane, side - dy * plane, side - dx * plane, direction, Role.TRUNK)
 
 
 def block(
@@ -44,14 +44,14 @@ def block(
     dy, dx = DIRECTIONS[direction]
     plane, y, x = np.array(list(product(range(1, layers + 1), range(width), range(width)))).T
     start = layers + 1
-    frame = Grid(np.zeros(3), pitch, step, (layers + 1, width + 2 * start, width + 2 * start))
+    grid = Grid(np.zeros(3), pitch, step, (layers + 1, width + 2 * start, width + 2 * start))
     role = np.where(plane == 1, Role.FOOT, Role.TRUNK)
-    return _request(frame, plane, start + y - dy * plane, start + x - dx * plane, direction, role)
+    return _request(grid, plane, start + y - dy * plane, start + x - dx * plane, direction, role)
 
 
 def _request(
-    frame: Grid, plane: np.ndarray, y: np.ndarray, x: np.ndarray, direction: int, role: np.ndarray | int
+    grid: Grid, plane: np.ndarray, y: np.ndarray, x: np.ndarray, direction: int, role: np.ndarray | int
 ) -> CellRequest:
     one = np.ones_like(plane)
     edges = SupportEdges(plane, y, x, one * direction, flow=one, capacity=one, group=0 * one)
-    return CellRequest(frame, edges, one * role)
+    return CellRequest(grid, edges, one * role)

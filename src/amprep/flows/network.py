@@ -63,7 +63,7 @@ def cost_overflow(problem: SupportProblem) -> JobError:
 
 def build_network(problem: SupportProblem) -> tuple[FlowNetwork, Int64s]:
     """Return the network up to the highest red square, and the number of each red square in it."""
-    _, ny, nx = problem.frame.shape
+    _, ny, nx = problem.grid.shape
     width, stride = nx + 2, (nx + 2) * (ny + 2)
     top = int(problem.red[:, 0].max(initial=0))
     free = np.zeros((top + 1, ny + 2, width), np.uint8)
@@ -78,7 +78,7 @@ def build_network(problem: SupportProblem) -> tuple[FlowNetwork, Int64s]:
 
 def _boxes(problem: SupportProblem, top: int) -> Int64s:
     """Return the rectangle that paths can reach in each plane: one square wider with every plane down."""
-    _, ny, nx = problem.frame.shape
+    _, ny, nx = problem.grid.shape
     box = np.full((top + 1, 4), (ny + 1, 0, nx + 1, 0), np.int64)
     plane, y, x = problem.red.T
     for column, values in ((0, y), (2, x)):

@@ -66,7 +66,7 @@ def block_over(region: Mesh, *, size: float, height: float, overlap: float, part
     shape = tuple(
         int(each.max(initial=0) - low + 1) for each, low in zip((layer, y, x), first[::-1], strict=True)
     )
-    frame = Grid(origin + first * cell, size, height, (shape[0], shape[1], shape[2]))
+    grid = Grid(origin + first * cell, size, height, (shape[0], shape[1], shape[2]))
     one = np.ones_like(x)
     edges = SupportEdges(
         layer - first[2] + 1,
@@ -78,7 +78,7 @@ def block_over(region: Mesh, *, size: float, height: float, overlap: float, part
         group=0 * one,
     )
     return CellRequest(
-        frame,
+        grid,
         edges,
         np.full(len(x), Role.TRUNK, np.uint8),
         (part,),

@@ -28,7 +28,7 @@ class CellRequest:
 
     Attributes
     ----------
-    frame
+    grid
         Grid of the supports.
     edges
         ``n`` edges with their flow (number of paths) and their support group. A connector edge is vertical, and its
@@ -52,7 +52,7 @@ class CellRequest:
         If there are not as many roles as edges.
     """
 
-    frame: Grid
+    grid: Grid
     edges: SupportEdges
     role: Bytes
     parts: tuple[Mesh, ...] = ()
@@ -71,14 +71,14 @@ class CellRequest:
     @cached_property
     def matrices(self) -> Floats:
         """``(n, 3, 4)``, unit cube to the upright or sheared prism of each edge in build coordinates (thesis 3.5)."""
-        frame, edges = self.frame, self.edges
+        grid, edges = self.grid, self.edges
         dy, dx = np.array(DIRECTIONS, np.float64)[edges.direction].T
         matrices = np.zeros((len(edges), 3, 4))
-        matrices[:, 0, 0] = matrices[:, 1, 1] = frame.pitch
-        matrices[:, 2, 2] = frame.step
-        matrices[:, 0, 2], matrices[:, 1, 2] = -dx * frame.pitch, -dy * frame.pitch
+        matrices[:, 0, 0] = matrices[:, 1, 1] = grid.pitch
+        matrices[:, 2, 2] = grid.step
+        matrices[:, 0, 2], matrices[:, 1, 2] = -dx * grid.pitch, -dy * grid.pitch
         lower = np.column_stack([edges.x + dx, edges.y + dy, edges.plane - 1.0])
-        matrices[:, :, 3] = frame.origin + lower * (frame.pitch, frame.pitch, frame.step)
+        matrices[:, :, 3] = grid.origin + lower * (grid.pitch, grid.pitch, grid.step)
         return frozen(matrices, np.float64)
 
 

@@ -148,7 +148,7 @@ def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported
 
 
 def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedSquare, ...]:
-    frame, records = layout.frame, []
+    grid, records = layout.grid, []
     for index in (~layout.connected).nonzero()[0].tolist():
         plane, y, x = (int(value) for value in layout.red[index])
         label = supported.build.parts[int(layout.red_part[index])].label
@@ -159,9 +159,9 @@ def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[Unco
                 layout.reasons[index],
                 (plane, y, x),
                 (
-                    float(frame.origin[0] + (x + 0.5) * frame.pitch),
-                    float(frame.origin[1] + (y + 0.5) * frame.pitch),
-                    float(frame.origin[2] + plane * frame.step),
+                    float(grid.origin[0] + (x + 0.5) * grid.pitch),
+                    float(grid.origin[1] + (y + 0.5) * grid.pitch),
+                    float(grid.origin[2] + plane * grid.step),
                 ),
             )
         )

@@ -20,8 +20,8 @@ class SupportLayout:
 
     Attributes
     ----------
-    frame
-        The grid.
+    grid
+        Position and size of the voxels.
     voxels
         ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Voxel`.
     meshes
@@ -54,7 +54,7 @@ class SupportLayout:
         ``(k, 5)`` int32: columns that end on a part; see `amprep.supports.routes.on_part.Grounded`.
     """
 
-    frame: Grid
+    grid: Grid
     voxels: Bytes
     meshes: tuple[Mesh, ...]
     overhangs: tuple[Overhangs, ...]
@@ -94,8 +94,8 @@ class SupportLayout:
         reds = np.flatnonzero(self.red_part == part)
         key = self._heights(self.red[reds])
         order = np.argsort(key)
-        size = (self.frame.pitch, self.frame.pitch, self.frame.step)
-        voxel = np.floor((points - self.frame.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
+        size = (self.grid.pitch, self.grid.pitch, self.grid.step)
+        voxel = np.floor((points - self.grid.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
         below = np.searchsorted(key[order], self._heights(voxel), side="right") - 1
         reasons = [NO_FREE_VOXEL_BELOW] * len(points)
         for i in np.flatnonzero(below >= 0):
@@ -107,7 +107,7 @@ class SupportLayout:
 
     def _heights(self, square: Ints | Int64s) -> Int64s:
         """Return numbers that order squares ``(n, 3)`` by column, and upwards in each column."""
-        nz, _, nx = self.frame.shape
+        nz, _, nx = self.grid.shape
         plane, y, x = square.T.astype(np.int64)
         return np.asarray((y * nx + x) * (nz + 2) + np.clip(plane, 0, nz + 1), np.int64)
 

@@ -126,7 +126,7 @@ def _layout(
     red_group, edge_group, group_parts = groups_of(supports.edges, laid.red, connected, len(parts))
     shared = [", ".join(parts[part].label for part in group) for group in group_parts if len(group) > 1]
     return SupportLayout(
-        frame=laid.grid,
+        grid=laid.grid,
         voxels=laid.voxels,
         meshes=tuple(each.mesh for each in overhangs),
         overhangs=tuple(each.overhangs for each in overhangs),

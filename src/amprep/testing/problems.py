@@ -149,5 +149,5 @@ def _support_problem(voxels: np.ndarray) -> SupportProblem:
     occupied, free = voxels == Voxel.OCCUPIED, voxels == Voxel.FREE
     red = np.argwhere(occupied[1:] & free[:-1]) + np.array([1, 0, 0])
     zeros = np.zeros(len(red), np.int32)
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
-    return SupportProblem(frame, voxels, red, zeros, zeros, free[0])
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    return SupportProblem(grid, voxels, red, zeros, zeros, free[0])

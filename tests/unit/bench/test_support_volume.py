@@ -35,9 +35,9 @@ def test_straight_columns_are_a_valid_plan_for_the_squares_with_a_free_column_be
     nothing = np.zeros(4, np.int32)
     keep = free_below(voxels, RedSquares(square, nothing, nothing, nothing))
     assert keep.tolist() == [False, True, True, False], "the first has a part below, the last is on the plate"
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
     problem = SupportProblem(
-        frame, voxels, square[keep], nothing[keep], nothing[keep], voxels[0] == Voxel.FREE
+        grid, voxels, square[keep], nothing[keep], nothing[keep], voxels[0] == Voxel.FREE
     )
     plan = straight_columns(problem, Stop(), silent)
     assert check_plan(problem, plan) == []

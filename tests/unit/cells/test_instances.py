@@ -18,8 +18,8 @@ def emitted(cell, seed, count=30, **params):
     rows = np.unique(rng.integers([1, 2, 2, 0], [4, 6, 6, 5], (count, 4)), axis=0)
     plane, y, x, direction = rows.T
     one = np.ones(len(rows))
-    frame = Grid(np.zeros(3), 2.0, 2.0, (12, 9, 9))
-    request = CellRequest(frame, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
+    grid = Grid(np.zeros(3), 2.0, 2.0, (12, 9, 9))
+    request = CellRequest(grid, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
     host = Host.load(plugins_enabled=False)
     listed = host.choose("cell", cell)
     return classify(

@@ -17,7 +17,7 @@ def request(low, high, size, height, overlap=0.1):
 
 def boxes(made):
     """Return the least and greatest corner of each cell."""
-    grid, edges = made.frame, made.edges
+    grid, edges = made.grid, made.edges
     size = np.array([grid.pitch, grid.pitch, grid.step])
     low = grid.origin + np.column_stack([edges.x, edges.y, edges.plane - 1]) * size
     return low, low + size

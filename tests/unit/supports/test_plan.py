@@ -62,7 +62,7 @@ def layout(parts, space=SPACE, **settings):
 
 def columns(plan):
     """Red squares as ``(plane, y, x)`` in whole-volume indices."""
-    x0, y0, _ = np.round(plan.frame.origin / plan.frame.pitch).astype(int)
+    x0, y0, _ = np.round(plan.grid.origin / plan.grid.pitch).astype(int)
     return {(p, y + y0, x + x0) for p, y, x in plan.red.tolist()}
 
 
@@ -78,7 +78,7 @@ def test_a_table_has_a_red_square_under_every_cube_of_its_slab_beside_the_leg():
     assert set(plan.red_rise.tolist()) == {1}
     assert plan.group_parts == ((0,),)
     assert set(plan.edges.group.tolist()) == {0}
-    assert plan.frame.shape[0] == 11  # no higher than the highest overhang's voxel
+    assert plan.grid.shape[0] == 11  # no higher than the highest overhang's voxel
 
 
 def test_what_lies_in_the_layer_on_the_plate_is_connected_directly():
@@ -251,7 +251,7 @@ def test_notes_say_what_the_router_says_that_capacities_are_raised_and_that_time
 def test_cubes_outside_the_build_volume_are_closed():
     drum = BuildVolume([40, 40, 40], shape="cylinder")
     plan = layout(placed(box((20, 20, 2), (10, 10, 20))), space=drum)
-    x0, y0, _ = plan.frame.origin
+    x0, y0, _ = plan.grid.origin
     for y, x in np.ndindex(plan.voxels.shape[1:]):
         far = max(np.hypot(x0 + x + i - 20, y0 + y + j - 20) for i in (0, 1) for j in (0, 1))
         assert (plan.voxels[0, y, x] == Voxel.CLOSED) == (far > 20.001)
@@ -260,7 +260,7 @@ def test_cubes_outside_the_build_volume_are_closed():
 def test_forbidden_zones_are_closed_and_gone_round():
     zone = {"zone_lo": [[12, 12, 0]], "zone_hi": [[18, 18, 5.5]]}
     plan = layout(placed(box((4, 4, 2), (13, 13, 20))), space=BuildVolume([60, 60, 60], **zone))
-    x0, y0, _ = plan.frame.origin.astype(int)
+    x0, y0, _ = plan.grid.origin.astype(int)
     closed = np.zeros(plan.voxels.shape, bool)
     closed[0:6, 12 - y0 : 18 - y0, 12 - x0 : 18 - x0] = True
     assert ((plan.voxels == Voxel.CLOSED) == closed).all()
@@ -270,16 +270,16 @@ def test_forbidden_zones_are_closed_and_gone_round():
 def test_the_grid_ends_inside_the_box_and_is_shifted_to_a_wall_where_a_part_stands():
     space = BuildVolume([40.5, 60, 60])
     plan = layout(placed(box((10, 10, 2), (30.5, 20, 10))), space=space)
-    end = plan.frame.origin[0] + plan.frame.shape[2] * plan.frame.pitch
+    end = plan.grid.origin[0] + plan.grid.shape[2] * plan.grid.pitch
     assert end == pytest.approx(40.5)
     assert len(plan.red) == 100
     assert plan.connected.all()
     free = layout(placed(box((10, 10, 2), (20, 20, 10))), space=space)
-    assert free.frame.origin[0] + free.frame.shape[2] * free.frame.pitch <= 40.5
+    assert free.grid.origin[0] + free.grid.shape[2] * free.grid.pitch <= 40.5
 
 
 def test_the_strut_angle_sets_the_step():
-    assert layout(placed(TABLE), strut_angle_deg=60.0).frame.step == pytest.approx(np.sqrt(3))
+    assert layout(placed(TABLE), strut_angle_deg=60.0).grid.step == pytest.approx(np.sqrt(3))
 
 
 def test_a_part_may_have_its_own_angle_or_no_supports():
@@ -313,7 +313,7 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
     slab = box((14, 4, 2), (32, 28, 20))
     free, kept = (layout(placed(post + slab), gap_mm=gap) for gap in (0.0, 2.0))
     assert free.connected.all()
-    x0, y0, _ = kept.frame.origin.astype(int)
+    x0, y0, _ = kept.grid.origin.astype(int)
     x, y = kept.edges.x + x0, kept.edges.y + y0
     low = kept.edges.plane <= 15
     assert ((x[low] >= 34) | (y[low] < 26) | (y[low] >= 34)).all()

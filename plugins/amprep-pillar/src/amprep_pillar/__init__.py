@@ -47,7 +47,7 @@ def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, prog
     Consecutive pillars have the same octagon where they meet, on oblique edges too: the matrices shear the unit cube
     sideways and leave its horizontal faces as they are.
     """
-    pitch, count = request.frame.pitch, len(request.edges)
+    pitch, count = request.grid.pitch, len(request.edges)
     if params.diameter_mm > pitch:
         raise JobError(
             f"pillar: diameter_mm must be at most the pitch of {pitch:.4g} mm, got {params.diameter_mm:g}"

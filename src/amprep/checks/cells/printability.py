@@ -127,8 +127,8 @@ def measure(request: CellRequest, cells: Cells, steps: int) -> CellMeasures:
     steps
         Voxels along each edge of a cell; the smallest feature is measured on finer ones.
     """
-    frame = request.frame
-    size = np.array([frame.pitch, frame.pitch, frame.step])
+    grid = request.grid
+    size = np.array([grid.pitch, grid.pitch, grid.step])
     solids = [not template.surface for template in cells.templates]
     volume = np.array(
         [

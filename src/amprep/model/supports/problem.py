@@ -56,8 +56,8 @@ class SupportProblem:
 
     Attributes
     ----------
-    frame
-        The grid.
+    grid
+        Position and size of the voxels.
     voxels
         ``(nz, ny, nx)`` uint8, values of `Voxel`.
     red
@@ -82,7 +82,7 @@ class SupportProblem:
         If a cost is out of bounds.
     """
 
-    frame: Grid
+    grid: Grid
     voxels: Bytes
     red: Ints
     red_part: Ints

@@ -43,7 +43,7 @@ def stand_on_parts(laid: SupportGrid, left: Bools, edges: SupportEdges) -> Groun
     Parameters
     ----------
     laid
-        The grid.
+        Position and size of the voxels.
     left
         ``(m,)`` bool, the red squares to connect.
     edges

@@ -47,8 +47,8 @@ class ColumnSurfaces(NamedTuple):
 
 def find_column_surfaces(layout: SupportLayout, meshes: Sequence[Mesh]) -> ColumnSurfaces:
     """Clip the overhangs and all surfaces of the parts to the columns above connected red squares."""
-    columns = _columns_over(layout.red, layout.red_rise, layout.frame)
-    width = min(layout.frame.pitch, WIDEST_BAND)
+    columns = _columns_over(layout.red, layout.red_rise, layout.grid)
+    width = min(layout.grid.pitch, WIDEST_BAND)
     supported, surface = [], []
     first = 0
     for part, (mesh, overhangs) in enumerate(zip(meshes, layout.overhangs, strict=True)):
@@ -69,14 +69,14 @@ def find_column_surfaces(layout: SupportLayout, meshes: Sequence[Mesh]) -> Colum
     return ColumnSurfaces(columns, join_patches(supported, count), all_surface, own)
 
 
-def _columns_over(square: Ints, layers: Ints, frame: Grid) -> ConnectorColumns:
+def _columns_over(square: Ints, layers: Ints, grid: Grid) -> ConnectorColumns:
     """Return the columns over squares ``(m, 3)`` plane, y, x, each `layers` ``(m,)`` high."""
     plane, y, x = square.T.astype(np.int64)
-    size = (frame.pitch, frame.pitch, frame.step)
-    low = frame.origin + np.column_stack([x, y, plane]) * size
-    high = frame.origin + np.column_stack([x + 1, y + 1, plane + layers]) * size
-    grid = np.array([frame.origin[0], frame.origin[1], frame.pitch])
-    return ConnectorColumns(low, high, np.column_stack([y, x]), grid, frame.shape[1:])
+    size = (grid.pitch, grid.pitch, grid.step)
+    low = grid.origin + np.column_stack([x, y, plane]) * size
+    high = grid.origin + np.column_stack([x + 1, y + 1, plane + layers]) * size
+    axes = np.array([grid.origin[0], grid.origin[1], grid.pitch])
+    return ConnectorColumns(low, high, np.column_stack([y, x]), axes, grid.shape[1:])
 
 
 def make_feet(
@@ -108,7 +108,7 @@ def make_feet(
         corners = (meshes[part].vertices * _MIRROR)[meshes[part].triangles[:, ::-1]]
         patches.append(clip_to_columns(columns, corners, np.arange(len(corners)), own[:, 3] == part))
     surface = join_patches(patches, len(own))
-    base, top = columns.lo[:, 2] - seat, columns.hi[:, 2] + layout.frame.step
+    base, top = columns.lo[:, 2] - seat, columns.hi[:, 2] + layout.grid.step
     every = np.ones(len(surface.owner), np.bool_)
     feet = connect(surface, surface, base=base, top=top, overlap=overlap, own=every)
     return [(points * _MIRROR, triangles[:, ::-1]) for points, triangles in feet]
@@ -129,4 +129,4 @@ def _feet_of(layout: SupportLayout, group: int) -> Int64s:
 
 def _mirrored_columns(layout: SupportLayout, feet: Int64s) -> ConnectorColumns:
     """Return the mirrored columns that the feet may fill."""
-    return _columns_over(feet[:, :3] * (-1, 1, 1), feet[:, 4], layout.frame)
+    return _columns_over(feet[:, :3] * (-1, 1, 1), feet[:, 4], layout.grid)

@@ -34,21 +34,21 @@ def extended_cells(
     voxel = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 2)
     voxel, first = np.unique(voxel, axis=0, return_index=True)
     template = cells.template[lowest][first].astype(np.int64)
-    yield from tile(instances.templates, _upright(template, voxel, request.frame))
+    yield from tile(instances.templates, _upright(template, voxel, request.grid))
 
 
-def _upright(template: Ints, voxel: Ints, frame: Grid) -> Tiles:
+def _upright(template: Ints, voxel: Ints, grid: Grid) -> Tiles:
     """Return upright templates in the voxels ``(n, 3)`` x, y, layer."""
-    size = np.array([frame.pitch, frame.pitch, frame.step])
+    size = np.array([grid.pitch, grid.pitch, grid.step])
     matrix = np.zeros((len(voxel), 3, 4))
     matrix[:, [0, 1, 2], [0, 1, 2]] = size
-    matrix[:, :, 3] = frame.origin + voxel * size
+    matrix[:, :, 3] = grid.origin + voxel * size
     return Tiles(template, voxel, matrix)
 
 
 def square_numbers(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
     """Return one number for each grid square, ascending with plane, y and x."""
-    _, ny, nx = layout.frame.shape
+    _, ny, nx = layout.grid.shape
     return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
 
 

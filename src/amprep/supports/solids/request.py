@@ -25,7 +25,7 @@ def make_request(
         edges = SupportEdges.concatenate([edges, above])
         role = np.concatenate([role, np.full(len(above), Role.CONNECTOR)])
     return CellRequest(
-        layout.frame,
+        layout.grid,
         edges,
         role,
         parts,

@@ -63,7 +63,7 @@ def sink_depths(layout: SupportLayout, rules: ConnectorRules, *, most: float) ->
     most
         Upper bound on the depth, mm.
     """
-    grid = layout.frame
+    grid = layout.grid
     _, profile = _profile(rules, grid.pitch)
     if profile is None:
         return np.zeros(len(layout.red))

@@ -56,7 +56,7 @@ class SupportContext(NamedTuple):
     @property
     def seat(self) -> float:
         """Depth of the seats of connectors, mm."""
-        return min(SEAT, self.layout.frame.step / 4)
+        return min(SEAT, self.layout.grid.step / 4)
 
 
 def solid_of(
@@ -113,7 +113,7 @@ def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> lis
     surfaces = context.surfaces
     supported = surfaces.supported.chosen(red[surfaces.supported.owner[:, 0]])
     base = surfaces.columns.lo[:, 2] - depth
-    top = surfaces.columns.hi[:, 2] + context.layout.frame.step
+    top = surfaces.columns.hi[:, 2] + context.layout.grid.step
     meshes = connect(
         supported, surfaces.surface, base=base, top=top, overlap=context.overlap, own=surfaces.own
     )

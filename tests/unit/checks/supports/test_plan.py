@@ -22,8 +22,8 @@ def task():
     voxels[0:3, 0, 4] = 1
     voxels[3, 0, 4] = 0
     voxels[3, 0, 3] = 1
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
-    return SupportProblem(frame, voxels, red, np.zeros(3), np.zeros(3), voxels[0] == 0)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    return SupportProblem(grid, voxels, red, np.zeros(3), np.zeros(3), voxels[0] == 0)
 
 
 @pytest.fixture

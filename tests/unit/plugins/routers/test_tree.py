@@ -48,8 +48,8 @@ def test_four_columns_in_a_square_become_one_trunk():
     voxels = np.zeros((21, 6, 6), np.uint8)
     red = np.array([(20, y, x) for y in (2, 3) for x in (2, 3)])
     voxels[tuple(red.T)] = Voxel.OCCUPIED
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
-    task = SupportProblem(frame, voxels, red, np.zeros(4), np.zeros(4), voxels[0] == Voxel.FREE)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    task = SupportProblem(grid, voxels, red, np.zeros(4), np.zeros(4), voxels[0] == Voxel.FREE)
     assert route("tree", task).objective <= 24
 
 
@@ -60,10 +60,10 @@ def test_it_connects_as_many_as_the_exact_routers(seed):
     voxels = (rng.random((7, 5, 5)) < rng.uniform(0.1, 0.5)).astype(np.uint8)
     red = np.array([(p, y, x) for p, y, x in np.argwhere(voxels) if p > 0 and not voxels[p - 1, y, x]])
     nothing = np.zeros(len(red), np.int32)
-    frame = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
     edge, node = (int(each) for each in rng.integers(0, 3, 2))
     task = SupportProblem(
-        frame, voxels, red.reshape(-1, 3), nothing, nothing, voxels[0] == Voxel.FREE, edge, node
+        grid, voxels, red.reshape(-1, 3), nothing, nothing, voxels[0] == Voxel.FREE, edge, node
     )
     for escalation in ("none", "cut", "uniform"):
         again = replace(task, escalation=escalation)

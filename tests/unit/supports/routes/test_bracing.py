@@ -42,7 +42,7 @@ def column(y, x, height, part=0):
     return [[plane, y, x, 0, 1, 1, part] for plane in range(1, height + 1)]
 
 
-def grid(*closed, shape=(40, 9, 20)):
+def empty_grid(*closed, shape=(40, 9, 20)):
     voxels = np.full(shape, Voxel.FREE, np.uint8)
     for block in closed:
         voxels[block] = Voxel.CLOSED
@@ -55,8 +55,8 @@ def pieces(edges):
 
 def test_two_slender_columns_become_one_piece_by_struts_of_oblique_edges():
     edges = SupportEdges.from_rows(column(4, 3, 30) + column(4, 8, 30))
-    frame, voxels = grid()
-    joined = add_cross_bracing(frame, voxels, edges, 8.0)
+    grid, voxels = empty_grid()
+    joined = add_cross_bracing(grid, voxels, edges, 8.0)
     assert (joined.braced, joined.alone) == (2, 0)
     assert (joined.edges.direction > 0).all()
     assert len(joined.edges) == 2 * 3 * 5, "each is braced at 8, 16 and 24 mm, five squares away"
@@ -66,29 +66,29 @@ def test_two_slender_columns_become_one_piece_by_struts_of_oblique_edges():
 
 def test_struts_go_round_voxels_that_are_not_free_and_never_touch_other_parts_supports():
     edges = SupportEdges.from_rows(column(4, 3, 30) + column(4, 8, 30))
-    frame, voxels = grid((slice(None), slice(None), 5))
-    assert add_cross_bracing(frame, voxels, edges, 8.0).alone == 2
+    grid, voxels = empty_grid((slice(None), slice(None), 5))
+    assert add_cross_bracing(grid, voxels, edges, 8.0).alone == 2
     walls = SupportEdges.from_rows([row for y in range(9) for row in column(y, 5, 39, 1)])
     between = SupportEdges.concatenate([edges, walls])
-    frame, voxels = grid()
-    found = add_cross_bracing(frame, voxels, between, 8.0)
+    grid, voxels = empty_grid()
+    found = add_cross_bracing(grid, voxels, between, 8.0)
     assert not (found.edges.part == 0).any()
 
 
 def test_what_is_far_or_wide_stays_as_it_is():
-    frame, voxels = grid()
+    grid, voxels = empty_grid()
     far = SupportEdges.from_rows(column(4, 1, 30) + column(4, 18, 30))
-    assert add_cross_bracing(frame, voxels, far, 8.0)[1:] == (0, 2)
+    assert add_cross_bracing(grid, voxels, far, 8.0)[1:] == (0, 2)
     low = SupportEdges.from_rows(column(4, 3, 8) + column(4, 8, 8))
-    assert add_cross_bracing(frame, voxels, low, 8.0)[1:] == (0, 0)
+    assert add_cross_bracing(grid, voxels, low, 8.0)[1:] == (0, 0)
 
 
 def test_struts_of_different_parts_share_no_voxel():
     edges = SupportEdges.from_rows(
         column(4, 3, 30) + column(4, 13, 30) + column(0, 8, 30, 1) + column(8, 8, 30, 1)
     )
-    frame, voxels = grid()
-    joined = add_cross_bracing(frame, voxels, edges, 8.0)
+    grid, voxels = empty_grid()
+    joined = add_cross_bracing(grid, voxels, edges, 8.0)
     assert joined.braced == 4
     used = [set(joined.edges[joined.edges.part == part].voxel_parts()) for part in (0, 1)]
     assert not used[0] & used[1]

@@ -29,9 +29,9 @@ from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> CellRequest:
     """Edges (plane, y, x, direction) on a grid of 9 x 9 squares; pitch and step are equal."""
     plane, y, x, direction = np.array(edges).T
-    frame = Grid(np.zeros(3), pitch, pitch, (12, 9, 9))
+    grid = Grid(np.zeros(3), pitch, pitch, (12, 9, 9))
     one = np.ones(len(edges))
-    return CellRequest(frame, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
+    return CellRequest(grid, SupportEdges(plane, y, x, direction, one, one, group=0 * one), 0 * one)
 
 
 def solid_of(cell: str, request: CellRequest, **params):

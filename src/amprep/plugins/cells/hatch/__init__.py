@@ -62,7 +62,7 @@ def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, progres
 
     Walls end in teeth where a support ends. Connector edges consist of teeth alone, so that only teeth touch the part.
     """
-    pitch, step = request.frame.pitch, request.frame.step
+    pitch, step = request.grid.pitch, request.grid.step
     edges, is_connector = request.edges, request.role == Role.CONNECTOR
     fragmented = (edges.direction == 0) & ~is_connector & bool(params.fragment_every)
     every = params.fragment_every or 1

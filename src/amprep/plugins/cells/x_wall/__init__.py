@@ -83,7 +83,7 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, progr
     shorter, and slopes connect both lengths. A layer between two joined layers has a waist. Unless all layers are
     joined, arms have windows where cells cross, through which powder escapes from between their walls.
     """
-    lengths = _lengths(request.frame.pitch, params)
+    lengths = _lengths(request.grid.pitch, params)
     if params.wall_mm == 0.0 and not request.allow_surface:
         raise JobError(
             "x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm above 0"
