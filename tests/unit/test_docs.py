@@ -18,6 +18,19 @@ from amprep.model.supports import REASONS
 from amprep.printers.catalogue import PrinterProfile
 
 ROOT = Path(__file__).parents[2]
+PAGES = sorted(
+    [
+        *ROOT.glob("*.md"),
+        *ROOT.glob("docs/**/*.md"),
+        *ROOT.glob("plugins/*/*.md"),
+        *ROOT.glob("fixtures/**/*.md"),
+    ]
+)
+BASES = (ROOT, ROOT / "src" / "amprep")
+FILES = {path.name for base in ("src", "tests", "fixtures", "plugins") for path in (ROOT / base).rglob("*")}
+PATH = re.compile(r"`([\w.*-]+(?:/[\w.*-]+)*/?)`")
+OF_THE_READER = re.compile(r"(NAME|job|bracket|plate)\.|.*\bNAME\b|(out|dist)/$|\.\w+$|post\.toml$")
+"""Paths of files that the reader makes, and suffixes."""
 SECTIONS = {
     "`[packing]`": PackingSettings,
     "`[supports]`": SupportSettings,
@@ -44,6 +57,42 @@ def section(name):
 def documented(text):
     """Key -> default, from a table."""
     return dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", text, re.MULTILINE))
+
+
+def named_paths(page):
+    """The names in code style that are paths or names of files, outside of blocks of code."""
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for name in PATH.findall(text):
+        if ("/" in name or re.search(r"\.(py|toml|stl|md|json|html|3mf)$", name)) and not OF_THE_READER.match(
+            name
+        ):
+            yield name
+
+
+def is_there(name, page):
+    """Whether a path exists from the root, from the package or from the page; a bare name may be in any folder."""
+    found = any(any(base.glob(name.rstrip("/"))) for base in (*BASES, page.parent))
+    return found or ("/" not in name and name in FILES)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_path_that_a_page_names_exists(page):
+    assert [name for name in named_paths(page) if not is_there(name, page)] == []
+
+
+def heading_anchors(page):
+    """The anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_link_of_a_page_leads_to_a_file_and_a_heading(page):
+    for target, anchor in re.findall(r"\]\(([^)#\s]*)#?([^)\s]*)\)", page.read_text(encoding="utf-8")):
+        if not target.startswith(("http:", "https:")):
+            linked = page.parent / target if target else page
+            assert linked.exists(), target
+            assert not anchor or anchor in heading_anchors(linked), f"{target}#{anchor}"
 
 
 @pytest.mark.parametrize("hook", [description.hook for description in KINDS.values()])
