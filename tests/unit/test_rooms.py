@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from functools import cache
 from pathlib import Path
 
+import networkx as nx
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -138,3 +139,29 @@ def test_an_algorithm_cites_its_own_section(place):
     found = {section for path in files for section in cited(path.read_text(encoding="utf-8"))}
     assert found <= SECTIONS_OF[place]
     assert found, f"{place} does not name its source"
+
+
+def top_level_imports(path):
+    """Modules that a file imports when it is loaded, and the packages that contain them."""
+    own = ("amprep." + name_of(path).removesuffix(".py").replace("/", ".")).removesuffix(".__init__")
+    for node in tree(path).body:
+        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("amprep"):
+            continue
+        for target in (node.module, *(f"{node.module}.{alias.name}" for alias in node.names)):
+            parts = target.split(".")
+            for end in range(2, len(parts) + 1):
+                package = ".".join(parts[:end])
+                if not f"{own}.".startswith(f"{package}."):
+                    yield package
+
+
+def test_no_two_modules_import_each_other_while_they_load():
+    """A module that is imported first must find complete modules, whichever module it is."""
+    names = {
+        ("amprep." + name_of(p).removesuffix(".py").replace("/", ".")).removesuffix(".__init__"): p
+        for p in FILES
+    }
+    graph = nx.DiGraph()
+    for name, path in names.items():
+        graph.add_edges_from((name, target) for target in top_level_imports(path) if target in names)
+    assert [sorted(circle) for circle in nx.strongly_connected_components(graph) if len(circle) > 1] == []

@@ -8,7 +8,8 @@ from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes import ruin_and_recreate as kernel
 from amprep.kernels.boxes.records import Arrangement
 from amprep.model.control import Stop
-from amprep.plugins.packers.auto.set_covering import MOST_TYPES, Pool, choose_builds
+from amprep.plugins.packers.auto.set_covering import Pool, choose_builds
+from amprep.plugins.packers.bounds.fractional_cover import MOST_TYPES
 from amprep.plugins.packers.extreme_points import PassRunner, constructive_passes
 from amprep.plugins.packers.instance.prepare import PreparedInstance
 from amprep.plugins.packers.params import AutoParams

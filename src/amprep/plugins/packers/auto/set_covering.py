@@ -13,9 +13,6 @@ MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
 NODES = 300
 """Nodes after which the branch and bound ends, so that the result does not depend on the clock."""
 
-MOST_TYPES = 400
-"""With more item types, fractional covers take too long to be of use."""
-
 MARGIN = 1e-6
 
 

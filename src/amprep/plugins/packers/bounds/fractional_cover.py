@@ -15,10 +15,12 @@ from amprep.arrays import Bools, Floats, Int64s
 from amprep.kernels.boxes import pricing as kernel
 from amprep.kernels.boxes.relations import relation_scratch
 from amprep.model.control import Stop
-from amprep.plugins.packers.auto.set_covering import MOST_TYPES
 from amprep.plugins.packers.bounds.combinatorial import counted_items, relaxed_boxes
 from amprep.plugins.packers.bounds.dual_feasible import greatest_scales
 from amprep.plugins.packers.instance.prepare import PreparedInstance
+
+MOST_TYPES = 400
+"""With more item types, fractional covers take too long to be of use."""
 
 MOST_CHECKED, DECISIONS = 12, 3000
 """Greatest size of a set that is tested exactly, and greatest number of decisions of a test."""
