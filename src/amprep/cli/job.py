@@ -56,7 +56,7 @@ def build_and_report(
     from amprep.report.json_report import to_json
     from amprep.report.terminal import summary
 
-    show(lambda: to_json(record), lambda: summary(record), options)
+    show(lambda: to_json(record), lambda: summary(record, _shown(folder)), options)
     raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
 
 
@@ -80,6 +80,12 @@ def folder_of(inputs: list[str], options: JobOptions) -> Path:
     from amprep.job.loading import parse_input
 
     return options.output or parse_input(inputs[0], "inputs").path.resolve().parent
+
+
+def _shown(folder: Path) -> Path:
+    """Return the folder relative to the current one if it is inside."""
+    here = Path.cwd()
+    return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
 
 def show(as_json: Callable[[], Any], as_table: Callable[[], Any], options: JobOptions) -> None:

@@ -74,7 +74,7 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
         write_html(replace(record, stages=clock.times), outputs.path("report.html"))
     record = replace(record, stages=clock.times)
     write_json(record, outputs.path("report.json"))
-    return record
+    return replace(record, report_files=(outputs.name("report.html"), outputs.name("report.json")))
 
 
 def _read_back(number: int, outputs: OutputFolder) -> Build:

@@ -170,6 +170,8 @@ class RunRecord:
         The job's settings as nested plain values.
     objective
         ``builds``, ``height`` or ``fill``; in a fill problem, unplaced copies are not faults.
+    report_files
+        Names of the HTML and JSON reports, if they are written.
     """
 
     job: str
@@ -187,6 +189,7 @@ class RunRecord:
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     objective: str = "builds"
+    report_files: tuple[str, ...] = ()
 
     @property
     def faults(self) -> int:

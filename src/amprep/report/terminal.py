@@ -1,6 +1,7 @@
 """The summary of a run for the terminal."""
 
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amprep.report.counting import counted
@@ -14,15 +15,17 @@ MOST_LINES = 12
 """Lines of a list that the terminal shows; the reports contain all of them."""
 
 
-def summary(record: RunRecord) -> "RenderableType":
-    """Return the table of builds, the issues, the durations of stages and the files, ready to print."""
+def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
+    """Return the table of builds, the issues, the durations of stages and the files in `folder`, ready to print."""
     from rich.console import Group
     from rich.text import Text
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
-    blocks += [Text(f"! {_printable(line)}", style="yellow") for line in _listed(_issues(record))]
+    issues = _listed(_issues(record), "in the report")
+    blocks += [Text(f"! {_printable(line)}", style="yellow") for line in issues]
     blocks += [Text(_stages(record.stages), style="dim")]
-    blocks += [Text(f"wrote {_printable(name)}", style="dim") for name in _listed(_files(record))]
+    written = [f"wrote {folder / name}" for name in _files(record)]
+    blocks += [Text(_printable(line), style="dim") for line in _listed(written, f"in {folder}")]
     return Group(*blocks)
 
 
@@ -109,14 +112,16 @@ def _stages(stages: tuple[StageTime, ...]) -> str:
 
 
 def _files(record: RunRecord) -> list[str]:
+    """Return the names of all files of the run, reports first."""
     names = [name for entry in record.builds for name in (entry.file, entry.picture, *entry.stl_files)]
-    return [name for name in names if name]
+    return [*record.report_files, *(name for name in names if name)]
 
 
-def _listed(lines: list[str]) -> list[str]:
+def _listed(lines: list[str], rest: str) -> list[str]:
+    """Return the first lines; if there are too many, the last one says where the rest is."""
     if len(lines) <= MOST_LINES:
         return lines
-    return [*lines[: MOST_LINES - 1], f"... and {len(lines) - MOST_LINES + 1} more, see the report"]
+    return [*lines[: MOST_LINES - 1], f"... and {len(lines) - MOST_LINES + 1} more {rest}"]
 
 
 def _printable(text: str) -> str:

@@ -2,7 +2,9 @@
 
 import json
 from dataclasses import replace
+from io import StringIO
 from math import inf, nan, pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,9 +44,8 @@ def record(make_build) -> RunRecord:
 
 
 def printed(record: RunRecord) -> str:
-    console = Console(width=90, record=True, file=open("/dev/null", "w", encoding="utf-8"))  # noqa: SIM115, PTH123
-    with console.file:
-        console.print(summary(record))
+    console = Console(width=90, record=True, file=StringIO())
+    console.print(summary(record))
     return console.export_text()
 
 
@@ -157,4 +158,15 @@ def test_long_lists_are_shortened_in_the_terminal(record):
     many = tuple(UnplacedRecord("peg", copy, "no room left") for copy in range(1, 101))
     text = printed(replace(record, unplaced=many))
     assert text.count("\n!") <= MOST_LINES
-    assert "more, see the report" in text
+    assert "more in the report" in text
+
+
+def test_the_terminal_names_the_reports_and_the_folder_of_every_file(record):
+    record = replace(record, report_files=("job.report.html", "job.report.json"))
+    console = Console(width=90, record=True, file=StringIO())
+    console.print(summary(record, Path("out")))
+    text = console.export_text()
+    written = [line.split()[1] for line in text.splitlines() if line.startswith("wrote")]
+    assert written == [
+        f"out/job.{name}" for name in ("report.html", "report.json", "build-1.3mf", "build-1.png")
+    ]

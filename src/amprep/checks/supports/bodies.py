@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 CLOSED = "support is closed"
 INSIDE = "support inside build volume"
 STANDING = "support stands on the plate"
-PENETRATION = "support in a part"
+PENETRATION = "support enters no part"
 
 NEGLIGIBLE_VOLUME = 1e-4
 """Volume (mm3) of the slivers that Booleans leave: rounding of coordinates (1e-5 mm) times about 10 mm2."""

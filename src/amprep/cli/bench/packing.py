@@ -115,6 +115,16 @@ def _print_line(as_json: bool) -> "Callable[[PackingResult], None]":
     return (lambda _: None) if as_json else (lambda result: typer.echo(result.line))
 
 
+def _mean(name: str, value: float) -> str:
+    match name:
+        case "fill_ratio":
+            return f"filled {value:.1%}"
+        case "seconds":
+            return f"{value:.2f} s"
+        case _:
+            return f"{name} {value:.6g}"
+
+
 def _print(record: dict[str, Any], results: "list[PackingResult]", *, as_json: bool) -> None:
     """Print the means, or everything as JSON, and end the command."""
     from amprep.bench.packing.run import means
@@ -123,5 +133,5 @@ def _print(record: dict[str, Any], results: "list[PackingResult]", *, as_json: b
     if as_json:
         print_json(record)
     else:
-        typer.echo("mean: " + ", ".join(f"{name} {value:.6g}" for name, value in record["mean"].items()))
+        typer.echo("mean: " + ", ".join(_mean(name, value) for name, value in record["mean"].items()))
     finish(valid=all(result.validated for result in results))
