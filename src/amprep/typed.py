@@ -1,4 +1,4 @@
-"""Convert plain values, as in TOML, to typed values; messages say what was expected and what came."""
+"""Convert plain values, as in TOML, to typed values; messages give the expected type and the value."""
 
 import math
 import types

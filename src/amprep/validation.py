@@ -41,11 +41,11 @@ def require(holds: bool, rule: str, value: object, advice: str = "") -> None:
     holds
         Whether the value satisfies the rule.
     rule
-        Sentence without a full stop that says what is allowed, for example ``count must be at least 1``.
+        The rule as a sentence without a full stop, for example ``count must be at least 1``.
     value
         The value that was given.
     advice
-        What the user can do, if the rule alone does not say it.
+        The remedy, if the rule alone does not say it.
     """
     if not holds:
         raise ValueError(f"{rule}, got {value}" + (f"; {advice}" if advice else ""))

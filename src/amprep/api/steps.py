@@ -28,7 +28,7 @@ def load(
     plugins: Host | Sequence[str] = (),
     progress: Progress = silent,
 ) -> LoadedParts:
-    """Read parts from files and folders, check their meshes and repair what can be repaired.
+    """Read parts from files and folders, check their meshes and repair them where possible.
 
     Parameters
     ----------

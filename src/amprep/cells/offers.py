@@ -83,7 +83,7 @@ def estimate(cell: DeclaredCell, pitch: float, step: float) -> tuple[float, floa
     cell
         Cell to measure.
     pitch, step
-        Of the grid, mm.
+        Width and height (mm) of a voxel.
     """
     from amprep.cells.emission import emit_declared
     from amprep.cells.samples import single_column

@@ -16,7 +16,7 @@ def single_column(pitch: float, step: float, direction: int) -> CellRequest:
     Parameters
     ----------
     pitch, step
-        Of the grid, mm.
+        Width and height (mm) of a voxel.
     direction
         Index into `amprep.model.DIRECTIONS`.
     """
@@ -35,7 +35,7 @@ def block(
     Parameters
     ----------
     pitch, step
-        Of the grid, mm.
+        Width and height (mm) of a voxel.
     width, layers
         Edges along x and y, and layers.
     direction

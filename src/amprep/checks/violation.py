@@ -14,7 +14,7 @@ class Violation:
     subject
         The part, support or item that breaks it.
     message
-        What was found and what was expected, with numbers and units.
+        The finding and the expectation, with numbers and units.
     """
 
     promise: str

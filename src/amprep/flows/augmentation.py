@@ -15,7 +15,7 @@ class Augmentation:
     Attributes
     ----------
     plate_capacity
-        ``(stride,)`` how many more paths may end at each square of the plate.
+        ``(stride,)`` number of further paths that may end at each square of the plate.
     """
 
     def __init__(self, network: FlowNetwork, flow: Flow, plate_capacity: Int32s) -> None:

@@ -32,9 +32,9 @@ def escalate(
 ) -> tuple[FlowProblem, Bools, str]:
     """Connect the other reachable red squares by raising capacities as `problem.escalation` says.
 
-    With ``cut``, the smallest capacities of a minimum cut grow by 1 each, as many at a time as red squares are
-    left: at least so many have to grow. With ``uniform``, all capacities grow alike, by the least number that can
-    give the minimum cut enough capacity for all red squares that are left.
+    With ``cut``, the smallest capacities of a minimum cut grow by 1 each. In each step their number is that of the
+    red squares that are left, because at least that many have to grow. With ``uniform``, all capacities grow alike,
+    by the least number that can give the minimum cut enough capacity for all red squares that are left.
 
     Parameters
     ----------

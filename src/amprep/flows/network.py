@@ -19,7 +19,7 @@ class FlowProblem(NamedTuple):
     Attributes
     ----------
     network
-        Without the squares from which no path leads to the plate.
+        Squares from which no path leads to the plate are impassable in it.
     start
         ``(m,)`` number of each red square in the network.
     distance
@@ -101,7 +101,7 @@ def distances_of(network: FlowNetwork, start: Int64s, costs: tuple[int, int]) ->
     start
         ``(m,)`` squares with red squares above them; their distances hold although no path arrives there.
     costs
-        Of a vertical and of an oblique edge.
+        Cost of one unit over a vertical and over an oblique edge.
     """
     distance = np.full(network.passable.size, UNREACHABLE, np.int32)
     vertical, oblique = costs

@@ -1,4 +1,4 @@
-"""Compare a packing problem with what a packer accepts."""
+"""Compare a packing problem with the features that a packer accepts."""
 
 import numpy as np
 

@@ -173,11 +173,11 @@ class DeclaredCell:
     variants
         Shapes with their conditions, in order of precedence.
     author, licence
-        For lists of cells.
+        Author and licence that lists of cells show.
     smallest_feature
-        Thickness (mm) below which no part of the cell is, or None for the usual limit. `amprep cells check` judges it.
+        Smallest thickness (mm) of the cell, or None for the usual limit. `amprep cells check` judges it.
     least_angle_deg
-        Angle to the horizontal below which no strut and no face is, even on oblique edges, or None for the usual limit.
+        Smallest angle of a strut or face to the horizontal, even on oblique edges, or None for the usual limit.
     """
 
     variants: tuple[Variant, ...]

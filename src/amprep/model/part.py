@@ -93,13 +93,13 @@ class Part:
     volume_mm3
         Volume of the solid; overlapping shells count once.
     value
-        Value in a fill problem; None stands for the volume.
+        Value in a fill problem; None means the volume.
     is_solid
         False for a mesh that is not a solid, if the user allowed surfaces.
     boxes
         ``(k, 6)`` x0 y0 z0 x1 y1 z1 mm, bounding boxes from the job file; or None.
     positions
-        ``(k, 3)`` mm, position of the origin of the part for each of its build items in the file; None stands for one
+        ``(k, 3)`` mm, position of the origin of the part for each of its build items in the file; None means one
         position at the origin. Packing ignores them.
     fixed
         ``(k, 3)`` mm, lowest corners of the bounding boxes of the copies with a fixed position in the first build; or

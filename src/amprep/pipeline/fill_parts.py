@@ -244,7 +244,7 @@ def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> Fi
 
 
 def _notes(done: Sequence[_PartFill], job: Job) -> list[str]:
-    """Return notes on repairs, and on what filling a part loses."""
+    """Return notes on repairs, and on data that a part loses when it is filled."""
     notes = []
     for each in done:
         result = each.result

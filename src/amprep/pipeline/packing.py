@@ -57,7 +57,7 @@ class PackedParts:
     Attributes
     ----------
     problem, packing
-        What the packer was asked, and its answer.
+        The packing problem, and the packer's answer.
     builds
         Builds of placed parts; copies are in the order of the job.
     """
@@ -67,7 +67,7 @@ class PackedParts:
     builds: tuple[PackedBuild, ...]
 
     def __str__(self) -> str:
-        """Summary in one line per build, and one for what is unplaced."""
+        """Return one line per build, and one for the unplaced items."""
         lines = [str(build) for build in self.builds]
         unplaced = len(self.packing.unplaced)
         return "\n".join([*lines, *([f"unplaced: {unplaced}"] if unplaced else [])])

@@ -141,7 +141,7 @@ def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...
 
 
 def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported:
-    """Return to what extent a region is supported; `left` lists its unsupported regions."""
+    """Return the extent to which a region is supported; `left` lists its unsupported regions."""
     if all(each.minor for each in left):
         return "fully"
     return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"

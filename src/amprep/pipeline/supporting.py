@@ -1,4 +1,4 @@
-"""Support one build: plan the supports, replace their edges by cells, and list what stays unsupported."""
+"""Support one build: plan the supports, replace their edges by cells, and list the unsupported regions."""
 
 from dataclasses import dataclass, replace
 
@@ -23,7 +23,7 @@ from amprep.supports.plan import SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 
 LARGEST_REACH = 5.0
-"""mm; however coarse the grid, no face that is farther from a contact counts as held, unless the job says so."""
+"""Upper limit (mm) of the default reach: even in a coarse grid, no face farther from a contact counts as held."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
 
 
 def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
-    """Replace the edges of planned supports by the cell of the job and list what stays unsupported.
+    """Replace the edges of planned supports by the cell of the job and list the unsupported regions.
 
     Parameters
     ----------

@@ -49,12 +49,12 @@ Supported = Literal["fully", "partly", "not"]
 
 @dataclass(frozen=True)
 class OverhangRecord:
-    """A region that needs support, and to what extent it is supported.
+    """A region that needs support, with the extent to which it is supported.
 
     Attributes
     ----------
     name
-        For example ``overhang 7 of bracket-2``.
+        Name in reports, for example ``overhang 7 of bracket-2``.
     kind
         ``face``, ``edge`` or ``tip``.
     size
@@ -64,9 +64,9 @@ class OverhangRecord:
     demand_squares, connected_squares
         Number of its demand squares, and of those that a support connects.
     supported
-        Minor remainders count as supported.
+        Extent to which it is supported; minor remainders count as supported.
     reasons
-        Why something of it is unsupported, minor remainders included.
+        Reasons for its unsupported parts, minor remainders included.
     """
 
     name: str

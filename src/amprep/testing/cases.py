@@ -106,7 +106,7 @@ def _judge_parts(parts: list[Part]) -> list[Violation]:
 
 
 def _refusal(offer: LoadedOffer, path: Path) -> Callable[[Stop], str]:
-    """Return a function that is empty text when the reader raises `InputError`, and says what came otherwise."""
+    """Return a function that returns ``""`` if the reader raises `InputError`, and the unexpected result otherwise."""
 
     def run(stop: Stop) -> str:
         try:

@@ -35,7 +35,7 @@ class LoadedOffer(Chosen[Any]):
         Parameters
         ----------
         subject
-            What the offer works on: a `PackingProblem` (packer), a `SupportProblem` (router), a `CellRequest`
+            Input of the offer: a `PackingProblem` (packer), a `SupportProblem` (router), a `CellRequest`
             (cell), a `Part` (volume maker) or a `Path` (reader).
         seed
             Seed of the random numbers.

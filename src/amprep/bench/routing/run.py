@@ -45,7 +45,7 @@ class RoutingResult:
     nodes, edges
         Numbers of squares of the grid and of edges between them.
     red_squares, connected
-        Number of red squares, and how many of them are connected.
+        Number of red squares, and of those that are connected.
     seconds
         Time of routing alone, after a warm-up run; None if a solver did not run.
     cost

@@ -10,7 +10,7 @@ ROTATION_TOLERANCE = 5e-6
 
 
 def motion_fault(rotation: Floats, orientations: Orientations) -> str:
-    """Return what is wrong with a rotation ``(3, 3)``, as a verb phrase; empty if it is one of `orientations`."""
+    """Return the fault of a rotation ``(3, 3)`` as a verb phrase; empty if it is one of `orientations`."""
     if (
         not np.isfinite(rotation).all()
         or np.abs(rotation @ rotation.T - np.eye(3)).max() > 4.0 * ROTATION_TOLERANCE

@@ -97,7 +97,7 @@ def overhang_samples(placed: PlacedPart, rules: SupportRules, spacing: float) ->
 
 
 def border_of(placed: PlacedPart) -> float:
-    """Return by how much (mm) the planner may place contacts of a part farther away than `reach`."""
+    """Return the distance (mm) beyond `reach` at which the planner may still place contacts of a part."""
     return _BORDER if any(region.kind in ("blocker", "enforcer") for region in placed.part.regions) else 0.0
 
 

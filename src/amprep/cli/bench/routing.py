@@ -28,7 +28,7 @@ class SceneName(StrEnum):
 
 
 class EscalationName(StrEnum):
-    """How capacities are raised."""
+    """Rule by which capacities are raised."""
 
     NONE = "none"
     CUT = "cut"

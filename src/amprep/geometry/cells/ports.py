@@ -11,7 +11,7 @@ SNAP = 1e-5
 """Distance, in edges of the unit cube, within which coordinates are taken as equal: files store six digits."""
 
 PLANE_AXES = ((1, 2), (2, 0), (0, 1))
-"""For each axis the two other axes u, v; u, v and the axis are right-handed."""
+"""The two other axes u, v of each axis, such that u, v and the axis are right-handed."""
 
 _MAX_ROUNDS = 32
 

@@ -105,7 +105,7 @@ class ContentsTable:
         template
             Number of the template.
         shift
-            dx, dy from the upper square to the lower one.
+            Step (dx, dy) from the upper square to the lower one.
         """
         key = (template, *shift)
         if key not in self._parts_of:

@@ -23,7 +23,7 @@ class Pocket(NamedTuple):
     Attributes
     ----------
     volume
-        mm3.
+        Volume of the trapped powder, mm3.
     point
         A point inside, on its highest line.
     lo, hi

@@ -28,7 +28,8 @@ _SHELLS = (0.25, 0.5, 0.95)
 """Radii of the test points inside a ball, as fractions of its radius: it may touch a plate thinner than itself."""
 
 _GRID, _MOST_CELLS = 128, 4_000_000
-"""Cells along the longest side of the grid that marks what is near a surface, and the most marked at once."""
+"""Number of cells along the longest side of the grid that marks the surroundings of surfaces, and the greatest number
+of cells marked at once."""
 
 
 class BeamSamples(NamedTuple):
@@ -151,7 +152,15 @@ def near_surface(points: Floats, reach: float, vertices: Floats, triangles: Ints
 
 
 class GroundedBeams(NamedTuple):
-    """Which struts ``(m,)`` and triangles of solids ``(t,)`` are connected to the plate; number of floating pieces."""
+    """Beams and solids that are connected to the plate.
+
+    Attributes
+    ----------
+    struts, triangles
+        ``(m,)`` and ``(t,)`` whether each strut, and each triangle of a solid, is connected to the plate.
+    floating
+        Number of components that are not.
+    """
 
     struts: Bools
     triangles: Bools

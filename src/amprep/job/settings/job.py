@@ -43,7 +43,7 @@ class ReadingSettings:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A job: what `amprep run` prints, on which printer, by which rules.
+    """A job: the parts to print, the printer and the rules.
 
     Attributes
     ----------

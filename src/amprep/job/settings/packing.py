@@ -10,7 +10,7 @@ from amprep.validation import require_bounds
 
 @dataclass(frozen=True)
 class PackingSettings:
-    """How the parts are packed.
+    """The section ``[packing]`` of the job file.
 
     Attributes
     ----------

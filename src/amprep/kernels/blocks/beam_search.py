@@ -285,7 +285,7 @@ def run_search(search: BeamSearch, width: int, obstacles: Int64s, columns: int) 
     obstacles
         ``(m, 6)`` corners of boxes already in the container.
     columns
-        From this number on, nothing may be placed above or below an obstacle if `rules.flat`.
+        Number of the first obstacle above and below which nothing may be placed if `rules.flat`.
     """
     states, scratch, rules, control = search.states, search.scratch, search.rules, search.control
     control[MORE] = 0

@@ -56,7 +56,7 @@ def _insert(scratch: BeamScratch, found: int, most: int, score: float, b: int) -
 def choose(
     search: BeamSearch, row: int, s: int, parent: int, candidates: Int32s, number: int, most: int
 ) -> int:
-    """Write the best blocks for a space to the work arrays, best first; return how many there are.
+    """Write the best blocks for a space to the work arrays, best first; return their number.
 
     The score of a block is ``base_score * usable * touching ** power``. The usable fraction of the space is
     that of the block together with the longest rows of boxes that fit in line with it; the touching fraction

@@ -1,4 +1,4 @@
-"""Maximal empty spaces: cut them by a placed box, choose the next one, and measure what a box in it touches.
+"""Maximal empty spaces: cut them by a placed box, choose the next one, and measure the contact of a box in it.
 
 Lengths are whole numbers, so no decision depends on rounding. A space is a row ``x0, y0, z0, x1, y1, z1,
 distance, corner``. ``corner`` is the corner of the space that is nearest to the same corner of the container
@@ -61,7 +61,7 @@ def _copy_row(source: Int64s, i: int, target: Int64s, j: int, columns: int) -> N
 
 @helper
 def drop_useless(spaces: Int64s, count: int, smallest: Int64s, number: int) -> int:
-    """Remove the spaces that hold none of the smallest boxes (in place); return how many are left."""
+    """Remove the spaces that hold none of the smallest boxes (in place); return the number of the others."""
     kept = 0
     for s in range(count):
         if _holds_any(spaces, s, smallest, number):

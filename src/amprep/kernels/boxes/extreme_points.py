@@ -221,7 +221,7 @@ def _add_candidates(
     candidates: Floats,
     cursor: Int64s,
 ) -> int:
-    """Write the candidates of an orientation at the extreme points; return how many there are."""
+    """Write the candidates of an orientation at the extreme points; return their number."""
     found, (first, last), (size_x, size_y, size_z) = 0, own, size
     # a single box that is longer than the residual space of a point cannot lie there
     least = -room[SLACK] if last - first == 1 else -np.inf

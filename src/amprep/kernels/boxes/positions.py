@@ -31,7 +31,7 @@ BUILD, INDEX, PLACED, POINTS, LINES, MOVED, LEFT, WORK = 0, 1, 2, 3, 4, 6, 7, 8
 items left; comparisons made."""
 
 LAST = 6
-"""Column of a point: the box that was last in the way there."""
+"""Column of an extreme point: the box that last blocked an item there."""
 
 MERIT, ORIENTATION, POSITION = 0, 1, 2
 """Columns of the best candidate."""
@@ -51,7 +51,7 @@ class PassState(NamedTuple):
     placed
         ``(m, 6)`` mm corners of the boxes in the open build, obstacles first.
     points
-        ``(p, 7)`` extreme points, their residual space, and the box that was last in the way there (-1: none).
+        ``(p, 7)`` extreme points, their residual space, and the box that last blocked an item there (-1: none).
     lines
         ``(2, l)`` coordinates of box sides in x and in y.
     candidates
@@ -89,7 +89,7 @@ def feasible_height(
 ) -> float:
     """Return the least height from the position's z to `highest` at which an orientation is feasible.
 
-    Where there is none, the result is -1 when the room is too small, or -2 - j when box j is in the way.
+    If there is none, the result is -1 where the room is too small, or -2 - j where box j blocks the orientation.
 
     Parameters
     ----------
@@ -203,9 +203,9 @@ def _in_the_way(
 
 # Strategy of `choose`. Testing whether a position is feasible costs a loop over all boxes of the build, so it comes
 # last. A candidate whose merit is no better than the best one is dropped first; for `RESIDUAL`, `LOW` and `CENTRE`
-# the merit is known before the test. The box that was in the way at a point the last time is in the way the next
-# time too, in most cases; it is tested alone. A candidate that may rise is raised from box to box, but no higher
-# than the height at which its merit would equal the best one.
+# the merit is known before the test. The box that last blocked an item at a point blocks the next
+# item too, in most cases; it is tested first and alone. A candidate that may rise is raised from box to box, but no
+# higher than the height at which its merit would equal the best one.
 @helper
 def choose(
     orientation: int,

@@ -49,16 +49,16 @@ class Sets(NamedTuple):
 
 
 class PricingLimits(NamedTuple):
-    """PricingLimits of `price`.
+    """Limits of the search in `price`.
 
     Attributes
     ----------
     goal
-        With a set of more value than this the search ends after an eighth of the work.
+        After a set of greater value than this has been found, the search ends after an eighth of the work.
     work
         Comparisons after which it ends.
     most_checked, decisions
-        Sets up to this size are tested exactly, with at most so many decisions each.
+        Size up to which sets are tested exactly, and the greatest number of decisions in a test.
     """
 
     goal: float

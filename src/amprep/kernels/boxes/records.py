@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Floats, Int64s
 
 PAIR_SLACK = 1e-6
-"""mm; two boxes that overlap by less than this only touch."""
+"""Overlap (mm) below which two boxes only touch."""
 
 RESIDUAL, LOW, TOUCHING, CENTRE = 0, 1, 2, 3
 """Merits of a placement rule: least residual space; lowest weighted far corner; largest contact area; nearest to

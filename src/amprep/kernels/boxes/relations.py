@@ -48,8 +48,8 @@ def relation_scratch(most: int) -> RelationScratch:
     )
 
 
-# Strategy. Boxes of fixed orientation fit exactly when for every pair an axis and an order can be chosen such that
-# along each axis no chain of boxes is longer than the room. The search decides one pair at a time, the pair with the
+# Strategy. Boxes of fixed orientation fit exactly when an axis and an order can be chosen for every pair so
+# that no chain of boxes along an axis is longer than the room. The search decides one pair at a time, the pair with the
 # fewest options first, and lengthens the chains through it; a pair without an option makes it go back. Of the two
 # orders along an axis without relations only one is tried, because the mirrored packing is as good. Each decision
 # takes time in the square of the number of boxes; their number is exponential at worst and limited.
@@ -57,7 +57,7 @@ def relation_scratch(most: int) -> RelationScratch:
 
 @helper
 def _open_pair(count: int, size: Floats, room: Floats, depth: int, scratch: RelationScratch) -> int:
-    """Write the undecided pair with the fewest options to the trail; return how many it has."""
+    """Write the undecided pair with the fewest options to the trail; return the number of its options."""
     head, tail, axis, trail = scratch
     fewest = 7
     for i in range(count):

@@ -27,9 +27,16 @@ MOST_A_CALL = 40_000_000
 
 
 class OpenBuilds(NamedTuple):
-    """Boxes ``(builds, boxes, 6)`` mm of open builds, how many of them are used, and the best candidate ``(6,)``.
+    """Open builds and the best candidate for the next item.
 
-    The candidate is area, build, orientation, and position.
+    Attributes
+    ----------
+    placed
+        ``(builds, boxes, 6)`` mm, boxes of each build.
+    filled
+        ``(builds,)`` number of the boxes in use.
+    best
+        ``(6,)`` area, build, orientation and position of the best candidate.
     """
 
     placed: Floats
@@ -64,7 +71,7 @@ class MoveSearch(NamedTuple):
     chosen, wanted, order
         ``(most,)``, ``(2 n,)`` and ``(2 n,)``: the present tuple of builds, whether each build is in it, the items.
     trial, merged
-        Packings of the tuple, and of what the tuple leaves over.
+        Packings of the tuple, and of the items that the tuple leaves over.
     kept
         The move of least penalty so far.
     least
@@ -241,7 +248,7 @@ def _next_tuple(chosen: Int64s, k: int, most: int) -> bool:
 
 @helper
 def _select_items(move: Move, build: Int64s, search: MoveSearch) -> int:
-    """Write the items of the tuple's builds, and the moved item, to `search.order`; return how many there are."""
+    """Write the items of the tuple's builds, and the moved item, to `search.order`; return their number."""
     search.wanted[:] = False
     for i in range(move.size):
         search.wanted[move.others[search.chosen[i]]] = True

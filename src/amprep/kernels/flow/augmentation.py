@@ -39,7 +39,7 @@ class DepthFirstArrays(NamedTuple):
 
 @inlined
 def _see(work: DepthFirstArrays, state: int, length: int, count: int) -> int:
-    """Put a state at the end of the path and mark it; return how many states have been reached."""
+    """Put a state at the end of the path and mark it; return the number of states reached."""
     work.stack[length], work.arcs[length] = state, 0
     if work.seen[state] == UNSEEN:
         work.reached[count] = state
@@ -62,7 +62,7 @@ def _next_arc(residual: ResidualNetwork, seen: Bytes, state: int, first: int) ->
 def _find_path(
     residual: ResidualNetwork, plate_capacity: Int32s, start: int, work: DepthFirstArrays, count: int
 ) -> tuple[int, int]:
-    """Search a path to the plate; return its number of arcs (-1: none) and how many states have been reached."""
+    """Search a path to the plate; return its number of arcs (-1: none) and the number of states reached."""
     plate, stack, arcs, length = 2 * residual.network.stride, work.stack, work.arcs, 0
     count = _see(work, start, 0, count)
     while length >= 0 and (stack[length] >= plate or plate_capacity[stack[length] >> 1] == 0):
@@ -87,7 +87,7 @@ def augment_depth_first(
     Parameters
     ----------
     plate_capacity
-        ``(stride,)`` how many more paths may end at each square of the plate; modified in place.
+        ``(stride,)`` number of further paths that may end at each square of the plate; modified in place.
     starts
         ``(n,)`` squares.
     served
@@ -96,7 +96,7 @@ def augment_depth_first(
     Returns
     -------
     int
-        How many entries of ``work.reached`` have been written.
+        Number of entries of ``work.reached`` that have been written.
     """
     seen, stack, arcs, count = work.seen, work.stack, work.arcs, 0
     for i in range(starts.size):

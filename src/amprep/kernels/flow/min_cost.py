@@ -4,8 +4,8 @@ Strategy: primal-dual (Ford and Fulkerson 1962). The potential of a state is its
 residual network, so an arc's reduced cost ``cost + potential[head] - potential[state]`` is never negative, and
 paths over admissible arcs, whose reduced cost is 0, are shortest. A round of depth-first searches over admissible
 arcs sends as many units as it can. Then a search with buckets (Dial 1969, DOI 10.1145/363269.363610) from the
-starts that are left finds by how much the distance of the nearest exit has grown, and raises the potentials of
-only the states that it has visited: time grows with the congested region, not with the grid. Kernels compare potentials
+starts that are left measures the increase of the distance to the nearest exit, and raises the potentials of only
+the states that it has visited: time grows with the congested region, not with the grid. Kernels compare potentials
 before capacities, because potentials rule out most arcs.
 """
 
@@ -33,7 +33,7 @@ TAKEN = 2
 """State of an exit that receives flow, even if none passes through its square."""
 
 _NO_ARC = 9
-"""Stands for the arc by which a search arrived at a start."""
+"""Entry for the arc by which a search arrived at a start, which has none."""
 
 _UNKNOWN = 1 << 40
 
@@ -98,7 +98,7 @@ def _cost_of(costs: EdgeCosts, state: int, arc: int) -> int:
 
 @inlined
 def _arc_count(residual: ResidualNetwork, exits: Exits, state: int) -> int:
-    """Return how many arcs of a state to try: an in state without flow has no arcs back up."""
+    """Return the number of arcs of a state to try: an in state without flow has no arcs back up."""
     unused = residual.flow.square[state >> 1] == 0 and exits.state[state >> 1] != TAKEN
     return 1 if not state & 1 and unused else ARCS
 
@@ -135,7 +135,7 @@ def augment_shortest(
     work: SearchArrays,
     number: int,
 ) -> int:
-    """Send a unit along a shortest path from each square of `starts` for which one is found; return how many.
+    """Send a unit along a shortest path from each square of `starts` for which one is found; return their number.
 
     States that a search leaves without success stay closed for the rest of the round.
 

@@ -64,7 +64,7 @@ class Capacities(NamedTuple):
     square, edge
         int32; ``(1,)`` each, or ``(squares,)`` and ``(5 * squares,)`` with edge d of square u at ``5 * u + d``.
     each
-        0 if one number holds for all, else 1: indices are multiplied by it.
+        0 if one number applies to all, else 1: indices are multiplied by it.
     """
 
     square: Int32s

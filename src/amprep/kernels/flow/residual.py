@@ -52,7 +52,7 @@ def head_of(network: FlowNetwork, state: int, arc: int) -> int:
 
 @inlined
 def residual_capacity(residual: ResidualNetwork, state: int, arc: int, head: int) -> int:
-    """Return how many more units an arc of `state`, which leads to `head`, can carry; 0 or less if it is full."""
+    """Return the residual capacity of the arc from `state` to `head`; 0 or less if it is full."""
     network, flow, capacities = residual.network, residual.flow, residual.capacities
     u, v = state >> 1, head >> 1
     if state & 1:
@@ -85,7 +85,7 @@ def send(residual: ResidualNetwork, state: int, arc: int, head: int, amount: int
 def find_distances(network: FlowNetwork, vertical: int, oblique: int, distance: Int32s) -> None:
     """Set the least cost of a path from each square to the plate, plane by plane from the plate up.
 
-    A distance holds for paths that arrive in the square from above. Squares that are not passable are
+    A distance is valid for paths that arrive in the square from above. Squares that are not passable are
     `UNREACHABLE`; passable squares from which no path leads to the plate become impassable.
 
     Parameters

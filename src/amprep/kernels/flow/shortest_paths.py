@@ -22,7 +22,7 @@ FAR = np.float32(1e30)
 
 
 class RoutingState(NamedTuple):
-    """The flow of the paths routed so far and what sweeps know of it; kernels modify all arrays in place.
+    """The flow of the paths routed so far and the state of the sweeps; kernels modify all arrays in place.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class RoutingState(NamedTuple):
     dead_end
         ``(squares,)`` int32, number of the last batch in which no path led down from the square.
     edges_used
-        ``(2,)`` int64, how many vertical and how many oblique edges are in use.
+        ``(2,)`` int64, numbers of vertical and of oblique edges in use.
     """
 
     flow: Flow
@@ -75,7 +75,7 @@ class EdgePrices(NamedTuple):
     Attributes
     ----------
     table
-        ``(n,)`` float32, cost factor by the flow on the edge; the last entry holds for any greater flow.
+        ``(n,)`` float32, cost factor by the flow on the edge; the last entry applies to any greater flow.
     vertical, oblique
         Costs of an edge.
     neighbour_factor
@@ -212,7 +212,7 @@ def route(
     chosen: Int64s,
     batch: int,
 ) -> int:
-    """Route a path to the plate from each red square of `chosen` that has none; return how many found none.
+    """Route a path to the plate from each red square of `chosen` that has none; return the number of failures.
 
     Where all edges further down have become full, the path backs up, and the dead end is marked for the rest of
     the batch. A batch only adds paths, so it stays a dead end.

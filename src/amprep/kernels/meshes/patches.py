@@ -11,8 +11,8 @@ from amprep.arrays import Bools, Floats, Int64s
 # - Two projections overlap unless a side of one of them separates them (separating axis theorem in the plane).
 # - Bounding boxes are compared first; they reject almost all pairs.
 # - Visibility from below is decided at sample points only: near each corner, in the middle, and on a square lattice.
-#   A patch that is visible only between the samples is missed; the caller uses the test where columns have so many
-#   patches that the exact union would take too long.
+#   A patch that is visible only between the samples is missed; the caller uses the test in columns with too
+#   many patches for the exact union.
 # In each column every patch is compared with every other: O(n * m) per column, and columns are small.
 
 _MARGIN = 1e-6

@@ -149,7 +149,8 @@ def light_facets(
 
 @njit(cache=True)
 def lit_fraction(shadow: Float32s, column: float, row: float, near: float, bias: float) -> float:
-    """Return the fraction of sunlight at a point: how much of the four nearest shadow pixels is not nearer to the sun.
+    """Return the fraction of sunlight at a point: the weighted part of the four nearest shadow pixels that is not
+    nearer to the sun.
 
     Parameters
     ----------
@@ -220,9 +221,9 @@ def outline_at(
     slope_x, slope_y
         Increase of depth in mm for one pixel to the right and for one pixel down.
     facets
-        Of the scene's triangles.
+        Facets of the scene's triangles.
     jump
-        mm.
+        Smallest difference in depth (mm) that is an outline.
     """
     ids, depth = buffer.ids, buffer.depth
     height, width = depth.shape
@@ -251,7 +252,7 @@ def plate_tone(x: float, y: float, plate: PlateShape) -> float:
     Parameters
     ----------
     x, y
-        mm.
+        The point, mm.
     plate
         Its shape and the size of a pixel.
     """
@@ -298,7 +299,7 @@ def shade(
     marks
         ``(2h, 2w)``; they are faintly visible behind other surfaces.
     facets
-        Of the scene's triangles.
+        Facets of the scene's triangles.
     to_world
         ``(3, 4)`` map of column, row and depth to build coordinates.
     sun, openness, plate

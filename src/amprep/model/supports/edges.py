@@ -111,7 +111,7 @@ class SupportEdges:
         Parameters
         ----------
         squares
-            ``(m, 3)`` further squares; one that no edge meets is a component of its own.
+            ``(m, 3)`` further squares; a square without an edge is a component of its own.
 
         Returns
         -------

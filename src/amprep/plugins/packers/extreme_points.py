@@ -36,7 +36,7 @@ ENOUGH, ALL = 12, 1000
 """Numbers of passes that `enough_passes` returns."""
 
 MANY = 500
-"""With more items, passes by contact area come last: they take some twenty times as long as the others."""
+"""Number of items above which passes by contact area come last: they take some twenty times as long as others."""
 
 
 class ConstructivePass(NamedTuple):
@@ -191,7 +191,7 @@ def constructive_passes(instance: PreparedInstance) -> list[ConstructivePass]:
 
 
 def enough_passes(instance: PreparedInstance) -> int:
-    """Return how many of the passes are useful where time is short."""
+    """Return the number of passes that are useful where time is short."""
     return ENOUGH if _is_stacked(instance) and instance.problem.objective == "builds" else ALL
 
 

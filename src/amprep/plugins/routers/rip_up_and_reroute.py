@@ -37,7 +37,7 @@ class Routing:
     Parameters
     ----------
     costs
-        Of a vertical and of an oblique edge with one path; the problem's own costs if None.
+        Costs of a vertical and of an oblique edge with one path; the problem's own costs if None.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ class Routing:
             self._augment()
 
     def _try_route(self, chosen: Int64s, prices: EdgePrices) -> int:
-        """Route paths of the chosen red squares; return how many found none."""
+        """Route paths of the chosen red squares; return the number of those that found none."""
         self.batch += 1
         sweep(self.network, self.state, prices, self.limits)
         return int(route(self.network, self.state, prices, self.limits, self.paths, chosen, self.batch))

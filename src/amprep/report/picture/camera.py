@@ -46,7 +46,7 @@ class Camera:
 
 
 def view_axes(azimuth_deg: float, elevation_deg: float) -> Floats:
-    """Return the axes of a viewer at `azimuth_deg` (from +x, counter-clockwise), who looks down by `elevation_deg`."""
+    """Return the axes of a camera at `azimuth_deg` (from +x, counter-clockwise) that looks down by `elevation_deg`."""
     azimuth, elevation = radians(azimuth_deg), radians(elevation_deg)
     away = -np.array([cos(azimuth) * cos(elevation), sin(azimuth) * cos(elevation), sin(elevation)])
     right = np.array([-sin(azimuth), cos(azimuth), 0.0])

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from amprep.kernels.picture.shade import DrawnMarks, Facets, PlateShape, Sun
 
 SUN_AXES = view_axes(-112.0, 56.0)
-"""Axes of a viewer who looks in the direction of the sunlight."""
+"""Axes of a camera that looks in the direction of the sunlight."""
 SHADOW_PIXELS = 2048
 GOLDEN_ANGLE = 2.399963
 SKY, FLOOR = "#fdfdfe", "#e4e8ee"

@@ -23,7 +23,7 @@ class TriangleScene:
     vertices, triangles
         ``(n, 3)`` mm and ``(m, 3)``.
     kinds, owner, colours
-        Of each triangle: ``(m,)`` kind, ``(m,)`` index of its mesh, ``(m, 3)`` linear colour.
+        Kind ``(m,)``, index of the mesh ``(m,)`` and linear colour ``(m, 3)`` of each triangle.
     """
 
     vertices: Floats

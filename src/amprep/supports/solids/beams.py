@@ -1,4 +1,4 @@
-"""Clip the beams of a support group at parts and drop what floats; add a mesh for readers without beams."""
+"""Clip the beams of a support group at parts and drop floating components; add a mesh for readers without beams."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

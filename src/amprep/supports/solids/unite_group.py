@@ -123,7 +123,7 @@ def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> lis
 def _subtract_and_shape(
     context: SupportContext, group: int, connectors: "Manifold", red: Bools, depth: Floats, sink: Floats
 ) -> ShapedConnectors:
-    """Subtract the parts from connectors, and shape what is left by the rules; `depth` and `sink` ``(m,)`` mm."""
+    """Subtract the parts from connectors, and shape the rest by the rules; `depth` and `sink` ``(m,)`` mm."""
     obstacles, held = context.obstacles, context.layout.group_parts[group]
     connectors = obstacles.subtract_from(connectors, held, context.overlap)
     if not context.connector.is_shaped:

@@ -22,7 +22,7 @@ from amprep.threemf.read.arrays import load_model
 def read_build(path: Path) -> Build:
     """Read a build that amprep wrote, in any dialect, from the file alone.
 
-    The metadata is used only for what the objects in the file do not show. `PlacedPart.recorded_digest` is the
+    The metadata is used only for facts that the objects in the file do not show. `PlacedPart.recorded_digest` is the
     digest that the metadata states; `amprep.checks` compares it with that of the geometry.
 
     Raises

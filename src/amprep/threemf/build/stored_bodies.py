@@ -38,9 +38,9 @@ class StoredBody:
     Attributes
     ----------
     record
-        amprep's metadata of it.
+        Its metadata in amprep's namespace.
     mesh
-        In its own coordinates; without the beams of `lattice`.
+        Its mesh in its own coordinates, without the beams of `lattice`.
     colours
         ``(m, 3)`` int64, 0xRRGGBBAA at each corner or -1; None if no triangle has a colour.
     matrix

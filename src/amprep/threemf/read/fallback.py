@@ -19,7 +19,7 @@ def read_by_trimesh(package: Package, path: Path, refusal: str) -> list[Part]:
     package
         The scanned package of the file `path`.
     refusal
-        lib3mf's reason, which becomes a note of the first part.
+        Reason why lib3mf refused the file; it becomes a note of the first part.
 
     Raises
     ------

@@ -143,7 +143,7 @@ def beam_objects(
     lattice
         Its beams, with the mesh for readers that do not know beams.
     clipping
-        Name and mesh of what clips the beams, if anything does.
+        Name and mesh of the solid that clips the beams, if there is one.
     first
         Index of the first of the returned objects in the file.
     """

@@ -50,7 +50,7 @@ def write_parts(
         For ``prusaslicer``, blockers and enforcers that are meshes become volumes of their parts; other
         files cannot store them.
     lattices
-        Index of a part -> what replaces its mesh: solids with beams, and the closed mesh that clips the beams.
+        Index of a part -> the replacement of its mesh: solids with beams, and the closed mesh that clips the beams.
 
     Raises
     ------

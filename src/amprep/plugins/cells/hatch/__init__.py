@@ -91,7 +91,7 @@ def _walls(
     Parameters
     ----------
     pitch, step
-        Of the grid, mm.
+        Width and height (mm) of a voxel.
     direction
         Index into `amprep.model.DIRECTIONS`.
     end

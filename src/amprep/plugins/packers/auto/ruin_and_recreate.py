@@ -116,7 +116,7 @@ class RuinAndRecreate:
         return int(code)
 
     def _choose_in_time(self, stop: Stop) -> Arrangement | None:
-        """From time to time choose the fewest builds among all met; return them if a build is saved."""
+        """Choose the fewest builds among all met, if it is time to do so; return them if this saves a build."""
         if self.instance.problem.fixed or self.spent[kernel.SPENT] < self.next_choice:
             return None
         self.next_choice *= GROWTH

@@ -8,7 +8,7 @@ from amprep.arrays import Floats, Int64s
 from amprep.model.control import Stop
 
 MOST_COLUMNS, ADDED, ROUNDS = 1500, 60, 100
-"""Greatest number of builds in the integer program; of builds added in a round of pricing; of such rounds."""
+"""Greatest numbers of builds in the integer program, of builds added in a round of pricing, and of rounds."""
 
 NODES = 300
 """Nodes after which the branch and bound ends, so that the result does not depend on the clock."""
@@ -27,7 +27,7 @@ class Pool(NamedTuple):
         return np.asarray(np.add.reduceat(price[self.type_of], self.start[:-1]))
 
     def counts(self, rows: Int64s, types: int) -> Floats:
-        """Return how many items of each type the builds hold, ``(types, r)``."""
+        """Return the number of items of each type in the builds, ``(types, r)``."""
         held = [self.type_of[self.start[row] : self.start[row + 1]] for row in rows.tolist()]
         return np.array([np.bincount(types_held, minlength=types) for types_held in held], np.float64).T
 

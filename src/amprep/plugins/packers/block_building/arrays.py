@@ -103,7 +103,7 @@ def empty_states(sizes: ArraySizes, rows: int) -> States:
 
 
 def empty_scratch(sizes: ArraySizes, width: int) -> BeamScratch:
-    """Return work arrays for a beam of `width` states with as many successors each."""
+    """Return work arrays for a beam of `width` states with `width` successors each."""
     return BeamScratch(
         fresh=np.zeros((2 * sizes.spaces + 1, 8), np.int64),
         touching=np.zeros(sizes.spaces, np.int64),

@@ -24,7 +24,7 @@ RELAXED_FILL = 0.98
 """Smallest filled fraction of a block when a stricter one gives too few blocks."""
 
 MIN_BLOCKS_PER_BOX = 4
-"""With fewer blocks per oriented box, blocks are generated again with `RELAXED_FILL`."""
+"""Number of blocks per oriented box below which blocks are generated again with `RELAXED_FILL`."""
 
 MAX_REFILLED = 1000
 """Largest number of boxes for which free space is refilled after the boxes were pushed down."""

@@ -19,7 +19,7 @@ from amprep.plugins.packers.bounds.l2 import grown_volume, l2_bound
 from amprep.plugins.packers.instance.prepare import Orientation, PreparedInstance
 
 UNITS = (1.0, 0.5, 0.25, 0.2, 0.1, 0.05, 0.02)
-"""mm; when all lengths are multiples of one of these units, the tolerance makes no difference."""
+"""Units (mm): where all lengths are multiples of one of them, the tolerance makes no difference."""
 
 
 class Amounts(NamedTuple):

@@ -20,7 +20,7 @@ from amprep.plugins.packers.bounds.dual_feasible import greatest_scales
 from amprep.plugins.packers.instance.prepare import PreparedInstance
 
 MOST_TYPES = 400
-"""With more item types, fractional covers take too long to be of use."""
+"""Greatest number of item types for which fractional covers are solved; with more they take too long."""
 
 MOST_CHECKED, DECISIONS = 12, 3000
 """Greatest size of a set that is tested exactly, and greatest number of decisions of a test."""

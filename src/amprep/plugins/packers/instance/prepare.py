@@ -14,7 +14,7 @@ from amprep.model.bounding_volume import BoundingVolume, Boxes
 from amprep.model.packing import Item, Objective, PackingProblem
 
 SAME = 1e-8
-"""mm by which the boxes of two orientations may differ to count as equal."""
+"""Difference (mm) up to which the boxes of two orientations count as equal."""
 
 
 @dataclass(frozen=True, eq=False)

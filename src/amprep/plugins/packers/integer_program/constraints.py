@@ -156,14 +156,14 @@ def builds_in_order(program: Program) -> Iterator[Constraint]:
 
 
 def equal_items_in_order(program: Program) -> Iterator[Constraint]:
-    """Of two equal items the earlier one is used first, or is in the earlier build."""
+    """Yield the constraints that use the earlier one of two equal items first and put it in the earlier build."""
     for run in program.data.alike:
         for one, other in pairwise(run):
             yield _lead(program.data, program.variables, one, other) >= 0
 
 
 def equal_boxes_left_to_right(program: Program) -> Iterator[Constraint]:
-    """Of two equal boxes in one build the earlier one is not to the right of the later one."""
+    """Yield the constraints that keep the earlier one of two equal boxes in a build left of the later one."""
     data, variables = program.data, program.variables
     for run in data.ordered:
         for one, other in pairwise(run):
@@ -174,7 +174,7 @@ def equal_boxes_left_to_right(program: Program) -> Iterator[Constraint]:
 
 
 def _lead(data: ModelData, variables: Variables, one: int, other: int) -> Expression:
-    """Return 0 when both items are in one build or unused, else by how many builds the first one is ahead."""
+    """Return the number of builds by which the first item is ahead; 0 if both are in one build or unused."""
 
     def number(rank: int) -> Expression:
         terms = []

@@ -1,4 +1,4 @@
-"""From the values of a program's variables to an arrangement with exact positions, and back."""
+"""Convert the values of a program's variables to an arrangement with exact positions, and back."""
 
 from typing import Any, NamedTuple
 

@@ -40,9 +40,9 @@ class Neighbourhood:
     Attributes
     ----------
     used
-        For each copy of an item, whether it is used in the old arrangement.
+        True for each copy of an item that is used in the old arrangement.
     holding
-        For each pair of boxes ``(6,)`` the directions that hold in it.
+        Directions ``(6,)`` that hold in the old arrangement, for each pair of boxes.
     used_distance, direction_distance
         Greatest number of *used* variables and of directions that may differ.
     """
