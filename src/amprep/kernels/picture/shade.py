@@ -149,8 +149,7 @@ def light_facets(
 
 @njit(cache=True)
 def lit_fraction(shadow: Float32s, column: float, row: float, near: float, bias: float) -> float:
-    """Return the fraction of sunlight at a point: the weighted part of the four nearest shadow pixels that is not
-    nearer to the sun.
+    """Return the fraction of sunlight at a point: the weight of those of the four nearest pixels that do not shade it.
 
     Parameters
     ----------
