@@ -13,10 +13,12 @@ if TYPE_CHECKING:
     from amprep.pipeline.check_cell import CellReport
     from amprep.pipeline.resolve import ChosenCell
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Modules = Annotated[
     list[str] | None,
-    typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
+    typer.Option(
+        "-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks a plugin."
+    ),
 ]
 
 app = typer.Typer(no_args_is_help=True, help="List the available lattice cells, or check one by itself.")
@@ -40,17 +42,21 @@ def list_all(as_json: AsJson = False, modules: Modules = None) -> None:
 
 @app.command("check")
 def check(
-    cell: Annotated[str, typer.Argument(help="Name of a cell, or path of a TOML, STL, OBJ or 3MF file.")],
+    cell: Annotated[
+        str, typer.Argument(metavar="CELL", help="Name of a cell, or path of a TOML, STL, OBJ or 3MF file.")
+    ],
     sets: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter of the cell.")
     ] = None,
-    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", help="Pitch of the grid.")] = 2.0,
+    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", help="Horizontal size of a cell.")] = 2.0,
     strut_angle: Annotated[
-        float, typer.Option("--strut-angle", metavar="DEG", help="Angle of oblique edges to the horizontal.")
+        float, typer.Option("--strut-angle", metavar="DEG", help="Angle of oblique cells to the horizontal.")
     ] = 45.0,
     angle: Annotated[
         float | None,
-        typer.Option(metavar="DEG", help="Smallest allowed angle to the horizontal; default 30."),
+        typer.Option(
+            metavar="DEG", help="Smallest allowed angle of struts and faces to the horizontal; default 30."
+        ),
     ] = None,
     feature: Annotated[
         float | None,
@@ -66,9 +72,12 @@ def check(
 ) -> None:
     """Check that a lattice cell is closed, stays in the unit cube, joins its neighbours and can be printed.
 
-    The check fills a block of upright edges and columns of oblique edges with the cell. The limits that the cell
-    promises (least_angle_deg, smallest_feature_mm) apply unless an option replaces them. Exit code 0: every promise
-    holds; 1: a promise is broken; 2: the cell does not exist, or it cannot be made in this grid.
+    The check makes a block of upright cells and columns of oblique cells. The
+    limits that the cell promises (least_angle_deg, smallest_feature_mm) apply
+    unless an option replaces them.
+
+    Exit codes: 0 if every promise holds, 1 if one is broken, 2 if the cell
+    does not exist or cannot be made in this grid.
     """
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell

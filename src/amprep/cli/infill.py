@@ -67,12 +67,19 @@ def lattice(
     *,
     options: FillOptions,
 ) -> None:
-    """Fill marked regions of parts with lattice cells and unite each with the solid around it.
+    """Fill marked regions of parts with lattice cells.
 
-    A region is a modifier of the part in a 3MF file (PrusaSlicer, OrcaSlicer, Bambu Studio, Cura), a mesh given by
-    --region, or with --shell everything but a wall of that thickness. Writes NAME.lattice.3mf, which 'amprep run'
-    and slicers read, NAME.lattice.report.json and a picture of the parts cut open. Exit code 0: done; 1: done, but a
-    promise is broken; 2: wrong input or usage, nothing written; 130: interrupted, nothing written.
+    The cells of a region and the solid around it become one mesh.
+
+    A region is a modifier of the part in a 3MF file (PrusaSlicer, OrcaSlicer,
+    Bambu Studio, Cura), a mesh given by --region, or, with --shell, the whole
+    inside of the part below a wall of that thickness.
+
+    It writes NAME.lattice.3mf, which 'amprep run' and slicers read,
+    NAME.lattice.report.json, and a picture of the parts cut open.
+
+    Exit codes: 0 if done, 1 if the result fails verification, 2 for wrong
+    input (nothing written), 130 if interrupted (nothing written).
     """
     from rich.console import Console
 

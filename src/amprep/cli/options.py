@@ -48,7 +48,7 @@ class JobOptions:
         _job_option(
             "--lattice",
             metavar="FORM",
-            help="Write struts of cells as beams (generic files only) or mesh; default: as the cell says.",
+            help="Write struts of cells as beams (generic files only) or as mesh; default: as the cell says.",
         ),
     ] = None
     target: Annotated[
@@ -61,15 +61,17 @@ class JobOptions:
     ] = None
     sets: Annotated[
         list[str] | None,
-        _job_option("--set", metavar="KEY=VALUE", help="Set any key of the job file: supports.pitch_mm=0.8"),
+        _job_option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
+        ),
     ] = None
     output: Annotated[
         Path | None,
         _output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
     ] = None
-    stl: Annotated[bool, _output_option("--stl", help="Write parts and supports as STL files as well.")] = (
-        False
-    )
+    stl: Annotated[bool, _output_option("--stl", help="Write STL files as well.")] = False
     dry_run: Annotated[
         bool, _output_option("--dry-run", help="Plan and verify everything, but write nothing.")
     ] = False

@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from amprep.host import Host, Listed
     from amprep.testing.conformance import OfferReport
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Modules = Annotated[
     list[str] | None,
-    typer.Option("-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks one."),
+    typer.Option(
+        "-p", "--plugin", metavar="MODULE", help="Load a plugin module too; no:NAME blocks a plugin."
+    ),
 ]
 
 app = typer.Typer(no_args_is_help=True, help="List all offers, check a plugin, or start a new plugin.")
@@ -44,17 +46,24 @@ def list_all(
 @app.command("check")
 def check(
     package: Annotated[
-        str, typer.Argument(help="Name of a plugin, distribution or module, or path of a module.")
+        str,
+        typer.Argument(
+            metavar="PLUGIN", help="Name of a plugin, distribution or module, or path of a module."
+        ),
     ],
     sample: Annotated[
         list[Path] | None,
-        typer.Option(help="File for a mesh reader to read, in a format that amprep cannot write."),
+        typer.Option(
+            metavar="FILE",
+            help="Sample file for a mesh reader whose format amprep cannot write; repeatable.",
+        ),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Load a plugin, run each of its offers on sample problems, and check the promises.
+    """Check a plugin: run each of its offers on sample problems and judge the results.
 
-    Exit code 0: every promise holds; 1: a promise is broken; 2: the plugin cannot be loaded.
+    Exit codes: 0 if every promise holds, 1 if one is broken, 2 if the plugin
+    cannot be loaded.
     """
     from amprep.testing.conformance import try_plugin
 
@@ -68,13 +77,15 @@ def check(
 
 @app.command("new")
 def new(
-    name: Annotated[str, typer.Argument(help="Name of the package, e.g. amprep-shelves.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Name of the package, for example amprep-shelves.")
+    ],
     kind: Annotated[
-        str, typer.Option(help="Kind of the offer: packer, cell, router, volume or reader.")
+        str, typer.Option(metavar="KIND", help="Kind of the offer: packer, cell, router, volume or reader.")
     ] = "packer",
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the new package.")] = Path(),
 ) -> None:
-    """Start a plugin: make a package that works and whose tests pass."""
+    """Start a plugin: make a package with an offer that works and tests that pass."""
     from amprep.host.scaffold import make_plugin
 
     folder = make_plugin(name, kind, output)

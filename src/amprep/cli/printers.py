@@ -8,9 +8,9 @@ import typer
 if TYPE_CHECKING:
     from amprep.printers.catalogue import Printer
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
-app = typer.Typer(help="List the printers that a job can name: built-in, of this project, of the user.")
+app = typer.Typer(help="List the printers that a job can name, or show one of them.")
 
 
 @app.callback(invoke_without_command=True)
@@ -36,7 +36,9 @@ def list_all(as_json: AsJson = False) -> None:
 
 @app.command("show")
 def show(
-    name: Annotated[str, typer.Argument(help="Name of a printer, or path of a profile (.toml).")],
+    name: Annotated[
+        str, typer.Argument(metavar="PRINTER", help="Name of a printer, or path of a profile (.toml).")
+    ],
     as_json: AsJson = False,
 ) -> None:
     """Show one printer as a profile that can be saved to a file and changed."""

@@ -36,9 +36,12 @@ def run(
 ) -> None:
     """Pack parts, plan their supports and write build jobs, one 3MF file per printing run.
 
-    Writes NAME.build-1.3mf and so on, NAME.report.html with a 3D view, NAME.report.json, and a picture of each build.
-    Exit code 0: done; 1: done, but something is unplaced, unsupported or fails verification; 2: wrong input or usage,
-    nothing written; 130: interrupted, nothing written.
+    It writes NAME.build-1.3mf and so on, NAME.report.html with a 3D view,
+    NAME.report.json, and a picture of each build.
+
+    Exit codes: 0 if done, 1 if something is unplaced, unsupported or fails
+    verification, 2 for wrong input (nothing written), 130 if interrupted
+    (nothing written).
     """
 
     def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":

@@ -41,9 +41,15 @@ def support(
 ) -> None:
     """Plan supports for parts at the positions in their files; nothing is packed.
 
-    Parts of a 3MF file stay at the positions of its build items, other meshes at their own coordinates. Every part
-    must be in the build volume; the plate is at z = 0. Writes NAME.supported.3mf, NAME.supported.report.html and
-    .json, and a picture. The exit codes are those of 'amprep run'.
+    Parts of a 3MF file stay at the positions of its build items, other meshes
+    at their own coordinates. Every part must be in the build volume; the plate
+    is at z = 0.
+
+    It writes NAME.supported.3mf, NAME.supported.report.html with a 3D view,
+    NAME.supported.report.json, and a picture.
+
+    Exit codes: 0 if done, 1 if something is unsupported or fails verification,
+    2 for wrong input (nothing written), 130 if interrupted (nothing written).
     """
 
     def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":

@@ -13,20 +13,24 @@ if TYPE_CHECKING:
 
 
 def verify(
-    file: Annotated[Path, typer.Argument(help="Build file that amprep wrote (.3mf, any target).")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Build file that amprep wrote (.3mf, any target).")
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; use the exit code.")] = False,
-    debug: Annotated[bool, typer.Option("--debug", help="Show tracebacks.")] = False,  # noqa: ARG001 - `main` reads it
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells the result.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
     """Verify a build from its file alone.
 
-    It checks that parts are inside the build volume, keep their clearance
-    and are unchanged; that supports are closed, stand on the plate and do
-    not penetrate parts; and that every overhang is supported, or listed
-    with a reason.
+    It checks that parts are inside the build volume, keep their clearance and
+    are unchanged; that supports are closed, stand on the plate and do not
+    penetrate parts; and that every overhang is supported, or listed with a
+    reason.
 
-    Exit codes: 0 if all promises hold, 1 if some are broken, 2 if the file
-    is not a build that amprep wrote.
+    Exit codes: 0 if every promise holds, 1 if one is broken, 2 if the file is
+    not a build that amprep wrote.
     """
     from amprep import api
 

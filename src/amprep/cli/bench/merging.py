@@ -10,7 +10,8 @@ from amprep.cli.bench.options import AsJson, Seed, finish, print_json
 def merging(
     cells: Annotated[int, typer.Option("--cells", metavar="N", min=2, help="Number of cells.")] = 100_000,
     sample: Annotated[
-        int, typer.Option("--sample", metavar="N", min=2, help="Number of cells that manifold3d unites too.")
+        int,
+        typer.Option("--sample", metavar="N", min=2, help="Number of cells that manifold3d unites as well."),
     ] = 4096,
     oblique: Annotated[
         float,
@@ -21,8 +22,9 @@ def merging(
 ) -> None:
     """Measure how fast cells are united to one mesh.
 
-    The cells have 200 triangles each and random places.
-    The mesh of a sample is compared with manifold3d's batch union; the exit code is 1 if they differ.
+    The cells have 200 triangles each and are placed at random. The mesh of a
+    sample is compared with the batch union of manifold3d; the exit code is 1
+    if they differ.
     """
     from amprep.bench.merging import run_merging
 

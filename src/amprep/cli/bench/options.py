@@ -8,11 +8,13 @@ import typer
 from amprep import cli
 
 TimeLimit = Annotated[
-    float, typer.Option("--time-limit", metavar="S", min=0.0, help="Time limit per instance (s).")
+    float, typer.Option("--time-limit", metavar="SECONDS", min=0.0, help="Time limit per instance.")
 ]
 PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to measure.")]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the random numbers.")]
-First = Annotated[int, typer.Option("--first", min=1, help="Number of the first instance, from 1.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random numbers.")]
+First = Annotated[
+    int, typer.Option("--first", metavar="N", min=1, help="Number of the first instance, from 1.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
 
 

@@ -15,14 +15,16 @@ if TYPE_CHECKING:
 
 
 def mpv(
-    class_: Annotated[int, typer.Option("--class", metavar="C", min=1, max=8, help="Class, 1 to 8.")],
+    class_: Annotated[
+        int, typer.Option("--class", metavar="C", min=1, max=8, help="Class of the instances, 1 to 8.")
+    ],
     n: Annotated[
         int, typer.Option("--n", metavar="N", min=1, help="Number of boxes; published: 50, 100, 150 and 200.")
     ],
     time_limit: TimeLimit = 10.0,
     packer: PackerName = "auto",
     first: First = 1,
-    count: Annotated[int, typer.Option("--count", min=1, help="Number of instances.")] = 10,
+    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Number of instances.")] = 10,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
@@ -37,11 +39,15 @@ def mpv(
 
 
 def container_loading(
-    file: Annotated[Path, typer.Argument(help="JSON file of instances: container, boxes, rotation flags.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="JSON file of instances: container, boxes, rotations.")
+    ],
     time_limit: TimeLimit = 30.0,
     packer: PackerName = "auto",
     first: First = 1,
-    count: Annotated[int, typer.Option("--count", min=0, help="Number of instances; 0: all.")] = 0,
+    count: Annotated[
+        int, typer.Option("--count", metavar="N", min=0, help="Number of instances; 0: all.")
+    ] = 0,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:

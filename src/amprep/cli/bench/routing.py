@@ -37,10 +37,15 @@ class EscalationName(StrEnum):
 
 def supports(
     sizes: Annotated[
-        list[SceneSize], typer.Option("--size", case_sensitive=False, help="Size of the grid; repeatable.")
+        list[SceneSize],
+        typer.Option(
+            "--size",
+            case_sensitive=False,
+            help="Size of the grid, as inputs A to E of the thesis; repeatable.",
+        ),
     ],
     scenes: Annotated[
-        list[SceneName] | None, typer.Option("--scene", help="Scene; repeatable. Default: all.")
+        list[SceneName] | None, typer.Option("--scene", help="Generated part; repeatable. Default: all.")
     ] = None,
     routers: Annotated[
         list[str] | None,
@@ -58,7 +63,7 @@ def supports(
         EscalationName,
         typer.Option(
             "--escalate",
-            help="Capacities to raise if some red squares cannot be connected: none, a minimum cut, or all.",
+            help="Capacities to raise if some overhangs cannot be connected: none, those of a minimum cut, or all.",
         ),
     ] = EscalationName.NONE,
     rivals: Annotated[

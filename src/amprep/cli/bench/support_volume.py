@@ -21,15 +21,15 @@ def support_volume(
         typer.Option("--router", metavar="NAME", help="Router; repeatable. Default: shortest-paths."),
     ] = None,
     cell: Annotated[str, typer.Option("--cell", metavar="NAME", help="Lattice cell.")] = "x-wall",
-    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", min=0.1, help="Grid pitch (mm).")] = 2.0,
+    pitch: Annotated[float, typer.Option("--pitch", metavar="MM", min=0.1, help="Pitch of the grid.")] = 2.0,
     generated: Annotated[
-        bool, typer.Option("--generated/--no-generated", help="Support the generated parts.")
+        bool, typer.Option("--generated/--no-generated", help="Support the generated parts as well.")
     ] = True,
     as_json: AsJson = False,
 ) -> None:
     """Compare the volume of supports with straight columns of the same contact area.
 
-    Only red squares with a free column down to the plate are supported.
+    Overhangs are supported where a free column leads straight down to the plate.
     If PrusaSlicer is installed, the volume of its own supports is listed as well.
     """
     from amprep.bench.prusaslicer import find_slicer
