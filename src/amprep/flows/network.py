@@ -56,8 +56,8 @@ def flow_problem_of(problem: SupportProblem) -> FlowProblem:
 def cost_overflow(problem: SupportProblem) -> JobError:
     """Return the error that the costs of a path exceed 32 bits."""
     return JobError(
-        f"costs of {problem.costs[0]} and {problem.costs[1]} an edge add up to more than 32 bits over "
-        f"{int(problem.red[:, 0].max(initial=0))} planes: choose smaller ones (supports.vertical_cost, oblique_cost)"
+        f"the costs of a path must fit 32 bits, got edges of {problem.costs[0]} and {problem.costs[1]} over "
+        f"{int(problem.red[:, 0].max(initial=0))} planes; reduce supports.vertical_cost and supports.oblique_cost"
     )
 
 

@@ -88,7 +88,7 @@ def check_cell(
     """
     if not (0.05 <= pitch <= 100.0 and 10.0 <= strut_angle_deg <= 80.0):
         raise JobError(
-            "a pitch of 0.05 to 100 mm and a strut angle of 10 to 80 degrees are possible, "
+            "the pitch must be between 0.05 and 100 mm and the strut angle between 10 and 80 degrees, "
             f"got {pitch:g} and {strut_angle_deg:g}"
         )
     step = pitch * float(np.tan(np.radians(strut_angle_deg)))

@@ -166,7 +166,7 @@ def warnings_of(record: InfillRecord) -> Iterator[str]:
         if part.dropped_components:
             yield (
                 f"{part.name}: dropped {counted(part.dropped_components, 'disconnected component')} of cells "
-                f"({part.dropped_volume_mm3:.3g} mm3), which nothing holds"
+                f"({part.dropped_volume_mm3:.3g} mm3) that nothing holds"
             )
         for found in part.violations:
             yield f"{part.name}: {found.promise}: {found.message}"
@@ -178,8 +178,8 @@ def _trapped_powder_warning(part: FilledPartRecord, hole_mm: float) -> str:
     advice = "; let the region reach the part's surface, or choose a more open cell"
     return (
         f"{part.name}: {trapped:.4g} mm3 of powder in {counted(len(part.pockets), 'pocket')} cannot leave, "
-        f"{trapped / max(between, trapped):.1%} of the powder between the cells (a ball of {hole_mm:g} mm "
-        f"has no way out){advice if trapped > _MUCH_TRAPPED * between else ''}"
+        f"{trapped / max(between, trapped):.1%} of the powder between the cells (no opening "
+        f"lets a ball of {hole_mm:g} mm escape){advice if trapped > _MUCH_TRAPPED * between else ''}"
     )
 
 

@@ -174,9 +174,7 @@ def _apart(checked: Sequence[CheckedPart], stop: Stop) -> list[Violation]:
     pairs = near_pairs(lo, hi, greatest - TOLERANCE)
     for done, (i, j) in enumerate(pairs):
         if stop():
-            message = (
-                f"stopped ({stop.reason}) after {done} of {len(pairs)} pairs of parts; the others are unknown"
-            )
+            message = f"stopped ({stop.reason}) after {done} of {len(pairs)} pairs of parts; the rest was not checked"
             return [*found, Violation("clearance", "build", message)]
         one, other = checked[i], checked[j]
         needed = max(one.clearance, other.clearance)

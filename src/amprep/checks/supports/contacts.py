@@ -45,7 +45,7 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
             box = lo[number], hi[number] + (0.0, 0.0, build.settings.overlap)
             if _volume(common, *box) <= 0.0 and not any(_within(points, *box).any() for points in listed):
                 where = np.round(lo[number], 3).tolist()
-                message = f"nothing touches the part above the red square at {where} mm"
+                message = f"no connector touches the part above the end of the support at {where} mm"
                 found.append(Violation(PROMISE, placed.label, message))
     return found
 

@@ -210,10 +210,8 @@ def _least_volume(mesh: _Candidate) -> float:
 
 def _turning_note(whole: bool, count: int, shells: int) -> str:
     if whole:
-        return "the mesh was inside out: turned"
-    return (
-        f"{count} of {_count(shells, 'shell', 'shells')} {'were' if count > 1 else 'was'} inside out: turned"
-    )
+        return "the mesh was inside out: reversed"
+    return f"{count} of {_count(shells, 'shell', 'shells')} {'were' if count > 1 else 'was'} inside out: reversed"
 
 
 def _rejected(mesh: _Candidate) -> RepairedMesh:

@@ -35,13 +35,15 @@ def choose(problem: SupportProblem) -> RouterChoice:
     capacity = min((c for c in (problem.edge_capacity, problem.node_capacity) if c), default=0)
     voxels = f"{problem.voxels.size:,} voxels"
     if 0 < capacity <= TIGHT:
-        few = f"with a capacity of {capacity} paths can hardly be gathered"
+        few = f"a capacity of {capacity} hardly lets paths merge"
         if problem.voxels.size <= LARGEST_CONGESTED:
-            return RouterChoice("min-cost-flow", f"{few}, so they are to be straight")
-        return RouterChoice("push-relabel", f"{few}, and {voxels} are many for a congested least-cost flow")
+            return RouterChoice("min-cost-flow", f"{few}, so they should be straight")
+        return RouterChoice(
+            "push-relabel", f"{few}, and {voxels} are too many for a congested least-cost flow"
+        )
     if problem.voxels.size <= LARGEST_SEARCHED:
         return RouterChoice("tree", f"{voxels} are few enough to search for the least material")
-    return RouterChoice("shortest-paths", f"it gathers paths quickly, and {voxels} are many for `tree`")
+    return RouterChoice("shortest-paths", f"it merges paths quickly, and {voxels} are too many for `tree`")
 
 
 def route_auto(

@@ -3,14 +3,16 @@
 from dataclasses import dataclass
 from math import isfinite
 
+from amprep.validation import require, require_bounds
+
 
 @dataclass(frozen=True)
 class ShortestPathsParams:
     """Parameters of the router `shortest-paths` (thesis 3.4).
 
-    The thesis has g = 1, 0, 0, 0, 1, 2, 3, 4, a ratio of 0.1 and 30 rounds. The defaults here make joining pay for
-    more paths and leave it to `paths_per_square` to limit them. The small price of joining keeps the paths of a
-    batch from all choosing the same squares, and small batches follow each other's trunks.
+    The thesis has g = 1, 0, 0, 0, 1, 2, 3, 4, a ratio of 0.1 and 30 rounds. With the defaults here, joining
+    saves cost for more paths, and `paths_per_square` limits their number. The small cost of joining keeps the paths
+    of a batch from all choosing the same squares; small batches follow each other's paths.
 
     Attributes
     ----------
@@ -39,20 +41,12 @@ class ShortestPathsParams:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "g", tuple(float(cost) for cost in self.g))
-        if not self.g or not all(isfinite(cost) and cost >= 0 for cost in self.g):
-            raise ValueError(f"g must be a list of one or more costs >= 0, got {list(self.g)}")
-        if not 0 < self.reroute_ratio <= 1:
-            raise ValueError(f"reroute_ratio must be over 0 and at most 1, got {self.reroute_ratio}")
-        if self.rounds < 0:
-            raise ValueError(f"rounds must be 0 or more, got {self.rounds}")
-        if self.seconds is not None and not self.seconds > 0:
-            raise ValueError(f"seconds must be over 0, got {self.seconds}")
-        if not 0 <= self.neighbour_discount < 1:
-            raise ValueError(
-                f"neighbour_discount must be at least 0 and under 1, got {self.neighbour_discount}"
-            )
-        if self.paths_per_square < 0:
-            raise ValueError(f"paths_per_square must be 0 or more, got {self.paths_per_square}")
+        usable = self.g and all(isfinite(cost) and cost >= 0 for cost in self.g)
+        require(bool(usable), "g must be a list of at least one cost, each at least 0", list(self.g))
+        require_bounds(self, "reroute_ratio", above=0, at_most=1)
+        require_bounds(self, "rounds", "paths_per_square", at_least=0)
+        require_bounds(self, "seconds", above=0)
+        require_bounds(self, "neighbour_discount", at_least=0, below=1)
 
 
 @dataclass(frozen=True)
@@ -68,7 +62,7 @@ class TreeParams:
     seconds
         Time limit in addition to the rounds; None for none.
     paths_per_square
-        As for `shortest-paths`.
+        Greatest number of paths in a square, as for `shortest-paths`.
     """
 
     rounds: int = 400
@@ -77,8 +71,6 @@ class TreeParams:
     paths_per_square: int = 9
 
     def __post_init__(self) -> None:
-        for name, least in (("rounds", 0), ("neighbours", 1), ("paths_per_square", 0)):
-            if getattr(self, name) < least:
-                raise ValueError(f"{name} must be {least} or more, got {getattr(self, name)}")
-        if self.seconds is not None and not self.seconds > 0:
-            raise ValueError(f"seconds must be over 0, got {self.seconds}")
+        require_bounds(self, "rounds", "paths_per_square", at_least=0)
+        require_bounds(self, "neighbours", at_least=1)
+        require_bounds(self, "seconds", above=0)

@@ -54,14 +54,14 @@ def plain(array: Floats, decimals: int | None = None) -> Any:
 def as_object(value: Any, name: str) -> JsonObject:
     """Return the value if it is a JSON object."""
     if not isinstance(value, dict):
-        raise ValueError(f"{name} must be an object, not {_shown(value)}")
+        raise ValueError(f"{name} must be an object, got {_shown(value)}")
     return value
 
 
 def as_list(value: Any, name: str) -> list[Any]:
     """Return the value if it is a JSON list."""
     if not isinstance(value, list):
-        raise ValueError(f"{name} must be a list, not {_shown(value)}")
+        raise ValueError(f"{name} must be a list, got {_shown(value)}")
     return value
 
 
@@ -69,7 +69,7 @@ def number(record: JsonObject, name: str) -> float:
     """Return the finite number called `name`; like all functions below, raise ValueError for anything else."""
     value = _entry(record, name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{name} must be a finite number, not {_shown(value)}")
+        raise ValueError(f"{name} must be a finite number, got {_shown(value)}")
     return float(value)
 
 
@@ -77,7 +77,7 @@ def integer(record: JsonObject, name: str, below: int = 2**31) -> int:
     """Return the integer called `name`, at least 0 and less than `below`."""
     value = _entry(record, name)
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < below:
-        raise ValueError(f"{name} must be an integer from 0 to {below - 1}, not {_shown(value)}")
+        raise ValueError(f"{name} must be an integer from 0 to {below - 1}, got {_shown(value)}")
     return value
 
 
@@ -91,7 +91,7 @@ def string(record: JsonObject, name: str) -> str:
     """Return the string called `name`."""
     value = _entry(record, name)
     if not isinstance(value, str):
-        raise ValueError(f"{name} must be a string, not {_shown(value)}")
+        raise ValueError(f"{name} must be a string, got {_shown(value)}")
     return value
 
 
@@ -99,7 +99,7 @@ def boolean(record: JsonObject, name: str) -> bool:
     """Return the boolean called `name`."""
     value = _entry(record, name)
     if not isinstance(value, bool):
-        raise ValueError(f"{name} must be true or false, not {_shown(value)}")
+        raise ValueError(f"{name} must be true or false, got {_shown(value)}")
     return value
 
 
@@ -107,7 +107,7 @@ def choice(record: JsonObject, name: str, known: Iterable[str]) -> str:
     """Return the string called `name`, which must be one of `known`."""
     value = string(record, name)
     if value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(known)}, not {_shown(value)}")
+        raise ValueError(f"{name} must be one of {', '.join(known)}, got {_shown(value)}")
     return value
 
 

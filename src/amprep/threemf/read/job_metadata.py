@@ -65,5 +65,5 @@ def _value(text: str, where: str) -> float:
     except ValueError:
         value = math.nan
     if not (math.isfinite(value) and value >= 0.0):
-        raise InputError(f"{where}: expected a value of 0 or more, got {text[:40]!r}")
+        raise InputError(f"{where}: expected a value of at least 0, got {text[:40]!r}")
     return value

@@ -73,7 +73,7 @@ def _support_objects(build: Build, support: SupportBody, first: int) -> list[Mes
     if lattice.room is not None:
         low, high = lattice.room
         clipping = (
-            f"room of {support.name}",
+            f"clipping mesh of {support.name}",
             Mesh(low + _BOX_CORNERS * (high - low), np.array(_BOX_TRIANGLES)),
         )
     objects, beams = beam_objects(support.name, lattice, clipping, first)

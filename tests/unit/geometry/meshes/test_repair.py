@@ -76,7 +76,7 @@ def test_vertices_no_triangle_uses_do_not_stretch_the_box():
 
 def test_an_inside_out_mesh_is_turned_and_reported():
     repaired = repair_mesh(*inverted(BALL))
-    assert repaired.notes == ("the mesh was inside out: turned",)
+    assert repaired.notes == ("the mesh was inside out: reversed",)
     assert repaired.volume == pytest.approx(BALL_VOLUME)
     assert repaired.turned.all()
     assert np.array_equal(repaired.triangles, BALL[1])
@@ -84,7 +84,7 @@ def test_an_inside_out_mesh_is_turned_and_reported():
 
 def test_one_shell_inside_out_is_turned_and_the_others_stay():
     repaired = repair_mesh(*together(BALL, scaled(inverted(BALL), 0.5, (5, 0, 0))))
-    assert repaired.notes == ("1 of 2 shells was inside out: turned",)
+    assert repaired.notes == ("1 of 2 shells was inside out: reversed",)
     assert repaired.volume == pytest.approx(BALL_VOLUME * (1 + 0.125))
 
 
@@ -96,7 +96,7 @@ def test_the_cavity_of_a_hollow_ball_stays_a_cavity():
 
 def test_a_hollow_ball_inside_out_is_turned_with_its_cavity():
     repaired = repair_mesh(*together(inverted(BALL), scaled(BALL, 0.5)))
-    assert repaired.notes == ("the mesh was inside out: turned",)
+    assert repaired.notes == ("the mesh was inside out: reversed",)
     assert repaired.volume == pytest.approx(BALL_VOLUME * (1 - 0.125))
 
 
