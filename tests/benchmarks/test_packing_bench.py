@@ -21,7 +21,7 @@ CLASSES = [1, 4, 5, 6, 7, 8]
 def boxes_of(class_, n, index):
     """Return the sides of the boxes of a published instance."""
     items = mpv_instance(class_, n, index).problem.items
-    return [item.volume.hi[0].astype(int).tolist() for item in items]
+    return [item.volume.enclosing()[1].astype(int).tolist() for item in items]
 
 
 def problem(sizes, side, **rules):

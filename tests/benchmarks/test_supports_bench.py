@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.shared.optional import present
 
 from amprep.bench.routing.run import run_scene
 from amprep.checks.supports.plan import check_plan
@@ -43,15 +44,15 @@ def test_route_with_two_red_squares_that_cannot_be_connected(benchmark, router, 
 @pytest.mark.parametrize("name", ["ball", "two-balls"])
 def test_rerouting_merges_paths_without_exceeding_nine_per_square(name):
     (result,) = run_scene(["shortest-paths"], name, "E", capacity=0, seed=0)
-    assert result.squares_final <= 0.45 * result.squares_initial
-    assert result.max_paths_per_square <= 9
+    assert present(result.squares_final) <= 0.45 * present(result.squares_initial)
+    assert present(result.max_paths_per_square) <= 9
     assert result.peak_mb is None or result.peak_mb <= 1024
 
 
 def test_routers_are_many_times_faster_than_or_tools_in_the_same_run():
     pytest.importorskip("ortools")
     results = run_scene(["push-relabel", "min-cost-flow"], "two-balls", "D", capacity=1, seed=0, rivals=True)
-    times = {each.router: each.time_ratio for each in results if each.validated}
+    times = {each.router: present(each.time_ratio) for each in results if each.validated}
     assert times["or-tools max-flow"] >= 10
     assert times["or-tools min-cost-flow"] >= 50
 

@@ -17,9 +17,9 @@ def write(solid, path):
     return path
 
 
-def supported(amprep, tmp_path, solid, *options):
+def supported(amprep, tmp_path, solid, *more):
     path = write(solid, tmp_path / "part.stl")
-    options = ["--center", "--json", "-o", tmp_path / "out", *options]
+    options = ["--center", "--json", "-o", tmp_path / "out", *more]
     outcome = amprep("support", path, *options)
     build = read_build(tmp_path / "out" / "part.supported.3mf")
     return outcome, outcome.json["builds"][0]["supports"], build

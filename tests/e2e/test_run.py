@@ -20,7 +20,7 @@ def digest(folder: Path) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory, fixtures) -> Path:
     """Run the demo job once, in a new process."""
-    folder = tmp_path_factory.mktemp("demo")
+    folder: Path = tmp_path_factory.mktemp("demo")
     command = [
         sys.executable,
         "-m",
@@ -110,7 +110,7 @@ def test_walls_without_thickness_are_written_as_support_for_generic_readers_only
 
 
 def test_files_folders_and_counts_may_be_mixed(amprep, fixtures, tmp_path):
-    folder = tmp_path / "parts"
+    folder: Path = tmp_path / "parts"
     folder.mkdir()
     shutil.copy(fixtures / "ball.stl", folder)
     shutil.copy(fixtures / "table.stl", folder)

@@ -7,8 +7,10 @@ import pytest
 from amprep.threemf import read_build
 
 BOX = ((0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 4), (10, 0, 4), (10, 10, 4), (0, 10, 4))
-CORNERS = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4))
-CORNERS += ((1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7))
+CORNERS = (
+    *((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4)),
+    *((1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7)),
+)
 OFFICE = "http://schemas.openxmlformats.org/package/2006"
 FMT = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 

@@ -35,10 +35,9 @@ def scene(name, **rules):
             ball(voxels, needy, (*rng.uniform(0.1, 0.9, 2), rng.uniform(0.15, 0.6)), rng.uniform(0.05, 0.1))
         voxels[13:15, 2:14, 2:14] = Voxel.OCCUPIED
         needy[13, 2:14, 2:14] = True
-    red = needy.copy()
-    red[0] = False
-    red[1:] &= voxels[:-1] == Voxel.FREE
-    red = np.argwhere(red)
+    needy[0] = False
+    needy[1:] &= voxels[:-1] == Voxel.FREE
+    red = np.argwhere(needy)
     grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
     nothing = np.zeros(len(red), np.int32)
     return SupportProblem(grid, voxels, red, nothing, nothing, voxels[0] == Voxel.FREE, **rules)

@@ -1,6 +1,7 @@
 """The number of examples of a property test, scaled by the chosen hypothesis profile."""
 
 from hypothesis import HealthCheck, settings
+from tests.shared.optional import present
 
 USUAL = 100
 """Examples of a test that does not say how many it needs, in the usual profile."""
@@ -11,6 +12,7 @@ def examples(number: int, *, suppress: tuple[HealthCheck, ...] = ()) -> settings
 
     A number below 100 says that an example is expensive, one above 100 that a fault would be rare.
     """
+    profile = present(settings.default)
     return settings(
-        max_examples=max(1, number * settings.default.max_examples // USUAL), suppress_health_check=suppress
+        max_examples=max(1, number * profile.max_examples // USUAL), suppress_health_check=suppress
     )

@@ -56,6 +56,9 @@ def random_problem(seed, **rules):
 class Late(Stop):
     """Says stop from a number of questions on; `asked` counts them."""
 
+    number: int
+    asked: int
+
     def __init__(self, number):
         super().__init__()
         self.__dict__.update(number=number, asked=0)

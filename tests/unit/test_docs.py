@@ -4,8 +4,10 @@ import ast
 import re
 from dataclasses import MISSING, fields
 from pathlib import Path
+from typing import Any
 
 import pytest
+from tests.shared.optional import present
 
 from amprep.host import KINDS
 from amprep.job.loading import KEYS
@@ -133,7 +135,7 @@ def test_the_job_file_in_the_page_is_a_job_file(tmp_path):
         r"```toml\n(.*?)```", (ROOT / "docs" / "job-file.md").read_text(encoding="utf-8"), re.DOTALL
     )
     path = tmp_path / "example.toml"
-    path.write_text(example.group(1), encoding="utf-8")
+    path.write_text(present(example).group(1), encoding="utf-8")
     job = load_job(path)
     assert (job.packing.clearance_mm, job.supports.overhang_angle_deg, job.inputs[0].quantity) == (3, 40, 4)
 
@@ -163,7 +165,7 @@ def test_the_example_of_the_page_about_python_runs(tmp_path, monkeypatch):
     for name in ("table.stl", "two-balls.stl"):
         shutil.copy(ROOT / "fixtures" / name, tmp_path)
     monkeypatch.chdir(tmp_path)
-    names = {}
+    names: dict[str, Any] = {}
     for block in python_blocks("python.md"):
         exec(compile(block, "docs/python.md", "exec"), names)
     assert (tmp_path / "out" / "example.build-1.3mf").is_file()

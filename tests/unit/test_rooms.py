@@ -76,7 +76,7 @@ def test_no_file_name_begins_with_the_name_of_its_folder():
 
 
 def test_a_prefix_that_three_files_share_is_a_folder():
-    shared = {}
+    shared: dict[str, int] = {}
     for folder in FOLDERS:
         counts = Counter(stem.split("_")[0] for stem in modules(folder) if "_" in stem)
         shared |= {f"{name_of(folder)}/{prefix}_": count for prefix, count in counts.items() if count >= 3}
@@ -145,9 +145,10 @@ def top_level_imports(path):
     """Modules that a file imports when it is loaded, and the packages that contain them."""
     own = ("amprep." + name_of(path).removesuffix(".py").replace("/", ".")).removesuffix(".__init__")
     for node in tree(path).body:
-        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("amprep"):
+        module = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+        if not isinstance(node, ast.ImportFrom) or not module.startswith("amprep"):
             continue
-        for target in (node.module, *(f"{node.module}.{alias.name}" for alias in node.names)):
+        for target in (module, *(f"{module}.{alias.name}" for alias in node.names)):
             parts = target.split(".")
             for end in range(2, len(parts) + 1):
                 package = ".".join(parts[:end])

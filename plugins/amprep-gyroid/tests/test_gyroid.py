@@ -67,6 +67,7 @@ def test_the_gradient_is_the_slope_of_the_function():
 def test_it_can_be_printed_and_emptied():
     report = check_cell("gyroid", plugin="amprep_gyroid", pitch=4.0)
     assert (report.kinds, report.violations) == (("implicit",), ())
+    assert report.measures.hole is not None
     assert report.measures.hole > 0.5
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.shared.optional import present
 
 import amprep
 from amprep.errors import AmprepError, InputError, JobError, PluginError
@@ -141,6 +142,9 @@ def test_progress_is_reported_as_fractions_with_the_stage(tmp_path):
 def test_a_plan_without_time_leaves_every_square_unconnected_and_says_so():
     packed = amprep.pack(amprep.load(TABLE))
     planned = amprep.plan_supports(packed.builds[0], stop=Stop.after(0.0), cell="prism", **COARSE)
-    assert str(planned) == f"table.build-1: 0 of {len(planned.layout.red)} red squares connected, pitch 4 mm"
+    assert (
+        str(planned)
+        == f"table.build-1: 0 of {len(present(planned.layout).red)} red squares connected, pitch 4 mm"
+    )
     supported = amprep.emit_cells(planned)
     assert "time limit" in {region.reason for region in supported.build.unsupported}

@@ -1,10 +1,12 @@
 """Offers of declared cells: default parameters, functions of parameters, and refused declarations."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.shared.cells import PIN, emitted, request
+from tests.shared.optional import present
 
 from amprep.cells import cell_offer
 from amprep.cells.samples import block
@@ -39,12 +41,15 @@ def test_a_function_of_params_declares_a_cell_for_the_grid_at_hand():
     asked = block(2.0, 2.0, width=2, layers=2)
     cells = emitted(offer, asked)
     assert (check_cells(asked, cells), check_ports(asked, cells)) == ([], [])
-    assert offer.declare(2.0, 2.0, BallParams()).kinds == ("implicit",)
+    assert present(offer.declare)(2.0, 2.0, BallParams()).kinds == ("implicit",)
 
 
 def test_a_declaration_that_is_none_or_empty_is_refused():
+    def name_only(pitch, step, params) -> Any:
+        return "bcc"
+
     with pytest.raises(PluginError, match="expected a shape or a DeclaredCell, got str"):
-        emitted(cell_offer("x", "Nothing.", lambda pitch, step, params: "bcc"), request([1]))
+        emitted(cell_offer("x", "Nothing.", name_only), request([1]))
     with pytest.raises(JobError, match="nowhere positive"):
         emitted(
             cell_offer("x", "Empty.", ImplicitCell(lambda points: -np.ones(len(points)), 8)), request([1])

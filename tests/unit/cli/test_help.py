@@ -37,7 +37,7 @@ def test_every_option_and_argument_says_its_meaning_in_a_sentence(command):
 
 
 def test_an_option_of_several_commands_has_the_same_help():
-    helps = {}
+    helps: dict[str, dict[str, list[str]]] = {}
     for name, command in COMMANDS:
         if name.split()[1:2] != ["bench"]:
             for each in command.params:

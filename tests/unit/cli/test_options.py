@@ -1,7 +1,7 @@
 """Options that commands share: declared once, listed by every command, and passed on as one record."""
 
 from dataclasses import dataclass, fields
-from typing import Annotated
+from typing import Annotated, Any
 
 import pytest
 import typer
@@ -19,7 +19,7 @@ class Shared:
 
 def invoke(*arguments):
     """Run a command of its own and return what it got."""
-    got = {}
+    got: dict[str, Any] = {}
     small = typer.Typer()
 
     @small.command()
@@ -52,7 +52,8 @@ def test_help_lists_own_and_shared_options():
     ("command", "options"), [("run", BuildOptions), ("support", BuildOptions), ("lattice", JobOptions)]
 )
 def test_every_command_that_takes_a_job_has_the_shared_options(command, options):
-    declared = typer.main.get_command(app).commands[command].params
+    group: Any = typer.main.get_command(app)
+    declared = group.commands[command].params
     assert {each.name for each in declared} >= {field.name for field in fields(options)}
     assert all(each.help for each in declared if each.param_type_name == "option")
 

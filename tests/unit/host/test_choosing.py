@@ -194,7 +194,11 @@ def test_a_right_answer_comes_back_as_it_is():
 def test_a_cell_without_an_estimate_counts_as_full_prisms():
     plain = Listed("cell", CellEmitter("x", "y", run=print), "p", "dist", "1")
     own = Listed("cell", CellEmitter("z", "y", run=print, material=lambda pitch, step, params: (1, 2)), "p")
-    bad = Listed("cell", CellEmitter("b", "y", run=print, material=lambda pitch, step, params: "much"), "p")
+
+    def much(pitch, step, params) -> Any:
+        return "much"
+
+    bad = Listed("cell", CellEmitter("b", "y", run=print, material=much), "p")
     host = host_of(plain, own, bad)
     assert host.material(plain, 2.0, 3.0, NoParams()) == (12.0, 12.0)
     assert host.material(own, 2.0, 3.0, NoParams()) == (1.0, 2.0)

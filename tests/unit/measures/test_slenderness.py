@@ -21,7 +21,7 @@ def test_the_most_slender_component_counts():
     found = measure_slenderness(body(WIDE, TALL))
     assert found.pieces == 2
     assert found.slenderness == pytest.approx(10.0)
-    assert (found.height_mm, found.width_mm) == (pytest.approx(10.0), pytest.approx(1.0))
+    assert (found.height_mm, found.width_mm) == pytest.approx((10.0, 1.0))
     assert found.position_mm == pytest.approx((20.5, 1.5, 5.0))
 
 

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.builds import box_mesh
 from tests.shared.examples import examples
+from tests.shared.optional import present
 
 from amprep.geometry.meshes.subdivision import subdivide
 from amprep.model import Mesh, Part, PlacedPart, Region
@@ -42,7 +43,7 @@ def blocked_area(*regions, mesh=SLAB, matrix=None):
     assert (edge_uses(marked.mesh) == 2).all(), "no gaps, no corners on edges"
     assert marked.mesh.signed_volume == pytest.approx(mesh.signed_volume)
     under = underside(marked.mesh)
-    return area(marked.mesh, under[marked.modifiers.blocked[under]])
+    return area(marked.mesh, under[present(marked.modifiers).blocked[under]])
 
 
 @given(x=st.floats(5, 60), y=st.floats(5, 30), size=st.floats(3, 25))

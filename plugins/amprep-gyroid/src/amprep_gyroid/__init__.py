@@ -65,7 +65,8 @@ def declare_gyroid(pitch: float, step: float, params: GyroidParams) -> ImplicitC
     def wall(points: Floats) -> Floats:
         value, gradient = gyroid(points)
         steepness = np.maximum(np.linalg.norm(gradient / size, axis=1), 1e-6)
-        return params.wall_mm / 2 - np.abs(value) / steepness
+        outside: Floats = np.abs(value) / steepness
+        return params.wall_mm / 2 - outside
 
     if params.kind == "network":
         return ImplicitCell(network, params.resolution or 6)

@@ -52,7 +52,9 @@ def emit_pillars(request: CellRequest, *, params: PillarParams, stop: Stop, prog
         raise JobError(
             f"pillar: diameter_mm must be at most the pitch of {pitch:.4g} mm, got {params.diameter_mm:g}"
         )
-    return Cells((pillar(params.diameter_mm / pitch),), np.zeros(count), np.arange(count), request.matrices)
+    return Cells(
+        (pillar(params.diameter_mm / pitch),), np.zeros(count, np.int64), np.arange(count), request.matrices
+    )
 
 
 def pillar(diameter: float) -> Template:

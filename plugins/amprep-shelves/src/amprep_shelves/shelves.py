@@ -1,5 +1,6 @@
 """Shelf packing: place each part in the first row with room, else in a new row, layer or build."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -160,7 +161,7 @@ def _corners(item: Item) -> np.ndarray:
 
 def _order(problem: PackingProblem, params: Any) -> Any:
     """Return the key by which boxes are sorted; the number of the item breaks ties."""
-    measures = {
+    measures: dict[str, Callable[[Any], tuple[float, ...]]] = {
         "height": lambda box: (box.size[2], box.size[1]),
         "depth": lambda box: (box.size[1], box.size[2]),
         "volume": lambda box: (np.prod(box.size),),

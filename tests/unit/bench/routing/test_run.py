@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from tests.shared.optional import present
 from typer.testing import CliRunner
 
 from amprep.bench.routing.run import THESIS_SECONDS, run_scene
@@ -22,7 +23,7 @@ def test_each_router_of_the_thesis_is_measured(router):
 def test_min_cost_flow_connects_as_many_squares_as_push_relabel_at_no_greater_cost():
     costly, cheap = run_scene(["push-relabel", "min-cost-flow"], "plate", "A", capacity=1, seed=0)
     assert costly.connected == cheap.connected
-    assert cheap.cost <= costly.cost
+    assert present(cheap.cost) <= present(costly.cost)
 
 
 def bench(options):
@@ -50,8 +51,8 @@ def test_the_command_prints_the_time_of_the_thesis_and_rejects_unknown_routers()
 
 def test_rerouting_reduces_the_squares_in_use_by_more_than_40_percent():
     (result,) = run_scene(["shortest-paths"], "ball", "B", capacity=0, seed=0)
-    assert result.squares_final < 0.6 * result.squares_initial
-    assert result.max_paths_per_square <= 9
+    assert present(result.squares_final) < 0.6 * present(result.squares_initial)
+    assert present(result.max_paths_per_square) <= 9
 
 
 def test_other_solvers_find_the_same_values_or_report_why_they_did_not_run(monkeypatch):

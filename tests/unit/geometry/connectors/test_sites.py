@@ -71,9 +71,7 @@ def test_every_site_is_in_its_cell_and_on_the_contact(seed, count):
     rng = np.random.default_rng(seed)
     contact = np.concatenate(
         [
-            rectangle(
-                *np.sort(rng.uniform(0, 4, 2))[[0]], 0.0, *rng.uniform(2, 4, 1), rng.uniform(0.5, 2), level
-            )
+            rectangle(rng.uniform(0, 4, 2).min(), 0.0, rng.uniform(2, 4), rng.uniform(0.5, 2), level)
             for _ in range(2)
         ]
     )

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.optional import present
 
 from amprep.geometry.merging.interfaces import make_interface
 from amprep.geometry.merging.voxel_contents import RESOLUTION
@@ -63,7 +64,8 @@ def test_what_is_left_of_two_regions_has_the_area_that_clipping_gives(ours, thei
 
 def net_edges(edges, middle=None):
     """Count directed edges, forward ones less backward ones, after all splits."""
-    net, todo = Counter(), [tuple(edge) for edge in edges]
+    net: Counter[tuple[int, int]] = Counter()
+    todo = [tuple(edge) for edge in edges]
     while todo:
         a, b = todo.pop()
         point = (middle or {}).get((min(a, b), max(a, b)))
@@ -78,7 +80,7 @@ def net_edges(edges, middle=None):
 def test_exposed_parts_have_the_edges_of_the_outlines_after_their_splits(radii, others, turn):
     """The boundary of low - high, less that of high - low, is the outline of low less that of high."""
     low, high = star(radii, 0.0), star(others, turn)
-    found = make_interface(low, high)
+    found = present(make_interface(low, high))
     number = {tuple(point): index for index, point in enumerate(found.points.tolist())}
     middle = {(min(a, b), max(a, b)): c for a, b, c in found.splits.tolist()}
     outlines = [[number[tuple(a)], number[tuple(b)]] for a, b in low.tolist()]
@@ -90,14 +92,14 @@ def test_exposed_parts_have_the_edges_of_the_outlines_after_their_splits(radii, 
 
 def test_regions_apart_are_exposed_as_they_are():
     low, high = outline((0, 0), (0.4, 0), (0.4, 1), (0, 1)), outline((0.6, 0), (1, 0), (1, 1), (0.6, 1))
-    found = make_interface(low, high)
+    found = present(make_interface(low, high))
     assert (area(found.points, found.low), area(found.points, found.high)) == pytest.approx((0.4, 0.4))
     assert len(found.splits) == 0
 
 
 def test_a_region_inside_another_leaves_a_ring_and_nothing():
-    found = make_interface(
-        outline((0, 0), (1, 0), (1, 1), (0, 1)), outline((0.2, 0.2), (0.8, 0.2), (0.8, 0.8), (0.2, 0.8))
-    )
+    around = outline((0, 0), (1, 0), (1, 1), (0, 1))
+    inside = outline((0.2, 0.2), (0.8, 0.2), (0.8, 0.8), (0.2, 0.8))
+    found = present(make_interface(around, inside))
     assert area(found.points, found.low) == pytest.approx(1 - 0.36)
     assert len(found.high) == 0

@@ -1,6 +1,7 @@
 """The kernels of block building agree with brute force on small containers; they run as plain Python here."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -98,7 +99,7 @@ def test_a_box_in_the_corner_touches_with_half_its_surface():
 
 @given(st.lists(boxes, min_size=1, max_size=6))
 def test_pushed_boxes_rest_on_the_floor_or_on_a_box_below_and_do_not_overlap(candidates):
-    placed = []
+    placed: list[Any] = []
     for box in candidates:
         if not any(overlap(box, other) for other in placed):
             placed.append(box)

@@ -1,5 +1,7 @@
 """Heights and contact areas of the packing kernels, against brute force on a grid of unit cells."""
 
+from typing import Any
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -55,7 +57,7 @@ def test_the_feasible_height_is_the_lowest_free_one(boxes, corner, side):
 @examples(150)
 @given(boxes_in_room, corners, sides)
 def test_the_contact_area_is_the_number_of_unit_faces_that_touch(boxes, corner, side):
-    disjoint = []
+    disjoint: list[Any] = []
     for box in boxes:
         if not (filled(disjoint) & filled([box])).any():
             disjoint.append(box)

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from manifold3d import CrossSection
 from tests.shared.examples import examples
 
+from amprep.arrays import Floats, Ints
 from amprep.kernels.meshes.patches import (
     Patches,
     RaisedPatches,
@@ -18,7 +19,7 @@ LEAST_AREA = 1e-4
 """mm2; smaller overlaps in plan are left undecided."""
 
 
-def polygons(rng, count):
+def polygons(rng, count) -> tuple[Floats, Ints]:
     """Return convex patches: regular polygons in random planes, counter-clockwise seen from above."""
     points, start = [], [0]
     for _ in range(count):

@@ -32,7 +32,7 @@ def nearest(point, walls, reach):
         place = a + np.clip(np.dot(point[:2] - a, along) / max(np.dot(along, along), 1e-300), 0, 1) * along
         away = point[:2] - place
         if np.linalg.norm(away) < min(best, reach) and np.dot(away, outward) > SLACK:
-            best = np.linalg.norm(away)
+            best = float(np.linalg.norm(away))
     return best
 
 

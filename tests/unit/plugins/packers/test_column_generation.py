@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.boxes import boxes_problem
 from tests.shared.examples import examples
+from tests.shared.optional import present
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
@@ -68,7 +69,7 @@ def test_a_fractional_cover_of_a_triangle_prices_each_item_at_a_half():
 
 def test_an_integer_cover_counts_items_of_a_type():
     # five items of one type in builds of two: three builds, however many builds with one item there are
-    chosen = integer_cover([column(0), column(0, 0)], np.array([5]), IpParams(), Stop())
+    chosen = present(integer_cover([column(0), column(0, 0)], np.array([5]), IpParams(), Stop()))
     assert len(chosen) == 3
     assert sum(len(each.type_of) for each in chosen) >= 5
 

@@ -1,5 +1,7 @@
 """Boxes that a pass had no time for are put into rows: a late answer is a whole one."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, TabuParams
 from amprep.plugins.packers.tabu import pack_tabu
 
-PACKERS = {
+PACKERS: dict[str, Any] = {
     "extreme-points": (pack_extreme_points, ExtremePointsParams()),
     "auto": (pack_auto, AutoParams()),
     "tabu": (pack_tabu, TabuParams()),

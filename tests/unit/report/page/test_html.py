@@ -8,12 +8,14 @@ import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.optional import present
 
 from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh
@@ -83,7 +85,7 @@ def renamed(build: Build, name: str) -> Build:
     )
 
 
-def decoded(data: bytes, entry: dict) -> tuple[np.ndarray, np.ndarray]:
+def decoded(data: bytes, entry: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """Decode a mesh as viewer/decode.js does."""
     n, m, start = entry["vertices"], 3 * entry["triangles"], entry["offset"]
     axes = []
@@ -107,7 +109,7 @@ def test_the_page_refers_to_no_other_file_and_to_no_network(make_build):
 
 def test_the_policy_allows_only_the_bundled_script_and_style(make_build):
     page = Tags(html_text(run_of(make_build())))
-    policy = next(a["content"] for tag, a in page.tags if tag == "meta" and "http-equiv" in a)
+    policy = present(next(a["content"] for tag, a in page.tags if tag == "meta" and "http-equiv" in a))
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
     for kind in ("script", "style"):

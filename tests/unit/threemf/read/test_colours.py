@@ -1,6 +1,7 @@
 """The colours of the meshes of a part become one appearance."""
 
 import numpy as np
+from tests.shared.optional import present
 
 from amprep.threemf.read.colours import NO_COLOUR, MeshColours, appearance_of
 
@@ -23,7 +24,7 @@ def test_no_colour_anywhere_is_no_colour():
 def test_different_colours_are_kept_for_each_triangle_in_the_order_of_the_meshes():
     found = appearance_of([colours(RED, NO_COLOUR), colours(BLUE)])
     assert found.colour is None
-    assert found.triangle_colours[:, 0].tolist() == [RED, NO_COLOUR, BLUE]
+    assert present(found.triangle_colours)[:, 0].tolist() == [RED, NO_COLOUR, BLUE]
 
 
 def test_a_part_of_two_materials_has_no_material():

@@ -7,6 +7,7 @@ import zipfile
 import numpy as np
 import pytest
 import trimesh
+from tests.shared.optional import present
 
 from amprep.checks.meshes import check_part
 from amprep.errors import InputError
@@ -219,7 +220,7 @@ def test_the_corners_of_a_mirrored_triangle_keep_their_colours(tmp_path):
     resources = f'{MATERIALS}<object id="1" pid="8" pindex="0">{mesh}</object>'
     build = '<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 0 0 0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", resources, build))
-    assert part.appearance.triangle_colours[0].tolist() == [0x00FF00FF, 0x00FF00FF, 0xFF0000FF]
+    assert present(part.appearance.triangle_colours)[0].tolist() == [0x00FF00FF, 0x00FF00FF, 0xFF0000FF]
     assert part.mesh.triangles[0].tolist() == BOX.faces[0][::-1].tolist()
 
 

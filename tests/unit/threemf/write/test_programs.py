@@ -5,9 +5,11 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from tests.shared.optional import present
 
 from amprep.threemf import write_build
 
@@ -40,7 +42,11 @@ def slice_with_prusa_slicer(path):
     gcode = path.with_suffix(".gcode")
     options = ["--export-gcode", "--dont-arrange", "--no-ensure-on-bed", "--gcode-label-objects"]
     run = subprocess.run(
-        [PRUSA_SLICER, *options, "-o", gcode, path], capture_output=True, text=True, timeout=120, check=False
+        [present(PRUSA_SLICER), *options, "-o", gcode, path],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert run.returncode == 0, run.stdout + run.stderr
     return gcode.read_text().splitlines()
@@ -48,7 +54,8 @@ def slice_with_prusa_slicer(path):
 
 def extents(gcode):
     """Return the smallest and largest printed x and y of each labelled object."""
-    found, label, here = {}, None, np.zeros(2)
+    found: dict[str, Any] = {}
+    label, here = None, np.zeros(2)
     for line in gcode:
         if line.startswith("; printing object "):
             label = line.removeprefix("; printing object ").partition(" id:")[0]
@@ -84,7 +91,11 @@ def test_prusaslicer_prints_parts_and_supports_in_their_positions(make_build, tm
 def test_prusaslicer_reads_a_part_and_its_support_as_one_object(make_build, tmp_path):
     write_build(make_build("prusaslicer"), tmp_path / "job.3mf")
     run = subprocess.run(
-        [PRUSA_SLICER, "--info", tmp_path / "job.3mf"], capture_output=True, text=True, timeout=60, check=True
+        [present(PRUSA_SLICER), "--info", tmp_path / "job.3mf"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
     )
     assert re.findall(r"number_of_facets = +(\d+)", run.stdout) == ["24", "24", "12"]
 
