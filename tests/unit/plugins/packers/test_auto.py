@@ -122,3 +122,18 @@ def test_a_thousand_sizes_on_plates_end_within_the_time_given():
     start = time.process_time()
     run(task, Stop.after(1.0))
     assert time.process_time() - start < 4.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_round_build_is_filled_as_well_as_by_the_orderings_that_the_search_begins_with(seed):
+    rng = np.random.default_rng(seed)
+    room = BuildVolume((20.0, 20.0, 12.0), "cylinder")
+    task = problem(rng.integers(3, 9, (40, 3)).tolist(), room, objective="fill")
+
+    def value(packing):
+        return sum(task.items[placed.item].value for placed in packing.builds[0])
+
+    ordered = pack_extreme_points(
+        task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), progress=silent
+    )
+    assert value(run(task, work=20.0, patience=2)) >= value(ordered)

@@ -32,8 +32,7 @@ def fill_build(
     """
     if not is_of_single_boxes(instance):
         orderings = OrderingSearch(instance, params, rng, stop)
-        # the result is that of the first pass; the later orderings only decide the reason for the end
-        return orderings.result("")._replace(stop_reason=orderings.run(stop, params.work))
+        return orderings.result(orderings.run(stop, params.work))
     early = stop.within(None if stop.deadline is None else ORDERINGS_FRACTION * stop.remaining())
     orderings = OrderingSearch(instance, params, rng, early)
     best = orderings.result(orderings.run(early, ORDERINGS_FRACTION * params.work))
