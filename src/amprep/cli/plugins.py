@@ -164,7 +164,7 @@ def _print_trials(trials: "tuple[OfferReport, ...]") -> None:
     table = Table("offer", "problem", "", "found", box=None)
     for trial in trials:
         result = "[green]holds" if trial.passed else "[red]broken"
-        table.add_row(escape(trial.title), f"{len(trial.problems)} tried", result)
+        table.add_row(escape(trial.title), f"{len(trial.problems)} tried", result, ". ".join(trial.notes))
         for violation in trial.violations:
             promise, found = escape(violation.promise), escape(violation.message)
             table.add_row("", escape(violation.subject), f"[red]{promise}", found)

@@ -290,7 +290,8 @@ class Host:
         except AmprepError:
             raise
         except (Exception, SystemExit) as error:
-            raise PluginError(f"{listed.title} failed: {one_line(error)}") from error
+            part = f" on part {args[0].name!r}" if args and isinstance(args[0], Part) else ""
+            raise PluginError(f"{listed.title} failed{part}: {one_line(error)}") from error
 
 
 def _two_floats(material: Any, pitch: float, step: float, params: Any) -> tuple[float, float]:

@@ -20,6 +20,9 @@ from amprep.testing.case import Case
 from amprep.testing.offers import SEED, LoadedOffer
 from amprep.testing.problems import packing_problems, sample_parts, support_problems, written_samples
 
+REFUSED = "a file that is "
+"""Beginning of the titles of the problems that a mesh reader must refuse."""
+
 
 def cases_for(offer: LoadedOffer, files: Sequence[Path], folder: Path) -> list[Case]:
     """Return the sample problems for one offer.
@@ -93,9 +96,7 @@ def _reader_cases(offer: LoadedOffer, files: Sequence[Path], folder: Path) -> It
             path = folder / f"{name}{suffix}"
             if content is not None:
                 path.write_bytes(content)
-            yield Case(
-                f"a file that is {name} ({suffix})", _refusal(offer, path), _judge_refusal, timed=False
-            )
+            yield Case(f"{REFUSED}{name} ({suffix})", _refusal(offer, path), _judge_refusal, timed=False)
 
 
 def _judge_parts(parts: list[Part]) -> list[Violation]:

@@ -30,6 +30,8 @@ class OfferReport:
         Titles of the sample problems that the offer accepts.
     violations
         Promises that it breaks; the subject names the problem.
+    notes
+        Sentences about promises that could not be checked.
     """
 
     kind: Kind
@@ -37,6 +39,7 @@ class OfferReport:
     title: str
     problems: tuple[str, ...]
     violations: tuple[Violation, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -80,13 +83,15 @@ def try_offer(offer: LoadedOffer, *, samples: Sequence[Path] = ()) -> OfferRepor
     samples
         Files for a mesh reader to read.
     """
-    from amprep.testing.cases import cases_for
+    from amprep.testing.cases import REFUSED, cases_for
 
     with TemporaryDirectory() as folder:
         cases = cases_for(offer, samples, Path(folder))
         violations = [violation for case in cases for violation in _judged(case)]
     problems = tuple(case.problem for case in cases)
-    return OfferReport(offer.listed.kind, offer.name, offer.listed.title, problems, tuple(violations))
+    unread = offer.listed.kind == "reader" and all(problem.startswith(REFUSED) for problem in problems)
+    notes = ("no valid file was read; name one with --sample FILE",) if unread else ()
+    return OfferReport(offer.listed.kind, offer.name, offer.listed.title, problems, tuple(violations), notes)
 
 
 def _judged(case: Case) -> list[Violation]:

@@ -90,15 +90,26 @@ def support_problems() -> Iterator[tuple[str, SupportProblem]]:
 
 
 def sample_parts() -> list[Part]:
-    """Return a box, a tetrahedron away from the origin, and two separate boxes, each with a bounding box."""
+    """Return a box, a tetrahedron away from the origin, and separate boxes side by side and above each other.
+
+    Each has its bounding box.
+    """
     box = box_mesh(np.zeros(3), np.array([10.0, 20, 30]))
     corner = Mesh(np.array([[5.0, 5, 5], [15, 5, 5], [5, 15, 5], [5, 5, 15]]), np.array(_TETRAHEDRON))
     far = box_mesh(np.array([40.0, 0, 0]), np.array([50.0, 5, 5]))
-    both = Mesh(
-        np.concatenate([box.vertices, far.vertices]), np.concatenate([box.triangles, far.triangles + 8])
+    high = box_mesh(np.array([0.0, 0, 70]), np.array([10.0, 20, 75]))
+    named = (
+        ("a box", box),
+        ("a tetrahedron", corner),
+        ("two boxes side by side", _both(box, far)),
+        ("two boxes above each other", _both(box, high)),
     )
-    named = (("a box", box), ("a tetrahedron", corner), ("two boxes apart", both))
     return [Part(name, mesh, mesh.signed_volume, boxes=np.array([mesh.bounds])) for name, mesh in named]
+
+
+def _both(first: Mesh, second: Mesh) -> Mesh:
+    triangles = np.concatenate([first.triangles, second.triangles + len(first.vertices)])
+    return Mesh(np.concatenate([first.vertices, second.vertices]), triangles)
 
 
 _TETRAHEDRON = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))

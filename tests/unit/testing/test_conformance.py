@@ -99,6 +99,16 @@ def test_a_packer_that_breaks_its_promises_is_found_out(tmp_path):
     )
 
 
+def test_a_reader_that_no_valid_file_has_tried_is_reported_as_such(tmp_path):
+    folder = make_plugin("my-reader", "reader", tmp_path)
+    (report,) = try_plugin(str(folder / "src" / "my_reader"))
+    assert report.notes == ("no valid file was read; name one with --sample FILE",)
+    (report,) = try_plugin(
+        str(folder / "src" / "my_reader"), samples=sorted((folder / "tests").glob("sample.*"))
+    )
+    assert report.notes == ()
+
+
 def test_check_refuses_a_name_that_is_taken(tmp_path):
     path = tmp_path / "own_box.py"
     path.write_text(BROKEN.replace('"piled"', '"extreme-points"'))

@@ -7,6 +7,7 @@ from amprep.checks.violation import Violation
 from amprep.model.supports import (
     CAPACITY,
     ENCLOSED,
+    OUT_OF_TIME,
     ROUTER_REASONS,
     SupportPlan,
     SupportProblem,
@@ -85,13 +86,18 @@ def _check_listing(problem: SupportProblem, plan: SupportPlan) -> list[Violation
         return [_violation("unconnected", f"expected numbers of red squares under {count}")]
     if len(np.unique(listed)) < len(listed):
         return [_violation("unconnected", "a red square is listed twice")]
-    known = ROUTER_REASONS if plan.stop_reason != "finished" else ROUTER_REASONS[:2]
-    strange = sorted({each.reason for each in plan.unconnected} - set(known))
-    return (
-        [_violation("unconnected", f"expected one of the reasons {known}, got {strange[0]!r}")]
-        if strange
-        else []
-    )
+    reasons = {each.reason for each in plan.unconnected}
+    strange = sorted(reasons - set(ROUTER_REASONS))
+    if strange:
+        return [
+            _violation("unconnected", f"expected one of the reasons {ROUTER_REASONS}, got {strange[0]!r}")
+        ]
+    if OUT_OF_TIME in reasons and plan.stop_reason == "finished":
+        message = (
+            f"{OUT_OF_TIME!r} is a reason only if the plan's stop_reason is that of stop, got 'finished'"
+        )
+        return [_violation("unconnected", message)]
+    return []
 
 
 def _check_flow(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
@@ -178,15 +184,19 @@ def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation
     if not plan.unconnected:
         return []
     reachable = _reachable(problem)
-    found = []
+    untrue: dict[str, list[int]] = {}
     for each in plan.unconnected:
         if reachable[each.red] == (each.reason == ENCLOSED):
             truth = "there is a path" if reachable[each.red] else "there is no path"
-            found.append(_violation(f"red square {each.red}", f"listed as {each.reason!r}, but {truth}"))
         elif each.reason == CAPACITY and not (problem.node_capacity or problem.edge_capacity):
-            message = "listed as 'capacity', but the problem has no capacities"
-            found.append(_violation(f"red square {each.red}", message))
-    return found
+            truth = "the problem has no capacities"
+        else:
+            continue
+        untrue.setdefault(f"listed as {each.reason!r}, but {truth}", []).append(each.red)
+    return [
+        _violation(f"red square {reds[0]}", f"{message} ({len(reds)} such squares)")
+        for message, reds in untrue.items()
+    ]
 
 
 def _reachable(problem: SupportProblem) -> Bools:

@@ -7,7 +7,7 @@ import pytest
 
 from amprep.checks.supports.plan import check_plan
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.supports import CAPACITY, ENCLOSED, SupportPlan, SupportProblem, Unconnected
+from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, SupportPlan, SupportProblem, Unconnected
 from amprep.model.supports.edges import SupportEdges
 
 
@@ -86,6 +86,9 @@ def test_red_squares_must_be_connected_or_listed_once_with_a_true_reason(task, p
     assert "expected one of the reasons" in messages(
         task, replace(plan, unconnected=(Unconnected(2, "tired"),))
     )
+    assert "only if the plan's stop_reason" in messages(
+        task, replace(plan, unconnected=(Unconnected(2, OUT_OF_TIME),))
+    )
     assert "there is no path" in messages(task, replace(plan, unconnected=(Unconnected(2, CAPACITY),)))
     half = replace(plan, edges=plan.edges[:4])
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, ENCLOSED)))
@@ -93,6 +96,15 @@ def test_red_squares_must_be_connected_or_listed_once_with_a_true_reason(task, p
     lazy = replace(half, unconnected=(enclosed, Unconnected(1, CAPACITY)))
     assert "has no capacities" in messages(task, lazy)
     assert check_plan(replace(task, edge_capacity=1), lazy) == []
+
+
+def test_red_squares_with_the_same_untrue_reason_are_one_violation(task, plan):
+    listed = tuple(Unconnected(red, CAPACITY) for red in range(3))
+    found = check_plan(task, replace(plan, edges=plan.edges[:0], unconnected=listed))
+    assert [(each.subject, each.message) for each in found] == [
+        ("red square 0", "listed as 'capacity', but the problem has no capacities (2 such squares)"),
+        ("red square 2", "listed as 'capacity', but there is no path (1 such squares)"),
+    ]
 
 
 def merged_plan(plan):
