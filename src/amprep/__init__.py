@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from amprep.api import (
+        InfillRecord,
         Job,
         LoadedParts,
         PackedBuild,
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
         Verification,
         Violation,
         emit_cells,
+        fill_parts,
         load,
         pack,
         plan_supports,
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "InfillRecord",
     "Job",
     "LoadedParts",
     "PackedBuild",
@@ -43,6 +46,7 @@ __all__ = [
     "Violation",
     "__version__",
     "emit_cells",
+    "fill_parts",
     "load",
     "pack",
     "plan_supports",

@@ -7,15 +7,17 @@ new ones.
 
 from amprep.api.build_file import Verification, verify, write
 from amprep.api.steps import emit_cells, load, pack, plan_supports
-from amprep.api.whole_job import run, support
+from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
 from amprep.job import Job
 from amprep.pipeline.packing import PackedBuild, PackedParts
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
+from amprep.report.infill import InfillRecord
 from amprep.report.record import RunRecord
 
 __all__ = [
+    "InfillRecord",
     "Job",
     "LoadedParts",
     "PackedBuild",
@@ -26,6 +28,7 @@ __all__ = [
     "Verification",
     "Violation",
     "emit_cells",
+    "fill_parts",
     "load",
     "pack",
     "plan_supports",

@@ -5,11 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from amprep.api.resolved import resolved_job
+from amprep.api.job import job_and_host
 from amprep.host import Host
 from amprep.model import Mesh, Part, Progress, Stop, silent
 from amprep.pipeline.packing import PackedBuild, PackedParts, pack_parts
 from amprep.pipeline.reading import LoadedParts, read_job
+from amprep.pipeline.resolve import resolve
 from amprep.pipeline.stages import Clock, ProgressWatcher
 from amprep.pipeline.support_plate import place_as_read
 from amprep.pipeline.supporting import PlannedBuild, SupportedBuild, emit_supports, plan_build
@@ -73,7 +74,7 @@ def load(
     geometry = [_part(each) for each in inputs if isinstance(each, Part | Mesh)]
     files = [each for each in inputs if not isinstance(each, Part | Mesh)]
     changes = {"printer": printer, "seed": seed, "target": target, **(settings or {})}
-    resolved = resolved_job(files, changes, plugins, default=geometry[0].name if geometry else None)
+    resolved = resolve(*job_and_host(files, changes, plugins, default=geometry[0].name if geometry else None))
     return read_job(resolved, Clock(ProgressWatcher(progress)), more=geometry, allow_surface=allow_surface)
 
 

@@ -1,16 +1,19 @@
-"""Run a whole job, as the commands ``amprep run`` and ``amprep support`` do."""
+"""Run a whole job, as the commands ``amprep run``, ``amprep support`` and ``amprep lattice`` do."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from amprep.api.resolved import resolved_job
+from amprep.api.job import job_and_host
 from amprep.host import Host
 from amprep.job import Job
 from amprep.model import Progress, Stop, silent
+from amprep.pipeline.fill_parts import LatticeOptions, fill_marked_regions
+from amprep.pipeline.resolve import resolve
 from amprep.pipeline.run import RunOptions, run_job
 from amprep.pipeline.stages import ProgressWatcher, Watcher
 from amprep.pipeline.support_plate import support_plate
+from amprep.report.infill import InfillRecord
 from amprep.report.record import RunRecord
 
 
@@ -75,7 +78,7 @@ def run(
     ['job.build-1.3mf']
     """
     options = RunOptions(Path(output), dry_run, stl, allow_surface, time_limit_s)
-    resolved = resolved_job(inputs, {"printer": printer, **(settings or {})}, plugins)
+    resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))
     return run_job(resolved, options, watcher=watcher or ProgressWatcher(progress), stop=stop or Stop())
 
 
@@ -115,6 +118,65 @@ def support(
     'plate.supported.3mf'
     """
     options = RunOptions(Path(output), dry_run, stl, allow_surface, time_limit_s)
-    resolved = resolved_job(inputs, {"printer": printer, **(settings or {})}, plugins)
+    resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))
     watcher = watcher or ProgressWatcher(progress)
     return support_plate(resolved, options, center=center, watcher=watcher, stop=stop or Stop())
+
+
+def fill_parts(
+    *inputs: str | Path | Job,
+    output: str | Path,
+    region_files: Sequence[str | Path] = (),
+    regions: Sequence[str] = (),
+    shell_mm: float | None = None,
+    size_mm: float | None = None,
+    height_mm: float | None = None,
+    settings: Mapping[str, Any] | None = None,
+    dry_run: bool = False,
+    stl: bool = False,
+    plugins: Host | Sequence[str] = (),
+    stop: Stop | None = None,
+    progress: Progress = silent,
+    watcher: Watcher | None = None,
+) -> InfillRecord:
+    """Fill marked regions of parts with lattice cells, as the command ``amprep lattice`` does.
+
+    Parameters
+    ----------
+    output
+        Folder of the output files, or the 3MF file to write; the other files are then named after it.
+    region_files
+        Mesh files of further regions, in the coordinates of the input.
+    regions
+        Names of the regions to fill; all regions if empty.
+    shell_mm
+        Depth below the surface from which parts are filled, instead of marked regions.
+    size_mm, height_mm
+        Size and height of a cell; None for the default size, and for a height equal to the size.
+    settings
+        Settings of the job by dotted keys, for example ``{"cells.strategy": "bcc"}``.
+    inputs, dry_run, stl, plugins, stop, progress, watcher
+        As in `run`.
+
+    Raises
+    ------
+    AmprepError
+        For wrong input or settings, a cell that fails, or when there is no region to fill.
+
+    Examples
+    --------
+    >>> record = amprep.fill_parts("wheel.3mf", output="out", settings={"cells.strategy": "bcc"})
+    >>> record.files
+    ('wheel.lattice.3mf', 'wheel.lattice.png', 'wheel.lattice.report.json')
+    """
+    job, host = job_and_host(inputs, settings or {}, plugins)
+    folder, stem = Path(output), f"{job.name}.lattice"
+    if folder.suffix.lower() == ".3mf":
+        folder, stem = folder.resolve().parent, folder.stem
+    files = tuple(Path(each) for each in region_files)
+    options = LatticeOptions(
+        folder, stem, files, tuple(regions), shell_mm, size_mm, height_mm, stl=stl, dry_run=dry_run
+    )
+    return fill_marked_regions(
+        job, host, options, watcher=watcher or ProgressWatcher(progress), stop=stop or Stop()
+    )

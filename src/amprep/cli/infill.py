@@ -2,18 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from amprep import cli
-from amprep.cli.job import folder_of, make_job, show, watched
+from amprep.cli.job import call_api, finish
 from amprep.cli.options import JobOptions, with_options
-
-if TYPE_CHECKING:
-    from amprep.host import Host
-    from amprep.pipeline.stages import Watcher
-    from amprep.report.infill import InfillRecord
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,38 +75,18 @@ def lattice(
     Exit codes: 0 if done, 1 if the result fails verification, 2 for wrong
     input (nothing written), 130 if interrupted (nothing written).
     """
-    from rich.console import Console
-
-    job = make_job(inputs, options, {})
-
-    def work(host: "Host", watcher: "Watcher") -> "InfillRecord":
-        from amprep.model import Stop
-        from amprep.pipeline.fill_parts import LatticeOptions, fill_lattice
-
-        folder, stem = _folder_and_stem(inputs, options, job.name)
-        asked = LatticeOptions(
-            folder,
-            stem,
-            tuple(region or ()),
-            tuple(region_name or ()),
-            shell,
-            size,
-            height,
-            options.stl,
-            options.dry_run,
-        )
-        return fill_lattice(job, host, asked, watcher=watcher, stop=Stop())
-
-    record = watched(work, Console(stderr=True, quiet=options.quiet), options)
+    record = call_api(
+        "fill_parts",
+        inputs,
+        options,
+        {},
+        region_files=region or (),
+        regions=region_name or (),
+        shell_mm=shell,
+        size_mm=size,
+        height_mm=height,
+    )
 
     from amprep.report.infill import summary, to_json
 
-    show(lambda: to_json(record), lambda: summary(record), options)
-    raise typer.Exit(cli.INCOMPLETE if record.faults else cli.DONE)
-
-
-def _folder_and_stem(inputs: list[str], options: FillOptions, name: str) -> tuple[Path, str]:
-    """Return the output folder and the stem of the file names."""
-    if options.output is not None and options.output.suffix.lower() == ".3mf":
-        return options.output.resolve().parent, options.output.stem
-    return folder_of(inputs, options), f"{name}.lattice"
+    finish(record, to_json, summary, options)

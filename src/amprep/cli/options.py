@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
@@ -28,12 +28,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON."
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 
 
-def _job_option(*names: str, help: str, **more: Any) -> Any:  # noqa: A002 - as typer calls it
-    return typer.Option(*names, help=help, rich_help_panel=_JOB, **more)
-
-
-def _output_option(*names: str, help: str, **more: Any) -> Any:  # noqa: A002 - as typer calls it
-    return typer.Option(*names, help=help, rich_help_panel=_OUTPUT, **more)
+_job_option = partial(typer.Option, rich_help_panel=_JOB)
+_output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
 
 
 @dataclass(frozen=True, kw_only=True)

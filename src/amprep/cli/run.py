@@ -1,18 +1,11 @@
 """``amprep run``: pack, support and write build jobs."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from amprep.cli.job import build_and_report
 from amprep.cli.options import BuildOptions, with_options
-
-if TYPE_CHECKING:
-    from amprep.host import Host
-    from amprep.job import Job
-    from amprep.pipeline.stages import Watcher
-    from amprep.report.record import RunRecord
 
 
 @with_options(BuildOptions)
@@ -43,19 +36,4 @@ def run(
     verification, 2 for wrong input (nothing written), 130 if interrupted
     (nothing written).
     """
-
-    def work(job: "Job", folder: Path, host: "Host", watcher: "Watcher") -> "RunRecord":
-        from amprep import api
-
-        return api.run(
-            job,
-            output=folder,
-            dry_run=options.dry_run,
-            stl=options.stl,
-            allow_surface=options.allow_surface,
-            time_limit_s=options.time_limit,
-            plugins=host,
-            watcher=watcher,
-        )
-
-    build_and_report(work, inputs, options, {"packing.strategy": packer})
+    build_and_report("run", inputs, options, {"packing.strategy": packer})

@@ -1,19 +1,12 @@
-"""Measure the mass of a filled part and the powder trapped in it."""
+"""Measure the powder trapped in a filled part."""
 
 import numpy as np
 
 from amprep.geometry.powder.pockets import Pocket, find_pockets
-from amprep.measures.removability import density_of
-from amprep.model import Mesh, Part
+from amprep.model import Mesh
 
 _LIFT = 1000.0
 """Height (mm) to which a part is lifted, so that the plate closes no opening."""
-
-
-def mass(part: Part, volume: float, density: float | None) -> float | None:
-    """Return the mass in grams; None without a density (g/cm3) if the material of the part is unknown."""
-    density = density or density_of(part.appearance.material)
-    return None if density is None else volume * density / 1000.0
 
 
 def pockets_of(mesh: Mesh, hole: float) -> tuple[Pocket, ...]:

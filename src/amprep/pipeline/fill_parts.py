@@ -14,7 +14,8 @@ from amprep.infill.block import default_size
 from amprep.infill.fill_region import FilledPart, fill_region, meets
 from amprep.infill.regions import KIND, chosen, positions, with_files, without
 from amprep.job import Job
-from amprep.measures.filled_part import mass, pockets_of
+from amprep.measures.filled_part import pockets_of
+from amprep.measures.removability import density_of
 from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Progress, Region, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.reading import expand_inputs, read_all
@@ -82,7 +83,7 @@ class _PartFill:
         )
 
 
-def fill_lattice(
+def fill_marked_regions(
     job: Job, host: Host, options: LatticeOptions, *, watcher: Watcher, stop: Stop
 ) -> InfillRecord:
     """Fill the marked regions of the parts of a job with its cell and return a record for the report.
@@ -125,10 +126,7 @@ def fill_lattice(
                 return cell.emit(request, stop=stop, progress=progress)
 
             done.append(_filled(each, emit, job, size, height, progress))
-    records = []
-    for each in done:
-        if each.filled is not None:
-            records.append(_measured(each, each.filled, job, clock))
+    records = tuple(_measured(each, each.filled, job, clock) for each in done if each.filled is not None)
     record = InfillRecord(
         job.name,
         __version__,
@@ -136,7 +134,7 @@ def fill_lattice(
         size,
         height,
         job.cells.powder_hole_mm,
-        tuple(records),
+        records,
         tuple(each.part.name for each in done if each.filled is None),
         warnings=(*host.warnings, *_notes(done, job)),
     )
@@ -197,17 +195,10 @@ def _filled(
         size=size,
         height=height,
         overlap=job.cells.overlap_mm,
-        beams=_beams(job),
+        beams=job.beams,
         progress=progress,
     )
     return replace(each, filled=filled)
-
-
-def _beams(job: Job) -> bool | None:
-    """Return whether struts become beams; None leaves it to the parameters of the cell. Slicers read no beams."""
-    if job.target != "generic" or job.cells.lattice == "mesh":
-        return False
-    return True if job.cells.lattice == "beams" else None
 
 
 def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> FilledPartRecord:
@@ -221,25 +212,14 @@ def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> Fi
     with clock.stage("powder"):
         pockets = pockets_of(filled.mesh, settings.powder_hole_mm)
         before = pockets_of(part.mesh, settings.powder_hole_mm) if pockets else ()
-    volume, density = filled.mesh.signed_volume, settings.density_g_cm3
     return FilledPartRecord(
-        name=part.name,
-        regions=tuple(region.name for region in each.regions),
-        cells=filled.count,
-        beams=0 if filled.lattice is None else len(filled.lattice.struts),
-        triangles=len(filled.mesh.triangles),
-        volume_before_mm3=part.volume_mm3,
-        volume_after_mm3=volume,
-        region_volume_mm3=filled.region.signed_volume,
-        cell_volume_mm3=filled.cells_mm3,
-        mass_before_g=mass(part, part.volume_mm3, density),
-        mass_after_g=mass(part, volume, density),
-        dropped_components=filled.dropped_components,
-        dropped_volume_mm3=filled.dropped_volume_mm3,
-        genus=filled.genus,
-        pockets=pockets,
-        pockets_before_mm3=sum(pocket.volume for pocket in before),
-        violations=tuple(found),
+        part,
+        tuple(region.name for region in each.regions),
+        filled,
+        settings.density_g_cm3 or density_of(part.appearance.material),
+        pockets,
+        sum(pocket.volume for pocket in before),
+        tuple(found),
     )
 
 

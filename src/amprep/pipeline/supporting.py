@@ -150,7 +150,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
                 base=job.cells,
                 overlap=settings.overlap,
                 allow_surface=job.target == "generic",
-                beams=_beams(job),
+                beams=job.beams,
                 gap=job.supports.gap_mm,
                 space=job.printer.space,
             ),
@@ -179,13 +179,6 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         supported=job.supports.enabled,
         supports_as=job.supports.write_as,
     )
-
-
-def _beams(job: Job) -> bool | None:
-    """Return whether the cell is to make beams, None to leave it to its parameters; slicers know none."""
-    if job.target != "generic" or job.cells.lattice == "mesh":
-        return False
-    return True if job.cells.lattice == "beams" else None
 
 
 def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) -> SupportLayout:

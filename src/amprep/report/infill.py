@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
+from amprep.infill.fill_region import FilledPart
+from amprep.model import Part
 from amprep.report.counting import counted
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.record import StageTime
@@ -21,60 +23,55 @@ FORMAT = 1
 """Version of the layout; it increases when a key changes its meaning or is removed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FilledPartRecord:
     """A part in which regions were filled with cells.
 
     Attributes
     ----------
+    part
+        The part before filling.
     regions
         Names of the regions.
-    cells, beams
-        Number of cells, and of beams; 0 beams if cells are solids.
-    volume_before_mm3, volume_after_mm3, region_volume_mm3, cell_volume_mm3
-        Volume of the part before and after; of the material that the cells replaced, and of the cells.
-    mass_before_g, mass_after_g
-        None if the density is unknown.
-    dropped_components, dropped_volume_mm3
-        Disconnected components of cells, which nothing holds; they were removed.
-    genus
-        Genus of the part's surfaces.
+    filled
+        The filled part.
+    density_g_cm3
+        Density of the material; None if it is unknown.
     pockets
         Powder that cannot leave, largest first, whatever encloses it.
     pockets_before_mm3
         Volume of the pockets before filling.
     """
 
-    name: str
+    part: Part
     regions: tuple[str, ...]
-    cells: int
-    beams: int
-    triangles: int
-    volume_before_mm3: float
-    volume_after_mm3: float
-    region_volume_mm3: float
-    cell_volume_mm3: float
-    mass_before_g: float | None
-    mass_after_g: float | None
-    dropped_components: int
-    dropped_volume_mm3: float
-    genus: int
+    filled: FilledPart
+    density_g_cm3: float | None
     pockets: tuple[Pocket, ...]
     pockets_before_mm3: float
     violations: tuple[Violation, ...]
 
     @property
-    def relative_density(self) -> float:
-        """Fraction of the region that the cells fill."""
-        return self.cell_volume_mm3 / self.region_volume_mm3
+    def beams(self) -> int:
+        """Number of beams; 0 if cells are solids."""
+        return 0 if self.filled.lattice is None else len(self.filled.lattice.struts)
+
+    @property
+    def volume_mm3(self) -> float:
+        """Volume of the filled part."""
+        return self.filled.mesh.signed_volume
 
     @property
     def trapped_powder_mm3(self) -> float:
         """Volume of powder that the cells trap: that of the pockets after filling less that before."""
         return max(sum(pocket.volume for pocket in self.pockets) - self.pockets_before_mm3, 0.0)
 
+    def mass_g(self, volume_mm3: float) -> float | None:
+        """Return the mass of a volume of the material; None if the density is unknown."""
+        return None if self.density_g_cm3 is None else volume_mm3 * self.density_g_cm3 / 1000.0
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class InfillRecord:
     """A call of ``amprep lattice``.
 
@@ -120,8 +117,8 @@ def to_json(record: InfillRecord) -> dict[str, Any]:
             "height_mm": record.height_mm,
             "powder_hole_mm": record.powder_hole_mm,
             "parts": [_part(part) for part in record.parts],
-            "unchanged_parts": list(record.unchanged_parts),
-            "files": list(record.files),
+            "unchanged_parts": record.unchanged_parts,
+            "files": record.files,
             "stages": stages_json(record.stages),
             "warnings": list(warnings_of(record)),
         }
@@ -135,22 +132,23 @@ def write_json(record: InfillRecord, path: Path) -> None:
 
 
 def _part(part: FilledPartRecord) -> dict[str, Any]:
+    filled = part.filled
     return {
-        "name": part.name,
-        "regions": list(part.regions),
-        "cells": part.cells,
+        "name": part.part.name,
+        "regions": part.regions,
+        "cells": filled.count,
         "beams": part.beams,
-        "triangles": part.triangles,
-        "volume_before_mm3": part.volume_before_mm3,
-        "volume_after_mm3": part.volume_after_mm3,
-        "region_volume_mm3": part.region_volume_mm3,
-        "cell_volume_mm3": part.cell_volume_mm3,
-        "relative_density": part.relative_density,
-        "mass_before_g": part.mass_before_g,
-        "mass_after_g": part.mass_after_g,
-        "dropped_components": part.dropped_components,
-        "dropped_volume_mm3": part.dropped_volume_mm3,
-        "genus": part.genus,
+        "triangles": len(filled.mesh.triangles),
+        "volume_before_mm3": part.part.volume_mm3,
+        "volume_after_mm3": part.volume_mm3,
+        "region_volume_mm3": filled.region.signed_volume,
+        "cell_volume_mm3": filled.cells_mm3,
+        "relative_density": filled.density,
+        "mass_before_g": part.mass_g(part.part.volume_mm3),
+        "mass_after_g": part.mass_g(part.volume_mm3),
+        "dropped_components": filled.dropped_components,
+        "dropped_volume_mm3": filled.dropped_volume_mm3,
+        "genus": filled.genus,
         "trapped_powder_mm3": part.trapped_powder_mm3,
         "pockets": pockets_json(part.pockets),
         "violations": violations_json(part.violations),
@@ -163,21 +161,21 @@ def warnings_of(record: InfillRecord) -> Iterator[str]:
     for part in record.parts:
         if part.trapped_powder_mm3 > 0.0:
             yield _trapped_powder_warning(part, record.powder_hole_mm)
-        if part.dropped_components:
+        if dropped := part.filled.dropped_components:
             yield (
-                f"{part.name}: dropped {counted(part.dropped_components, 'disconnected component')} of cells "
-                f"({part.dropped_volume_mm3:.3g} mm3) that nothing holds"
+                f"{part.part.name}: dropped {counted(dropped, 'disconnected component')} of cells "
+                f"({part.filled.dropped_volume_mm3:.3g} mm3) that nothing holds"
             )
         for found in part.violations:
-            yield f"{part.name}: {found.promise}: {found.message}"
+            yield f"{part.part.name}: {found.promise}: {found.message}"
 
 
 def _trapped_powder_warning(part: FilledPartRecord, hole_mm: float) -> str:
     trapped = part.trapped_powder_mm3
-    between = part.region_volume_mm3 - part.cell_volume_mm3
+    between = part.filled.region.signed_volume - part.filled.cells_mm3
     advice = "; let the region reach the part's surface, or choose a more open cell"
     return (
-        f"{part.name}: {trapped:.4g} mm3 of powder in {counted(len(part.pockets), 'pocket')} cannot leave, "
+        f"{part.part.name}: {trapped:.4g} mm3 of powder in {counted(len(part.pockets), 'pocket')} cannot leave, "
         f"{trapped / max(between, trapped):.1%} of the powder between the cells (no opening "
         f"lets a ball of {hole_mm:g} mm escape){advice if trapped > _MUCH_TRAPPED * between else ''}"
     )
@@ -197,13 +195,14 @@ def summary(record: InfillRecord) -> "RenderableType":
     for heading in ("cells", "relative density", "volume", "mass", "saved", "verified"):
         table.add_column(heading, justify="right", no_wrap=True)
     for part in record.parts:
+        cells, mass = part.filled.count, part.mass_g(part.volume_mm3)
         table.add_row(
-            Text(part.name),
-            f"{part.cells} ({part.beams} beams)" if part.beams else str(part.cells),
-            f"{part.relative_density:.1%}",
-            f"{part.volume_after_mm3 / 1000:.4g} cm³",
-            "-" if part.mass_after_g is None else f"{part.mass_after_g:.4g} g",
-            f"{1.0 - part.volume_after_mm3 / part.volume_before_mm3:.0%}",
+            Text(part.part.name),
+            f"{cells} ({part.beams} beams)" if part.beams else str(cells),
+            f"{part.filled.density:.1%}",
+            f"{part.volume_mm3 / 1000:.4g} cm³",
+            "-" if mass is None else f"{mass:.4g} g",
+            f"{1.0 - part.volume_mm3 / part.part.volume_mm3:.0%}",
             f"no ({len(part.violations)})" if part.violations else "yes",
         )
     lines: list[RenderableType] = [table]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from tests.shared.optional import present
 
 import amprep
@@ -58,6 +59,19 @@ def test_the_steps_give_the_same_build_job_as_a_whole_run(tmp_path):
     assert path.read_bytes() == (tmp_path / "run" / path.name).read_bytes()
     assert amprep.verify(path).ok
     assert amprep.verify(supported).ok
+
+
+def test_parts_are_filled_with_cells_and_the_files_are_named_after_the_output_file(tmp_path):
+    cube = tmp_path / "cube.stl"
+    trimesh.creation.box((16, 16, 16)).export(cube)
+    settings = {"cells.strategy": "strut", "cells.density_g_cm3": 4.0}
+    record = amprep.fill_parts(cube, output=tmp_path / "out" / "light.3mf", shell_mm=2, settings=settings)
+    assert record.files == ("light.3mf", "light.png", "light.report.json")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == set(record.files)
+    (part,) = record.parts
+    assert part.mass_g(part.volume_mm3) == pytest.approx(0.004 * part.filled.mesh.signed_volume)
+    assert part.volume_mm3 < part.part.volume_mm3
+    assert record.faults == 0
 
 
 def test_a_build_that_breaks_a_promise_is_not_ok():

@@ -8,8 +8,10 @@ import pytest
 
 from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
+from amprep.infill.fill_region import FilledPart
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import measure_slenderness
+from amprep.model import Part
 from amprep.report import infill, json_report
 from amprep.report.infill import FilledPartRecord, InfillRecord
 from amprep.report.record import (
@@ -20,25 +22,25 @@ from amprep.report.record import (
     UnconnectedSquare,
     UnplacedRecord,
 )
+from amprep.testing.problems import box_mesh
 
 PAGE = (Path(__file__).parents[3] / "docs" / "report.md").read_text(encoding="utf-8")
 POCKET = Pocket(2.0, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), True)
 BROKEN = Violation("clearance", "bar", "expected 0.5 mm, found 0.2 mm")
 FILLED = FilledPartRecord(
-    name="wheel",
+    Part("wheel", box_mesh([0, 0, 0], [10, 5, 2]), 100.0),
     regions=("web",),
-    cells=8,
-    beams=0,
-    triangles=96,
-    volume_before_mm3=100.0,
-    volume_after_mm3=60.0,
-    region_volume_mm3=50.0,
-    cell_volume_mm3=10.0,
-    mass_before_g=None,
-    mass_after_g=None,
-    dropped_components=2,
-    dropped_volume_mm3=0.5,
-    genus=1,
+    filled=FilledPart(
+        mesh=box_mesh([0, 0, 0], [10, 3, 2]),
+        cells=box_mesh([0, 0, 0], [10, 1, 1]),
+        region=box_mesh([0, 0, 0], [5, 5, 2]),
+        count=8,
+        cells_mm3=10.0,
+        dropped_components=2,
+        dropped_volume_mm3=0.5,
+        genus=1,
+    ),
+    density_g_cm3=None,
     pockets=(POCKET,),
     pockets_before_mm3=0.5,
     violations=(BROKEN,),
@@ -118,5 +120,6 @@ def test_powder_that_cannot_leave_dropped_components_and_broken_promises_are_war
 
 
 def test_powder_that_was_trapped_before_is_no_warning():
-    before = replace(FILLED, pockets_before_mm3=2.0, dropped_components=0, violations=())
+    filled = replace(FILLED.filled, dropped_components=0)
+    before = replace(FILLED, filled=filled, pockets_before_mm3=2.0, violations=())
     assert list(infill.warnings_of(replace(INFILL, parts=(before,)))) == []

@@ -73,3 +73,10 @@ class Job:
     def printer_is_default(self) -> bool:
         """Whether the job names no printer, so that the default printer is used."""
         return "printer" not in self.table
+
+    @property
+    def beams(self) -> bool | None:
+        """Whether struts become beams; None leaves it to the parameters of the cell. Slicers read no beams."""
+        if self.target != "generic" or self.cells.lattice == "mesh":
+            return False
+        return True if self.cells.lattice == "beams" else None

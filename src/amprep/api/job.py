@@ -1,4 +1,4 @@
-"""Make the job of a call from its inputs and settings, and resolve it."""
+"""Make the job of a call from its inputs and settings, and load the plugins."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -9,16 +9,15 @@ from typing import Any
 from amprep.errors import JobError
 from amprep.host import Host
 from amprep.job import Job, job_of, make_job, override
-from amprep.pipeline.resolve import ResolvedJob, resolve
 
 
-def resolved_job(
+def job_and_host(
     inputs: Sequence[str | Path | Job],
     changes: Mapping[str, Any],
     plugins: Host | Sequence[str],
     default: str | None = None,
-) -> ResolvedJob:
-    """Return the job of the inputs with its offers; `default` names a job whose parts are in memory."""
+) -> tuple[Job, Host]:
+    """Return the job of the inputs and the offers of plugins; `default` names a job whose parts are in memory."""
     host = (
         plugins if isinstance(plugins, Host) else _host(tuple(plugins), os.environ.get("AMPREP_LOAD_PLUGINS"))
     )
@@ -31,7 +30,7 @@ def resolved_job(
         job = make_job({}, name=default, folder=None, source="Python")
     else:
         job = job_of([str(each) for each in inputs])
-    return resolve(override(job, changes), host)
+    return override(job, changes), host
 
 
 @cache
