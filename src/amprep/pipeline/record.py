@@ -38,7 +38,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         removal=supported.removal,
         slenderness=tuple(measure_slenderness(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
-        demand_squares=0 if layout is None else len(layout.red),
+        demand_squares=0 if layout is None else len(layout.red.square),
         unconnected=() if layout is None else _unconnected(supported, layout),
         shared_supports=() if layout is None else layout.shared,
         notes=() if layout is None else layout.notes,
@@ -115,12 +115,11 @@ def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...
     for each in build.unsupported:
         unsupported.setdefault(each.label, []).append(each)
     records = []
-    for part, (placed, overhangs) in enumerate(zip(build.parts, layout.overhangs, strict=True)):
-        count = len(overhangs.regions)
-        own = layout.red_part == part
-        squares = np.bincount(layout.red_region[own], minlength=count)
-        connected = np.bincount(layout.red_region[own & layout.connected], minlength=count)
-        for number, region in enumerate(overhangs.regions):
+    for part, (placed, (_, found)) in enumerate(zip(build.parts, layout.overhangs, strict=True)):
+        own = layout.red.part == part
+        squares = np.bincount(layout.red.region[own], minlength=len(found.regions))
+        connected = np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
+        for number, region in enumerate(found.regions):
             name = region_name(number, placed.label)
             left = unsupported.get(name, ())
             x, y, z = region.centre.tolist()
@@ -150,12 +149,12 @@ def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported
 def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedSquare, ...]:
     grid, records = layout.grid, []
     for index in (~layout.connected).nonzero()[0].tolist():
-        plane, y, x = (int(value) for value in layout.red[index])
-        label = supported.build.parts[int(layout.red_part[index])].label
+        plane, y, x = (int(value) for value in layout.red.square[index])
+        label = supported.build.parts[int(layout.red.part[index])].label
         records.append(
             UnconnectedSquare(
                 label,
-                region_name(int(layout.red_region[index]), label),
+                region_name(int(layout.red.region[index]), label),
                 layout.reasons[index],
                 (plane, y, x),
                 (

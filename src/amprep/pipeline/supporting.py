@@ -81,7 +81,7 @@ class PlannedBuild:
             return f"{self.build.build_id}: no supports"
         connected = int(self.layout.connected.sum())
         return (
-            f"{self.build.build_id}: {connected} of {len(self.layout.red)} red squares connected, "
+            f"{self.build.build_id}: {connected} of {len(self.layout.red.square)} red squares connected, "
             f"pitch {self.pitch_mm:g} mm"
         )
 
@@ -158,7 +158,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             progress=progress,
         )
     with clock.stage("judge"):
-        unsupported = find_unsupported(parts, layout.part_overhangs, bodies, settings, layout.reason_at)
+        unsupported = find_unsupported(parts, layout.overhangs, bodies, settings, layout.reason_at)
         build = Build(settings, parts, bodies, unsupported)
         removal = removal_of(job, build)
     return SupportedBuild(build, layout, tuple(advice_for(job, build, planned.pitch_mm)), removal)

@@ -5,9 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from amprep.arrays import Bools, Bytes, Floats, Int64s, Ints, frozen
-from amprep.geometry.overhangs.regions import Overhangs
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.mesh import Mesh
 from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs
@@ -24,17 +22,10 @@ class SupportLayout:
         Position and size of the voxels.
     voxels
         ``(nz, ny, nx)`` uint8, values of `amprep.model.supports.Voxel`.
-    meshes
-        One per placed part, in build coordinates; subdivided at the borders of blockers and enforcers.
     overhangs
-        One per placed part; indices into `meshes`.
+        The overhangs of each placed part.
     red
-        ``(m, 3)`` int32 plane, y, x; sorted. A square occurs once for each part it supports. A square on plane 0
-        is connected without edges: the plate holds it.
-    red_part, red_region
-        ``(m,)`` int32: placed part, and its overhang region; of several regions above the square the first.
-    red_rise
-        ``(m,)`` int32: number of occupied voxels, from the red square upwards, that its connector may pass.
+        The red squares. A square on plane 0 is connected without edges: the plate holds it.
     connected
         ``(m,)`` bool.
     reasons
@@ -56,12 +47,8 @@ class SupportLayout:
 
     grid: Grid
     voxels: Bytes
-    meshes: tuple[Mesh, ...]
-    overhangs: tuple[Overhangs, ...]
-    red: Ints
-    red_part: Ints
-    red_region: Ints
-    red_rise: Ints
+    overhangs: tuple[PartOverhangs, ...]
+    red: RedSquares
     connected: Bools
     reasons: tuple[str, ...]
     edges: SupportEdges
@@ -72,17 +59,11 @@ class SupportLayout:
     feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
 
     def __post_init__(self) -> None:
-        for name in ("red_part", "red_region", "red_rise", "red_group"):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.int32))
-        object.__setattr__(self, "red", frozen(self.red, np.int32, 3))
+        object.__setattr__(self, "red", RedSquares(*(frozen(each, np.int32) for each in self.red)))
+        object.__setattr__(self, "red_group", frozen(self.red_group, np.int32))
         object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
         object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
-
-    @property
-    def part_overhangs(self) -> tuple[PartOverhangs, ...]:
-        """The overhangs of each placed part, with the mesh that their indices refer to."""
-        return tuple(map(PartOverhangs, self.meshes, self.overhangs))
 
     def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
         """Return for each point ``(n, 3)`` mm of a part's unsupported overhangs the reason.
@@ -91,8 +72,8 @@ class SupportLayout:
         point. If the point is within the rise of the square, the reason is that of the square or, if the square is
         connected, that the connector is blocked. Otherwise there is no free voxel below the point.
         """
-        reds = np.flatnonzero(self.red_part == part)
-        key = self._heights(self.red[reds])
+        reds = np.flatnonzero(self.red.part == part)
+        key = self._heights(self.red.square[reds])
         order = np.argsort(key)
         size = (self.grid.pitch, self.grid.pitch, self.grid.step)
         voxel = np.floor((points - self.grid.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
@@ -100,8 +81,8 @@ class SupportLayout:
         reasons = [NO_FREE_VOXEL_BELOW] * len(points)
         for i in np.flatnonzero(below >= 0):
             red = reds[order[below[i]]]
-            within = voxel[i, 0] <= self.red[red, 0] + self.red_rise[red]
-            if within and (self.red[red, 1:] == voxel[i, 1:]).all():
+            within = voxel[i, 0] <= self.red.square[red, 0] + self.red.rise[red]
+            if within and (self.red.square[red, 1:] == voxel[i, 1:]).all():
                 reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]
         return tuple(reasons)
 

@@ -63,7 +63,7 @@ def layout(parts, space=SPACE, **settings):
 def columns(plan):
     """Red squares as ``(plane, y, x)`` in whole-volume indices."""
     x0, y0, _ = np.round(plan.grid.origin / plan.grid.pitch).astype(int)
-    return {(p, y + y0, x + x0) for p, y, x in plan.red.tolist()}
+    return {(p, y + y0, x + x0) for p, y, x in plan.red.square.tolist()}
 
 
 TABLE = box((20, 20, 3), (20, 20, 10)) + box((6, 6, 10), (27, 27, 0))
@@ -75,7 +75,7 @@ def test_a_table_has_a_red_square_under_every_cube_of_its_slab_beside_the_leg():
         (10, y, x) for y in range(20, 40) for x in range(20, 40) if not (27 <= y < 33 and 27 <= x < 33)
     }
     assert plan.connected.all()
-    assert set(plan.red_rise.tolist()) == {1}
+    assert set(plan.red.rise.tolist()) == {1}
     assert plan.group_parts == ((0,),)
     assert set(plan.edges.group.tolist()) == {0}
     assert plan.grid.shape[0] == 11  # no higher than the highest overhang's voxel
@@ -91,12 +91,12 @@ def test_what_lies_in_the_layer_on_the_plate_is_connected_directly():
 
 def test_a_part_on_the_plate_without_overhangs_gets_nothing():
     plan = layout(placed(box((5, 4, 3), (10, 10, 0))))
-    assert len(plan.red) == 0
+    assert len(plan.red.square) == 0
     assert plan.group_parts == ()
 
 
 def test_a_build_without_parts_gets_an_empty_layout():
-    assert len(layout([]).red) == 0
+    assert len(layout([]).red.square) == 0
 
 
 def test_a_knife_edge_gets_red_squares_along_it():
@@ -115,7 +115,7 @@ def test_the_rise_counts_the_cubes_that_the_connector_may_pass():
     side = [(0, 8.25), (12, 14.25), (12, 18), (0, 18)]
     ramp = Solid.extrude(manifold3d.CrossSection([side]), 2).rotate((90, 0, 0)).translate((20, 22, 0))
     plan = layout(placed(ramp))
-    assert plan.red[np.argsort(plan.red[:, 2])][::2, 0].tolist() == [
+    assert plan.red.square[np.argsort(plan.red.square[:, 2])][::2, 0].tolist() == [
         8,
         8,
         9,
@@ -129,7 +129,20 @@ def test_the_rise_counts_the_cubes_that_the_connector_may_pass():
         13,
         13,
     ]
-    assert plan.red_rise[np.argsort(plan.red[:, 2])][::2].tolist() == [1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2]
+    assert plan.red.rise[np.argsort(plan.red.square[:, 2])][::2].tolist() == [
+        1,
+        2,
+        1,
+        2,
+        1,
+        2,
+        1,
+        2,
+        1,
+        2,
+        1,
+        2,
+    ]
 
 
 def test_a_ceiling_in_a_closed_room_is_listed_as_enclosed():
@@ -144,7 +157,7 @@ def test_a_ceiling_in_a_closed_room_is_listed_as_enclosed():
 def test_an_overhang_right_above_material_is_listed_as_no_free_voxel_below():
     slot = box((12, 12, 12), (10, 10, 0)) - box((6, 12, 0.5), (13, 10, 5.2))
     plan = layout(placed(slot))
-    assert len(plan.red) == 0
+    assert len(plan.red.square) == 0
     assert plan.reason_at(0, np.array([[15.0, 15.2, 5.7]])) == (NO_FREE_VOXEL_BELOW,)
 
 
@@ -170,7 +183,7 @@ def test_paths_lead_out_of_a_hole_sideways():
     block = box((12, 12, 6), (10, 10, 0)) - box((4, 9, 4), (14, 13, 2))
     roof = box((12, 12, 2), (10, 10, 14)) + box((2, 2, 8), (10, 10, 6))
     plan = layout(placed(block + roof))
-    over_block = (plan.red[:, 0] == 14).sum()
+    over_block = (plan.red.square[:, 0] == 14).sum()
     assert over_block == 144 - 4
     assert plan.connected.all()
 
@@ -213,7 +226,7 @@ def test_two_parts_may_need_the_same_square():
     pair = placed(box((4.4, 3, 2), (10, 10, 20)), box((4.4, 3, 2), (14.6, 10, 20)))
     plan = layout(pair)
     assert plan.connected.all()
-    _, count = np.unique(plan.red, axis=0, return_counts=True)
+    _, count = np.unique(plan.red.square, axis=0, return_counts=True)
     assert (count == 2).sum() == 3
     assert plan.group_parts == ((0, 1),)
 
@@ -272,7 +285,7 @@ def test_the_grid_ends_inside_the_box_and_is_shifted_to_a_wall_where_a_part_stan
     plan = layout(placed(box((10, 10, 2), (30.5, 20, 10))), space=space)
     end = plan.grid.origin[0] + plan.grid.shape[2] * plan.grid.pitch
     assert end == pytest.approx(40.5)
-    assert len(plan.red) == 100
+    assert len(plan.red.square) == 100
     assert plan.connected.all()
     free = layout(placed(box((10, 10, 2), (20, 20, 10))), space=space)
     assert free.grid.origin[0] + free.grid.shape[2] * free.grid.pitch <= 40.5
@@ -284,11 +297,11 @@ def test_the_strut_angle_sets_the_step():
 
 def test_a_part_may_have_its_own_angle_or_no_supports():
     ball = Solid.sphere(6, 48).translate((30, 30, 12))
-    usual = len(layout(placed(ball)).red)
+    usual = len(layout(placed(ball)).red.square)
     flat = layout(placed(ball, overrides=Overrides(overhang_angle_deg=20.0)))
-    assert 0 < len(flat.red) < usual
+    assert 0 < len(flat.red.square) < usual
     none = layout(placed(ball, overrides=Overrides(supports=False)))
-    assert len(none.red) == 0
+    assert len(none.red.square) == 0
     assert none.voxels.max(initial=0) == 0 or (none.voxels == Voxel.OCCUPIED).any()
 
 
@@ -296,16 +309,16 @@ def test_a_blocker_mesh_takes_needs_away_and_enforcer_triangles_add_some():
     table = mesh_of(TABLE)
     below = table.vertices[table.triangles][:, :, 2].max(axis=1) == 10
     blocker = Region("blocker", "none here", triangles=np.flatnonzero(below).astype(np.int32))
-    assert len(layout(placed(TABLE, regions=(blocker,))).red) == 0
+    assert len(layout(placed(TABLE, regions=(blocker,))).red.square) == 0
     away = Region("blocker", "elsewhere", mesh=mesh_of(box((5, 5, 5), (50, 50, 50))))
-    assert len(layout(placed(TABLE, regions=(away,))).red) == 364
+    assert len(layout(placed(TABLE, regions=(away,))).red.square) == 364
     around = Region("blocker", "all", mesh=mesh_of(box((30, 30, 30), (15, 15, -5))))
-    assert len(layout(placed(TABLE, regions=(around,))).red) == 0
+    assert len(layout(placed(TABLE, regions=(around,))).red.square) == 0
     cone = Solid.cylinder(10, 6, 10, 32).translate((30, 30, 0))  # its side looks down at 68 degrees
-    assert len(layout(placed(cone)).red) == 0
+    assert len(layout(placed(cone)).red.square) == 0
     mesh = mesh_of(cone)
     low = np.flatnonzero(mesh.vertices[mesh.triangles][:, :, 2].min(axis=1) < 1).astype(np.int32)
-    assert len(layout(placed(cone, regions=(Region("enforcer", "side", triangles=low),))).red) > 0
+    assert len(layout(placed(cone, regions=(Region("enforcer", "side", triangles=low),))).red.square) > 0
 
 
 def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
@@ -317,14 +330,16 @@ def test_a_gap_keeps_paths_away_from_walls_but_not_from_their_own_overhang():
     x, y = kept.edges.x + x0, kept.edges.y + y0
     low = kept.edges.plane <= 15
     assert ((x[low] >= 34) | (y[low] < 26) | (y[low] >= 34)).all()
-    far = kept.red[:, 2] + x0 >= 34
+    far = kept.red.square[:, 2] + x0 >= 34
     assert kept.connected[far].all()
 
 
 def test_a_gap_of_any_width_leaves_what_can_stand_below_its_overhang():
     plan = layout(placed(TABLE), gap_mm=1e9)
     assert plan.connected.all()
-    assert set(zip(plan.edges.y, plan.edges.x, strict=True)) <= {(y, x) for _, y, x in plan.red.tolist()}
+    assert set(zip(plan.edges.y, plan.edges.x, strict=True)) <= {
+        (y, x) for _, y, x in plan.red.square.tolist()
+    }
 
 
 def test_the_automatic_pitch_suits_the_part_and_bounds_memory():
@@ -353,8 +368,8 @@ def test_a_router_that_breaks_its_promise_is_refused():
 
 def test_the_same_build_gives_the_same_layout():
     first, second = layout(two_balls()), layout(two_balls())
-    for name in ("red", "red_group"):
-        assert getattr(first, name).tolist() == getattr(second, name).tolist()
+    for one, other in zip((*first.red, first.red_group), (*second.red, second.red_group), strict=True):
+        assert one.tolist() == other.tolist()
     for name in ("upper", "direction", "flow", "capacity", "part", "group"):
         assert getattr(first.edges, name).tolist() == getattr(second.edges, name).tolist()
 
@@ -395,6 +410,6 @@ def test_what_is_left_over_is_connected_beside_the_flow_of_other_parts():
     arriving = {tuple(square): 0 for square in squares.tolist()}
     for square, flow in zip(plan.edges.lower.tolist(), plan.edges.flow.tolist(), strict=True):
         arriving[tuple(square)] = arriving.get(tuple(square), 0) + flow
-    red = {tuple(square) for square in plan.red.tolist()}
+    red = {tuple(square) for square in plan.red.square.tolist()}
     for square, flow in zip(squares.tolist(), through.tolist(), strict=True):
         assert flow == arriving[tuple(square)] + (tuple(square) in red)

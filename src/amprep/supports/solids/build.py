@@ -91,7 +91,7 @@ def build_supports(
     JobError
         When the cell cannot be made in this grid.
     """
-    if not len(layout.red) or not layout.connected.any():
+    if not len(layout.red.square) or not layout.connected.any():
         return ()
     progress(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
@@ -113,7 +113,7 @@ def build_supports(
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
     obstacles = PartObstacles(parts, clearance)
-    surfaces = find_column_surfaces(layout, layout.meshes)
+    surfaces = find_column_surfaces(layout)
     builder = _SupportBuilder(
         SupportContext(layout, surfaces, obstacles, rules.connector, depth), parts, instances, as_beams, rules
     )

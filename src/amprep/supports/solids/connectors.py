@@ -1,6 +1,5 @@
 """Find the surfaces of parts in the columns above red squares, and build the feet of supports on parts."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +14,6 @@ from amprep.geometry.connectors.columns import (
 from amprep.geometry.connectors.connect import connect
 from amprep.geometry.voxels.grid import Grid
 from amprep.kernels.meshes.patches import Patches
-from amprep.model import Mesh
 from amprep.supports.layout import SupportLayout
 
 WIDEST_BAND = 1.0
@@ -45,27 +43,27 @@ class ColumnSurfaces(NamedTuple):
     own: Bools
 
 
-def find_column_surfaces(layout: SupportLayout, meshes: Sequence[Mesh]) -> ColumnSurfaces:
+def find_column_surfaces(layout: SupportLayout) -> ColumnSurfaces:
     """Clip the overhangs and all surfaces of the parts to the columns above connected red squares."""
-    columns = _columns_over(layout.red, layout.red_rise, layout.grid)
+    columns = _columns_over(layout.red.square, layout.red.rise, layout.grid)
     width = min(layout.grid.pitch, WIDEST_BAND)
     supported, surface = [], []
     first = 0
-    for part, (mesh, overhangs) in enumerate(zip(meshes, layout.overhangs, strict=True)):
+    for part, (mesh, overhangs) in enumerate(layout.overhangs):
         features = (np.asarray(each, np.int64) for each in (overhangs.faces, overhangs.edges, overhangs.tips))
         corners = supported_triangles(mesh.vertices, mesh.triangles, *features, width=width)
         bands = -1 - np.arange(len(corners) - len(overhangs.faces))
         number = np.concatenate([first + overhangs.faces, bands]).astype(np.int64)
-        own_columns = layout.connected & (layout.red_part == part)
+        own_columns = layout.connected & (layout.red.part == part)
         supported.append(clip_to_columns(columns, corners, number, own_columns))
         number = first + np.arange(len(mesh.triangles))
         surface.append(clip_to_columns(columns, mesh.vertices[mesh.triangles], number, layout.connected))
         first += len(mesh.triangles)
-    count = len(layout.red)
+    count = len(layout.red.square)
     all_surface = join_patches(surface, count)
-    ends = np.cumsum([len(mesh.triangles) for mesh in meshes])
+    ends = np.cumsum([len(mesh.triangles) for mesh, _ in layout.overhangs])
     part_of = np.searchsorted(ends, all_surface.owner[:, 1], side="right")
-    own = layout.red_part[all_surface.owner[:, 0]] == part_of
+    own = layout.red.part[all_surface.owner[:, 0]] == part_of
     return ColumnSurfaces(columns, join_patches(supported, count), all_surface, own)
 
 
@@ -79,9 +77,7 @@ def _columns_over(square: Ints, layers: Ints, grid: Grid) -> ConnectorColumns:
     return ConnectorColumns(low, high, np.column_stack([y, x]), axes, grid.shape[1:])
 
 
-def make_feet(
-    layout: SupportLayout, meshes: Sequence[Mesh], group: int, *, overlap: float, seat: float
-) -> list[MeshArrays]:
+def make_feet(layout: SupportLayout, group: int, *, overlap: float, seat: float) -> list[MeshArrays]:
     """Return closed meshes of the feet of a group on parts.
 
     Everything is mirrored at z = 0: then upper faces of parts point down, and feet are built like connectors.
@@ -90,8 +86,6 @@ def make_feet(
     ----------
     layout
         Layout with the feet.
-    meshes
-        Meshes of the parts in build coordinates.
     group
         Number of the support group.
     overlap
@@ -105,7 +99,8 @@ def make_feet(
     columns = _mirrored_columns(layout, own)
     patches = []
     for part in np.unique(own[:, 3]).tolist():
-        corners = (meshes[part].vertices * _MIRROR)[meshes[part].triangles[:, ::-1]]
+        mesh = layout.overhangs[part].mesh
+        corners = (mesh.vertices * _MIRROR)[mesh.triangles[:, ::-1]]
         patches.append(clip_to_columns(columns, corners, np.arange(len(corners)), own[:, 3] == part))
     surface = join_patches(patches, len(own))
     base, top = columns.lo[:, 2] - seat, columns.hi[:, 2] + layout.grid.step

@@ -1,4 +1,4 @@
-"""Extend cells from red squares up to the part, and number the squares of the support grid."""
+"""Extend cells from red squares up to the part."""
 
 from collections.abc import Iterator
 
@@ -8,6 +8,7 @@ from amprep.arrays import Bools, Floats, Ints, MeshArrays
 from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import Tiles, tile
 from amprep.model import Grid
+from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
 
 
@@ -46,14 +47,8 @@ def _upright(template: Ints, voxel: Ints, grid: Grid) -> Tiles:
     return Tiles(template, voxel, matrix)
 
 
-def square_numbers(layout: SupportLayout, plane: Ints, y: Ints, x: Ints) -> Ints:
-    """Return one number for each grid square, ascending with plane, y and x."""
-    _, ny, nx = layout.grid.shape
-    return np.asarray((plane.astype(np.int64) * ny + y) * nx + x)
-
-
 def on_red(instances: CellInstances, layout: SupportLayout, chosen: Bools) -> Bools:
     """Tell which instances have one of the chosen red squares at their lower end."""
     request, edge = instances.request, instances.cells.edge
-    lower = square_numbers(layout, *(request.edges.upper - (1, 0, 0)).T)[edge]
-    return np.isin(lower, square_numbers(layout, *layout.red[chosen].T))
+    lower = square_keys(request.edges.upper - (1, 0, 0))[edge]
+    return np.isin(lower, square_keys(layout.red.square[chosen]))

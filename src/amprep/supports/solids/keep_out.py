@@ -31,7 +31,7 @@ class WallClearance:
         stood_on = set(layout.feet[:, 3].tolist())
         self._walls = [
             walls_of(mesh.vertices, mesh.triangles, overhangs, overlap, stood_on=part in stood_on)
-            for part, (mesh, overhangs) in enumerate(zip(layout.meshes, layout.overhangs, strict=True))
+            for part, (mesh, overhangs) in enumerate(layout.overhangs)
         ]
 
     def clip(self, solid: "Manifold") -> "Manifold":

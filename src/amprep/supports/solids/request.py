@@ -38,9 +38,9 @@ def make_request(
 def _above_red(layout: SupportLayout) -> SupportEdges:
     """Return connector edges for the voxels of each connected red square's rise, and for one voxel above it."""
     red = np.flatnonzero(layout.connected)
-    voxels = layout.red_rise[red] + 1
+    voxels = layout.red.rise[red] + 1
     up = np.arange(int(voxels.sum())) - np.repeat(np.cumsum(voxels) - voxels, voxels) + 1
-    plane, y, x = np.repeat(layout.red[red], voxels, axis=0).T
+    plane, y, x = np.repeat(layout.red.square[red], voxels, axis=0).T
     one = np.ones_like(plane)
     return SupportEdges(
         plane + up,
@@ -49,6 +49,6 @@ def _above_red(layout: SupportLayout) -> SupportEdges:
         direction=0 * one,
         flow=one,
         capacity=one,
-        part=np.repeat(layout.red_part[red], voxels),
+        part=np.repeat(layout.red.part[red], voxels),
         group=np.repeat(layout.red_group[red], voxels),
     )

@@ -12,8 +12,8 @@ from amprep.geometry.connectors.sites import find_sites
 from amprep.geometry.connectors.tips import TipProfile, grid_prisms, make_tips
 from amprep.geometry.merging.union import union
 from amprep.model.contacts import ConnectorRules
+from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
-from amprep.supports.solids.extended_cells import square_numbers
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -66,14 +66,12 @@ def sink_depths(layout: SupportLayout, rules: ConnectorRules, *, most: float) ->
     grid = layout.grid
     _, profile = _profile(rules, grid.pitch)
     if profile is None:
-        return np.zeros(len(layout.red))
+        return np.zeros(len(layout.red.square))
     oblique = layout.edges.direction != 0
-    meets_oblique = np.isin(
-        square_numbers(layout, *layout.red.T), square_numbers(layout, *layout.edges.upper[oblique].T)
-    )
+    meets_oblique = np.isin(square_keys(layout.red.square), square_keys(layout.edges.upper[oblique]))
     fraction = np.where(meets_oblique, SINK_SIDEWAYS, SINK_UPRIGHT)
     return np.where(
-        layout.red[:, 0] > 0, np.minimum(fraction * grid.step, min(profile.height + PAD, most)), 0.0
+        layout.red.square[:, 0] > 0, np.minimum(fraction * grid.step, min(profile.height + PAD, most)), 0.0
     )
 
 

@@ -13,9 +13,10 @@ from amprep.geometry.merging.union import FILE_STEP, finish, union
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
 from amprep.model.contacts import ConnectorRules
+from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
-from amprep.supports.solids.extended_cells import extended_cells, on_red, square_numbers
+from amprep.supports.solids.extended_cells import extended_cells, on_red
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
@@ -81,7 +82,7 @@ def solid_of(
         solids = _extras(instances, group)
         return Mesh(*finish(solids)) if solids else None
     red = layout.connected & (layout.red_group == group)
-    seat = np.where(layout.red[:, 0] > 0, context.seat, 0.0)
+    seat = np.where(layout.red.square[:, 0] > 0, context.seat, 0.0)
     # beams carry connectors by their ends, so these must not begin deeper
     sink = sink_depths(layout, context.connector, most=SEAT if on_beams else np.inf)
     extend = context.connector.connector == "extend"
@@ -95,9 +96,9 @@ def solid_of(
         shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink)
         connectors, notch = [shaped.connectors], shaped.notch
     connectors += _feet(context, group)
-    seats = red & (layout.red[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
+    seats = red & (layout.red.square[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
     below = expand_cells(
-        instances, mine & ~instances.connector, layout.red[seats], float(seat.max(initial=0.0))
+        instances, mine & ~instances.connector, layout.red.square[seats], float(seat.max(initial=0.0))
     )
     cells = [*(as_manifold(*mesh) for mesh in below), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
@@ -138,7 +139,7 @@ def _subtract_and_shape(
 def _feet(context: SupportContext, group: int) -> list["Manifold"]:
     """Return the feet of a group on parts as one solid, none where it has no such feet."""
     layout, overlap = context.layout, context.overlap
-    feet = make_feet(layout, layout.meshes, group, overlap=overlap, seat=context.seat)
+    feet = make_feet(layout, group, overlap=overlap, seat=context.seat)
     if not feet:
         return []
     united = union([as_manifold(*mesh).simplify(FILE_STEP) for mesh in feet])
@@ -154,8 +155,8 @@ def _stands_on_full_square(instances: CellInstances, layout: SupportLayout) -> B
     """Tell which red squares are completely covered by the top of a cell below them."""
     whole = np.array([_top_area(*template) > 1.0 - 1e-6 for template in instances.templates], np.bool_)
     edge = instances.cells.edge[instances.tiles & whole[instances.cells.template]]
-    full = square_numbers(layout, *instances.request.edges.upper[edge].T)
-    return np.isin(square_numbers(layout, *layout.red.T), full)
+    full = square_keys(instances.request.edges.upper[edge])
+    return np.isin(square_keys(layout.red.square), full)
 
 
 def _top_area(points: Floats, triangles: Ints) -> float:
@@ -200,12 +201,12 @@ def _wall_segments(
     """Return the walls of the chosen instances at red squares: column ``(k,)`` and ends in plan ``(k, 2, 2)``."""
     cells, edges = instances.cells, instances.request.edges
     red = np.flatnonzero(layout.connected & (layout.red_group == group))
-    number = square_numbers(layout, *layout.red[red].T)
+    number = square_keys(layout.red.square[red])
     order = np.argsort(number, kind="stable")
     columns, segments = [np.empty(0, np.int64)], [np.empty((0, 2, 2))]
     for index in np.flatnonzero(chosen & on_red(instances, layout, layout.connected)):
         edge = cells.edge[index]
-        own = square_numbers(layout, *edges.lower[edge : edge + 1].T)
+        own = square_keys(edges.lower[edge : edge + 1])
         plan = plan_segments(*instances.templates[cells.template[index]])
         matrix = cells.matrix[index]
         begin, end = (int(np.searchsorted(number[order], own, side=side)[0]) for side in ("left", "right"))

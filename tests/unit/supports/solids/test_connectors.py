@@ -116,13 +116,13 @@ def body(shape, kind):
 def judged(shape, bodies):
     part, layout = scene(shape)
     settings = BuildSettings("b", SPACE, overlap=OVERLAP, reach=1.5 * PITCH)
-    unsupported = find_unsupported((part,), layout.part_overhangs, bodies, settings, layout.reason_at)
+    unsupported = find_unsupported((part,), layout.overhangs, bodies, settings, layout.reason_at)
     build = Build(settings, (part,), bodies, unsupported)
-    grid, (plane, y, x) = layout.grid, layout.red[layout.connected].T.astype(float)
+    grid, (plane, y, x) = layout.grid, layout.red.square[layout.connected].T.astype(float)
     size = np.array([grid.pitch, grid.pitch, grid.step])
     lo = grid.origin + np.column_stack([x, y, plane]) * size
-    hi = lo + np.column_stack([x * 0 + 1, x * 0 + 1, layout.red_rise[layout.connected]]) * size
-    contacts = check_contacts(build, lo, hi, layout.red_part[layout.connected])
+    hi = lo + np.column_stack([x * 0 + 1, x * 0 + 1, layout.red.rise[layout.connected]]) * size
+    contacts = check_contacts(build, lo, hi, layout.red.part[layout.connected])
     return [*check_bodies(build, Stop()), *check_coverage(build), *contacts]
 
 
