@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from amprep.errors import InputError, JobError, MeshError, nearest_hint
 from amprep.geometry.meshes.repair import repair_mesh
 from amprep.model import Mesh, Part, Region
@@ -41,9 +39,11 @@ def with_files(parts: Sequence[Part], files: Sequence[Path], read: Read) -> list
         if not file.is_file():
             raise InputError(f"{file}: no such file; a region is a mesh file in the coordinates of the input")
         found = [
-            Region(KIND, piece.name, mesh=mesh) for piece in read(file) for mesh in _placed_meshes(piece)
+            (piece.name, Mesh(piece.mesh.vertices + at, piece.mesh.triangles))
+            for piece in read(file)
+            for at in piece.origins
         ]
-        near = [[_at(region, part) for region in found if _meet(region, part)] for part in parts]
+        near = [[region for name, mesh in found for region in _met(name, mesh, part)] for part in parts]
         if not any(near):
             raise JobError(
                 f"{file}: the region is outside all parts; its coordinates must be those of the input"
@@ -90,36 +90,13 @@ def without(part: Part, filled: Sequence[Region]) -> Part:
     return replace(part, regions=tuple(kept), notes=tuple(note for note in part.notes if note not in notes))
 
 
-def positions(part: Part) -> np.ndarray:
-    """Return the positions of the origin of the part, ``(k, 3)`` mm."""
-    return np.zeros((1, 3)) if part.positions is None else part.positions
-
-
-def _placed_meshes(part: Part) -> list[Mesh]:
-    return [Mesh(part.mesh.vertices + at, part.mesh.triangles) for at in positions(part)]
-
-
-def _meet(region: Region, part: Part) -> bool:
-    return _touched(region, part) is not None
-
-
-def _touched(region: Region, part: Part) -> np.ndarray | None:
-    """Return the first position of the part at which its bounding box meets that of the region."""
-    if region.mesh is None:
-        return None
-    (low, high), (part_low, part_high) = region.mesh.bounds, part.mesh.bounds
-    for at in positions(part):
+def _met(name: str, mesh: Mesh, part: Part) -> list[Region]:
+    """Return the mesh as a region in the coordinates of the part, at the first position where their boxes meet."""
+    (low, high), (part_low, part_high) = mesh.bounds, part.mesh.bounds
+    for at in part.origins:
         if (low < part_high + at).all() and (high > part_low + at).all():
-            return np.asarray(at)
-    return None
-
-
-def _at(region: Region, part: Part) -> Region:
-    """Return the region in the coordinates of the part."""
-    at = _touched(region, part)
-    if region.mesh is None or at is None:
-        return region
-    return replace(region, mesh=Mesh(region.mesh.vertices - at, region.mesh.triangles))
+            return [Region(KIND, name, mesh=Mesh(mesh.vertices - at, mesh.triangles))]
+    return []
 
 
 def _closed(region: Region, part: Part) -> Region:

@@ -129,6 +129,11 @@ class Part:
     metadata: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     @property
+    def origins(self) -> Floats:
+        """The positions ``(k, 3)`` mm of the origin of the part: `positions`, or one at the origin."""
+        return np.zeros((1, 3)) if self.positions is None else self.positions
+
+    @property
     def worth(self) -> float:
         """The value in a fill problem: `value`, or the volume in mm3."""
         return self.volume_mm3 if self.value is None else self.value

@@ -12,7 +12,7 @@ from amprep.geometry.meshes.offset import offset_inwards
 from amprep.host import Host
 from amprep.infill.block import default_size
 from amprep.infill.fill_region import FilledPart, fill_region, meets
-from amprep.infill.regions import KIND, chosen, positions, with_files, without
+from amprep.infill.regions import KIND, chosen, with_files, without
 from amprep.job import Job
 from amprep.measures.filled_part import pockets_of
 from amprep.measures.removability import density_of
@@ -260,8 +260,7 @@ def _written(
         write_parts(parts, outputs.path("3mf"), title=outputs.stem, target=job.target, lattices=lattices)
         for number, part in enumerate(parts if options.stl else (), start=1):
             suffix = f"{number:03d}.{safe_name(part.name)}.stl"
-            at = positions(part)[0]
-            write_stl(Mesh(part.mesh.vertices + at, part.mesh.triangles), outputs.path(suffix))
+            write_stl(Mesh(part.mesh.vertices + part.origins[0], part.mesh.triangles), outputs.path(suffix))
             files.append(outputs.name(suffix))
     with clock.stage("picture"):
         draw_cut([each.result.mesh for each in done if each.filled is not None], outputs.path("png"))

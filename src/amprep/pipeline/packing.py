@@ -6,7 +6,6 @@ from itertools import count
 
 import numpy as np
 
-from amprep.arrays import Floats
 from amprep.errors import AmprepError
 from amprep.job import PackingSettings
 from amprep.model import (
@@ -24,6 +23,7 @@ from amprep.model import (
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
+from amprep.threemf.transforms import round_as_stored
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,9 +133,9 @@ def packing_problem(
         for copy in range(part.quantity)
     )
     fixed = tuple(
-        Placement(number, np.eye(3), position - parts[item.part].mesh.vertices.min(axis=0))
+        Placement(number, np.eye(3), part.fixed[item.copy] - part.mesh.vertices.min(axis=0))
         for number, item in enumerate(items)
-        for position in _fixed_positions(parts[item.part])[item.copy : item.copy + 1]
+        if (part := parts[item.part]).fixed is not None and item.copy < len(part.fixed)
     )
     return PackingProblem(
         items,
@@ -158,11 +158,6 @@ def _volumes(loaded: LoadedParts, stop: Stop, progress: Progress) -> list[Boundi
     return volumes
 
 
-def _fixed_positions(part: Part) -> Floats:
-    """Return the least corners of the boxes around the copies with a fixed position, ``(k, 3)`` mm."""
-    return np.empty((0, 3)) if part.fixed is None else part.fixed
-
-
 def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
     """Return a unique label for every copy ``(part, copy)``: ``bracket``, ``bracket-2``, ..."""
     taken = {part.name for part in parts}
@@ -180,7 +175,7 @@ def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
 def placed_builds(
     parts: Sequence[Part], problem: PackingProblem, packing: Packing
 ) -> list[tuple[PlacedPart, ...]]:
-    """Return the placed parts of every build, in the order of the job.
+    """Return the placed parts of every build, in the order of the job, exactly where the file will store them.
 
     Raises
     ------
@@ -196,21 +191,12 @@ def placed_builds(
             f"{', ...' if len(names) > 5 else ''}); choose a larger printer, less clearance or lift, or allow rotations"
         )
     names_of = labels(parts)
-    builds = []
-    for build in packing.builds:
-        placed = []
-        for placement in sorted(build, key=lambda placement: placement.item):
-            item = problem.items[placement.item]
-            part = parts[item.part]
-            label = names_of[item.part, item.copy]
-            placed.append(PlacedPart(label, part, snapped(placement.matrix), part.orientations))
-        builds.append(tuple(placed))
-    return builds
 
+    def placed(placement: Placement) -> PlacedPart:
+        item = problem.items[placement.item]
+        part, matrix = parts[item.part], round_as_stored(placement.matrix)
+        return PlacedPart(names_of[item.part, item.copy], part, matrix, part.orientations)
 
-def snapped(matrix: np.ndarray) -> np.ndarray:
-    """Round a matrix to the numbers that a 3MF file can store (float32 of six decimals).
-
-    The plan then uses exactly the positions that will be written.
-    """
-    return np.round(matrix, 6).astype(np.float32).astype(np.float64)
+    return [
+        tuple(placed(each) for each in sorted(build, key=lambda each: each.item)) for build in packing.builds
+    ]

@@ -180,10 +180,13 @@ class LoadedParts:
         The job with the offers that it names.
     parts
         The parts in the order of the inputs; names are unique.
+    notes
+        Sentences for the user that concern no single part.
     """
 
     resolved: ResolvedJob
     parts: tuple[Part, ...]
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Summary in one line."""
@@ -284,5 +287,4 @@ def _closed(part: Part, kind: RegionKind, file: str) -> list[Mesh]:
         raise MeshError(
             f"{file}: expected closed meshes for {kind}s, {part.name} is not closed: {repaired.problem}"
         )
-    positions = np.zeros((1, 3)) if part.positions is None else part.positions
-    return [Mesh(repaired.vertices + position, repaired.triangles) for position in positions]
+    return [Mesh(repaired.vertices + position, repaired.triangles) for position in part.origins]

@@ -7,13 +7,13 @@ import numpy as np
 
 from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
-from amprep.host import Host
-from amprep.job import Job
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.slenderness import measure_slenderness
-from amprep.model import Build, Packing, PackingProblem, Part, Unsupported
+from amprep.model import Build, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
+from amprep.pipeline.packing import PackedParts
+from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import SupportedBuild
 from amprep.report.record import (
     BuildRecord,
@@ -46,31 +46,26 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
 
 
 def run_record(
-    job: Job,
-    host: Host,
-    parts: Sequence[Part],
-    builds: Sequence[BuildRecord],
-    outputs: OutputFolder,
-    packing: Packing,
-    unplaced: tuple[UnplacedRecord, ...] = (),
+    loaded: LoadedParts, packed: PackedParts, builds: Sequence[BuildRecord], outputs: OutputFolder
 ) -> RunRecord:
     """Return the record of a run.
 
     Parameters
     ----------
-    parts
-        The job's parts, whose notes the record repeats.
+    loaded
+        The parts of the job, whose notes the record repeats.
+    packed
+        Supplies unplaced copies, status, stop reason and bound.
     builds
         Records of all builds.
     outputs
         The output folder; files of an earlier run with more builds are reported.
-    packing
-        Supplies status, stop reason and bound.
-    unplaced
-        Copies that are in no build.
     """
+    job, packing, items = loaded.resolved.job, packed.packing, packed.problem.items
     stale = outputs.stale_builds(len(builds))
     left = [f"{name} is from an earlier run with more builds and was not changed" for name in stale]
+    advice = [f"{entry.build.settings.build_id}: {words}" for entry in builds for words in entry.advice]
+    unplaced = ((items[entry.item], entry.reason) for entry in packing.unplaced)
     return RunRecord(
         job=job.name,
         version=__version__,
@@ -79,34 +74,16 @@ def run_record(
         target=job.target,
         objective=job.packing.objective,
         builds=tuple(builds),
-        unplaced=unplaced,
+        unplaced=tuple(
+            UnplacedRecord(loaded.parts[item.part].name, item.copy + 1, why) for item, why in unplaced
+        ),
         status=packing.status,
         stop_reason=packing.stop_reason,
         bound=packing.bound,
-        warnings=(*host.warnings, *left, *_advice(builds)),
-        notes=tuple(f"{part.name}: {note}" for part in parts for note in part.notes),
+        warnings=(*loaded.resolved.host.warnings, *left, *advice),
+        notes=(*(f"{part.name}: {note}" for part in loaded.parts for note in part.notes), *loaded.notes),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )
-
-
-def _advice(builds: Sequence[BuildRecord]) -> list[str]:
-    return [f"{entry.build.settings.build_id}: {words}" for entry in builds for words in entry.advice]
-
-
-def unplaced_records(
-    parts: Sequence[Part], problem: PackingProblem, packing: Packing
-) -> tuple[UnplacedRecord, ...]:
-    """Return the copies that are in no build, with the reasons.
-
-    Parameters
-    ----------
-    parts
-        The job's parts, which give the names.
-    problem, packing
-        The packing problem and its solution.
-    """
-    items = ((problem.items[entry.item], entry.reason) for entry in packing.unplaced)
-    return tuple(UnplacedRecord(parts[item.part].name, item.copy + 1, reason) for item, reason in items)
 
 
 def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...]:

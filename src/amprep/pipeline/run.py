@@ -5,9 +5,9 @@ from pathlib import Path
 
 from amprep.model import Stop
 from amprep.pipeline.outputs import OutputFolder
-from amprep.pipeline.packing import pack_parts
-from amprep.pipeline.reading import read_job
-from amprep.pipeline.record import run_record, unplaced_records
+from amprep.pipeline.packing import PackedParts, pack_parts
+from amprep.pipeline.reading import LoadedParts, read_job
+from amprep.pipeline.record import run_record
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.pipeline.supporting import support_build
@@ -61,24 +61,46 @@ def run_job(resolved: ResolvedJob, options: RunOptions, *, watcher: Watcher, sto
     AmprepError
         For wrong input, a plugin that fails, or when nothing fits the build volume.
     """
-    job, clock, limit = resolved.job, Clock(watcher), stop.within(options.time_limit)
+    clock, limit = Clock(watcher), stop.within(options.time_limit)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
     packed = pack_parts(loaded, clock, limit)
-    with OutputFolder(options.folder, job.name) as outputs:
+    outputs = OutputFolder(options.folder, resolved.job.name)
+    return make_builds(loaded, packed, outputs, options, clock, limit, stop)
+
+
+def make_builds(
+    loaded: LoadedParts,
+    packed: PackedParts,
+    outputs: OutputFolder,
+    options: RunOptions,
+    clock: Clock,
+    limit: Stop,
+    stop: Stop,
+) -> RunRecord:
+    """Support, write and verify builds, write the reports, publish all files and return the record.
+
+    Parameters
+    ----------
+    loaded, packed
+        The parts of the job, and their builds.
+    outputs
+        The output folder, which is entered here.
+    options
+        Options of the run.
+    clock
+        Times and shows the stages.
+    limit, stop
+        End routing early with the best result so far, and the run without a result.
+    """
+    with outputs:
         supported = [support_build(build, clock, limit) for build in packed.builds]
         records = [
             finish_build(each, number, outputs, options.dry_run, options.stl, clock, stop)
             for number, each in enumerate(supported, start=1)
         ]
-        unplaced = unplaced_records(loaded.parts, packed.problem, packed.packing)
-        record = run_record(job, resolved.host, loaded.parts, records, outputs, packed.packing, unplaced)
-        return published(record, outputs, options, clock)
-
-
-def published(record: RunRecord, outputs: OutputFolder, options: RunOptions, clock: Clock) -> RunRecord:
-    """Write the reports and publish all files, unless this is a dry run; return the complete record."""
-    if options.dry_run:
-        return replace(record, stages=clock.times)
-    record = write_reports(record, outputs, clock)
-    outputs.publish()
-    return record
+        record = run_record(loaded, packed, records, outputs)
+        if options.dry_run:
+            return replace(record, stages=clock.times)
+        record = write_reports(record, outputs, clock)
+        outputs.publish()
+        return record

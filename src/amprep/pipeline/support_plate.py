@@ -8,17 +8,15 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.errors import InputError
-from amprep.model import BuildVolume, Orientations, Packing, Part, PlacedPart, Stop
+from amprep.model import BuildVolume, Orientations, Packing, PackingProblem, Part, PlacedPart, Stop
 from amprep.pipeline.outputs import OutputFolder
-from amprep.pipeline.packing import PackedBuild, labels, snapped
+from amprep.pipeline.packing import PackedBuild, PackedParts, labels
 from amprep.pipeline.reading import LoadedParts, read_job
-from amprep.pipeline.record import run_record
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.run import RunOptions, published
+from amprep.pipeline.run import RunOptions, make_builds
 from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import support_build
-from amprep.pipeline.writing import finish_build
 from amprep.report.record import RunRecord
+from amprep.threemf.transforms import round_as_stored
 
 _SUPPORTED_ANYWAY = "'amprep support' ignores supports.enabled = false (it applies to 'amprep run' only)"
 
@@ -51,19 +49,16 @@ def support_plate(
     clock, limit = Clock(watcher), stop.within(options.time_limit)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
     placed = place_as_read(loaded, center=center)
-    parts = [_once_each(part) for part in loaded.parts]
-    with OutputFolder(options.folder, placed.build_id, numbered=False) as outputs:
-        supported = support_build(placed, clock, limit)
-        build = finish_build(supported, 1, outputs, options.dry_run, options.stl, clock, stop)
-        not_packed = Packing((), stop_reason="as it lies")
-        record = run_record(placed.resolved.job, resolved.host, parts, [build], outputs, not_packed)
-        if not resolved.job.supports.enabled:
-            record = replace(record, notes=(*record.notes, _SUPPORTED_ANYWAY))
-        return published(record, outputs, options, clock)
+    notes = () if resolved.job.supports.enabled else (_SUPPORTED_ANYWAY,)
+    lying = LoadedParts(placed.resolved, tuple(_once_each(part) for part in loaded.parts), notes)
+    not_packed = Packing((), stop_reason="as it lies")
+    packed = PackedParts(PackingProblem((), resolved.job.printer.space), not_packed, (placed,))
+    outputs = OutputFolder(options.folder, placed.build_id, numbered=False)
+    return make_builds(lying, packed, outputs, options, clock, limit, stop)
 
 
 def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:
-    """Return one build with every part at each position in its file.
+    """Return one build with every part, unrotated, at each position in its file; the origin if it has none.
 
     Its job has supports enabled. Clearance and lift are zero, because the user chose the positions.
 
@@ -77,7 +72,7 @@ def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:
     Raises
     ------
     InputError
-        When a part is outside the build volume.
+        When a part is outside the build volume or below the plate.
     """
     job = loaded.resolved.job
     job = replace(
@@ -85,57 +80,37 @@ def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:
         packing=replace(job.packing, clearance_mm=0.0, lift_mm=0.0),
         supports=replace(job.supports, enabled=True),
     )
-    parts = placed_as_they_lie(loaded.parts, job.printer.space, center=center)
-    return PackedBuild(replace(loaded.resolved, job=job), 1, f"{job.name}.supported", parts)
-
-
-def placed_as_they_lie(
-    parts: Sequence[Part], space: BuildVolume, *, center: bool = False
-) -> tuple[PlacedPart, ...]:
-    """Return every part, unrotated, at each position in its file; a part without positions stays at its origin.
-
-    Raises
-    ------
-    InputError
-        When a part is outside the build volume or below the plate.
-    """
-    lying = [_once_each(part) for part in parts]
-    shift = _to_middle(lying, space) if center else np.zeros(3)
-    names = labels(lying)
+    parts = [_once_each(part) for part in loaded.parts]
+    shift = _to_middle(parts, job.printer.space) if center else np.zeros(3)
+    names = labels(parts)
     placed = tuple(
         PlacedPart(names[index, copy], part, _moved(position + shift), Orientations())
-        for index, part in enumerate(lying)
-        for copy, position in enumerate(_positions(part))
+        for index, part in enumerate(parts)
+        for copy, position in enumerate(part.origins)
     )
     for each in placed:
-        _require_inside(each, space, center)
-    return placed
+        _require_inside(each, job.printer.space, center)
+    return PackedBuild(replace(loaded.resolved, job=job), 1, f"{job.name}.supported", placed)
 
 
 def _once_each(part: Part) -> Part:
     """Return the part with one copy per position in its file, and a note if its quantity differs."""
-    count = len(_positions(part))
+    count = len(part.origins)
     if part.quantity == count:
         return part
     note = f"supported {count} times, once per build item; quantity = {part.quantity} only applies to packing"
     return replace(part, quantity=count, notes=(*part.notes, note))
 
 
-def _positions(part: Part) -> Floats:
-    return np.zeros((1, 3)) if part.positions is None else part.positions
-
-
 def _moved(position: Floats) -> Floats:
     matrix = np.eye(4)
     matrix[:3, 3] = position
-    return snapped(matrix)
+    return round_as_stored(matrix)
 
 
 def _to_middle(parts: Sequence[Part], space: BuildVolume) -> Floats:
     """Return the translation that moves the bounding box of all parts to the middle of the plate and onto it."""
-    corners = [
-        bound + position for part in parts for bound in part.mesh.bounds for position in _positions(part)
-    ]
+    corners = [bound + position for part in parts for bound in part.mesh.bounds for position in part.origins]
     lo, hi = np.min(corners, axis=0), np.max(corners, axis=0)
     middle = space.size / 2 - (lo + hi) / 2
     return np.array([middle[0], middle[1], -lo[2]])

@@ -7,7 +7,7 @@ import pytest
 from tests.shared.optional import present
 
 from amprep.errors import InputError, JobError, MeshError
-from amprep.infill.regions import KIND, chosen, positions, with_files, without
+from amprep.infill.regions import KIND, chosen, with_files, without
 from amprep.model import Mesh, Part, Region
 from amprep.testing.problems import box_mesh
 
@@ -71,5 +71,5 @@ def test_filled_regions_leave_the_part_and_others_stay():
 
 
 def test_a_part_without_positions_is_at_the_origin():
-    assert positions(part()).tolist() == [[0, 0, 0]]
-    assert positions(part(at=[[1.0, 2.0, 3.0]])).tolist() == [[1, 2, 3]]
+    assert part().origins.tolist() == [[0, 0, 0]]
+    assert part(at=[[1.0, 2.0, 3.0]]).origins.tolist() == [[1, 2, 3]]

@@ -61,18 +61,12 @@ def write_parts(
     items: list[BuildItem] = []
     for index, part in enumerate(parts):
         objects += _part_objects(part, target, (lattices or {}).get(index), len(objects))
-        items += [
-            BuildItem((PlacedObject(len(objects) - 1, _translation(at)),), ()) for at in _positions(part)
-        ]
+        items += [BuildItem((PlacedObject(len(objects) - 1, _translation(at)),), ()) for at in part.origins]
     metadata = title_metadata(title)
     if target == "prusaslicer":
         metadata = ((PRUSASLICER_NAMESPACE, "Version3mf", "1"), *metadata)
     document = Document(title, metadata, tuple(objects), tuple(items))
     write_document(document, path, with_volumes=target == "prusaslicer")
-
-
-def _positions(part: Part) -> Floats:
-    return np.zeros((1, 3)) if part.positions is None else part.positions
 
 
 def _translation(position: Floats) -> Floats:
@@ -124,7 +118,7 @@ def _with_volumes(part: Part) -> tuple[Mesh, tuple[SlicerVolume, ...]]:
 
 def _job_metadata(part: Part) -> Metadata:
     """Return the settings of a part as the metadata that `amprep.threemf.read.job_metadata` reads."""
-    copies = part.quantity // len(_positions(part))
+    copies = part.quantity // len(part.origins)
     orientations = part.orientations
     rotations = (
         json.dumps(orientations.matrices.tolist()) if orientations.freedom == "list" else orientations.freedom
