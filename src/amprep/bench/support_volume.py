@@ -9,7 +9,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Bytes
 from amprep.bench.prusaslicer import STYLES, sliced_support_volume
-from amprep.host import Host
+from amprep.host import Host, choose
 from amprep.model import (
     BuildVolume,
     Mesh,
@@ -24,6 +24,7 @@ from amprep.model import (
     silent,
 )
 from amprep.pipeline.reading import expand_inputs, read_all
+from amprep.pipeline.resolve import cell_named
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.plan import PlanningRules, Route, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
@@ -96,12 +97,8 @@ def meshes_of(files: Sequence[Path], host: Host) -> dict[str, Mesh]:
     InputError, MeshError
         If a file cannot be read or a part is not a solid.
     """
-
-    def read(path: Path) -> list[Part]:
-        reader = host.reader_for(path, {})
-        return host.call(reader, path, params=host.params(reader, {}))
-
-    parts = read_all(expand_inputs([(file, None) for file in files], host.suffixes), read)
+    inputs = expand_inputs([(file, None) for file in files], host.suffixes)
+    parts = read_all(inputs, lambda path: host.read(path, {}, {}))
     return {part.name: Mesh(part.mesh.vertices - part.mesh.bounds[0], part.mesh.triangles) for part in parts}
 
 
@@ -176,28 +173,22 @@ def free_below(voxels: Bytes, red: RedSquares) -> Bools:
 
 
 def _router(host: Host, name: str) -> Route:
-    router = host.choose("router", name)
-    params = host.params(router, {})
-
-    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
-        rng = np.random.default_rng(0)
-        return host.call(router, problem, params=params, rng=rng, stop=stop, progress=progress)
-
-    return route
+    router = choose(host, "router", name, {})
+    return lambda problem, stop, progress: router.call(
+        problem, rng=np.random.default_rng(0), stop=stop, progress=progress
+    )
 
 
 def _volume(
     part: PlacedPart, host: Host, route: Route, cell: str, pitch: float, stop: Stop
 ) -> tuple[float, int]:
     """Return the volume of the finished supports (mm3) and the number of red squares connected."""
-    emitter = host.choose("cell", cell)
-    params = host.params(emitter, {})
-    material = host.material(emitter, pitch, pitch, params)
+    emitter = cell_named(host, cell)
     layout = plan_supports(
         (part,),
         SPACE,
         PlanningRules(pitch_mm=pitch),
-        material=material,
+        material=emitter.material(pitch, pitch),
         route=route,
         choose=free_below,
         stop=stop,
@@ -206,7 +197,7 @@ def _volume(
     bodies = build_supports(
         layout,
         (part,),
-        lambda request: host.call(emitter, request, params=params, stop=stop, progress=silent),
+        lambda request: emitter.emit(request, stop=stop),
         SolidRules(),
         stop=stop,
         progress=silent,

@@ -11,8 +11,6 @@ from amprep.model import (
     BuildSettings,
     Progress,
     Stop,
-    SupportPlan,
-    SupportProblem,
 )
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
@@ -185,18 +183,15 @@ def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) ->
     job, resolved = build.resolved.job, build.resolved
     rules = replace(job.supports, pitch_mm=pitch)
     rng = np.random.default_rng([job.seed, build.number])
-
-    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
-        plan: SupportPlan = resolved.router.call(problem, rng=rng, stop=stop, progress=progress)
-        return plan
-
     material = resolved.cell.material(pitch, pitch * float(np.tan(np.radians(rules.strut_angle_deg))))
     return plan_supports(
         build.parts,
         job.printer.space,
         rules,
         material=material,
-        route=route,
+        route=lambda problem, stop, progress: resolved.router.call(
+            problem, rng=rng, stop=stop, progress=progress
+        ),
         stop=stop.within(rules.time_limit_s),
         progress=progress,
     )

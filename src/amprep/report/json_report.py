@@ -7,7 +7,7 @@ from amprep.measures.density import part_volume
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
-from amprep.report.record import BuildRecord, OverhangRecord, RunRecord, UnconnectedSquare
+from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
 
 FORMAT = 1
 """Version of the layout; it increases when a key changes its meaning or is removed."""
@@ -38,9 +38,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "stop_reason": record.stop_reason,
         "bound": record.bound,
         "builds": [_build(entry) for entry in record.builds],
-        "unplaced": [
-            {"name": item.name, "copy": item.copy, "reason": item.reason} for item in record.unplaced
-        ],
+        "unplaced": [vars(item) for item in record.unplaced],
         "stages": stages_json(record.stages),
         "warnings": list(record.warnings),
         "notes": list(record.notes),
@@ -97,23 +95,13 @@ def _supports(entry: BuildRecord) -> dict[str, Any]:
         **{key: sums[name] for name, key in _REMOVAL_KEYS.items()},
         "overhangs": [_overhang(region) for region in entry.overhangs],
         "demand_squares": entry.demand_squares,
-        "unconnected_squares": [_square(square) for square in entry.unconnected],
+        "unconnected_squares": [vars(square) for square in entry.unconnected],
         "unsupported_mm2": entry.unsupported_mm2,
         "unsupported_minor_mm2": entry.unsupported_minor_mm2,
         "unsupported": [_unsupported(entry, region) for region in build.unsupported],
         "bodies": [_body(entry, index) for index in range(len(build.supports))],
         "shared_supports": list(entry.shared_supports),
         "notes": list(entry.notes),
-    }
-
-
-def _square(square: UnconnectedSquare) -> dict[str, Any]:
-    return {
-        "part": square.part,
-        "region": square.region,
-        "reason": square.reason,
-        "square": list(square.square),
-        "position_mm": list(square.position_mm),
     }
 
 

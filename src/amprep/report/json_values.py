@@ -47,9 +47,7 @@ def plain(value: Any) -> Any:
 
 def violations_json(violations: Iterable[Violation]) -> list[dict[str, Any]]:
     """Return broken promises."""
-    return [
-        {"promise": found.promise, "subject": found.subject, "message": found.message} for found in violations
-    ]
+    return [vars(found) for found in violations]
 
 
 def stages_json(stages: Iterable[StageTime]) -> list[dict[str, Any]]:

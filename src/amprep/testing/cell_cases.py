@@ -20,12 +20,9 @@ from amprep.model import (
     Part,
     PlacedPart,
     Stop,
-    SupportPlan,
-    SupportProblem,
     silent,
 )
 from amprep.model.contacts import ConnectorRules
-from amprep.model.control import Progress
 from amprep.supports.plan import PlanningRules, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 from amprep.testing.case import Case
@@ -88,13 +85,13 @@ _SPACE = BuildVolume(np.array([30.0, 30.0, 30.0]))
 
 def _layout(host: Host, part: PlacedPart) -> SupportLayout:
     router = LoadedOffer.of(host, host.choose("router", "shortest-paths"), {})
-
-    def route(problem: SupportProblem, stop: Stop, progress: Progress) -> SupportPlan:
-        plan: SupportPlan = router.run(problem, stop=stop, progress=progress)
-        return plan
-
     return plan_supports(
-        (part,), _SPACE, PlanningRules(pitch_mm=PITCH), route=route, stop=Stop(), progress=silent
+        (part,),
+        _SPACE,
+        PlanningRules(pitch_mm=PITCH),
+        route=lambda problem, stop, progress: router.run(problem, stop=stop, progress=progress),
+        stop=Stop(),
+        progress=silent,
     )
 
 

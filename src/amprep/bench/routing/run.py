@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from amprep.arrays import Int64s
 from amprep.bench.memory import peak_mb, reset_peak
 from amprep.bench.routing.rivals import RIVALS, Rival
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.host import Host
 from amprep.model import Stop, silent
 from amprep.model.supports import Escalation, SupportPlan, SupportProblem
-from amprep.model.supports.edges import DIRECTIONS
+from amprep.model.supports.edges import square_keys
 from amprep.testing.support_scenes import SIDES, count_graph, support_scene
 
 if TYPE_CHECKING:
@@ -194,9 +193,9 @@ def _run(
         thesis_seconds=THESIS_SECONDS.get(name, {}).get(size),
         connected=len(problem.red) - len(plan.unconnected),
         cost=_cost(problem, plan),
-        squares_initial=None if initial is None else _squares(problem, initial),
-        squares_final=_squares(problem, plan),
-        max_paths_per_square=_max_paths_per_square(problem, plan),
+        squares_initial=None if initial is None else _squares(initial),
+        squares_final=_squares(plan),
+        max_paths_per_square=_max_paths_per_square(plan),
         capacity_raised=plan.raised,
         material=_material(problem, plan),
         status=plan.status,
@@ -233,11 +232,8 @@ def _route(
 
 
 def _cost(problem: SupportProblem, plan: SupportPlan) -> int:
-    return int(
-        (
-            np.array(problem.costs)[np.minimum(plan.edges.direction, 1)] * plan.edges.flow.astype(np.int64)
-        ).sum()
-    )
+    cost = np.array(problem.costs)[np.minimum(plan.edges.direction, 1)]
+    return int((cost * plan.edges.flow.astype(np.int64)).sum())
 
 
 def _material(problem: SupportProblem, plan: SupportPlan) -> float:
@@ -245,23 +241,15 @@ def _material(problem: SupportProblem, plan: SupportPlan) -> float:
     return float(np.array(problem.material)[np.minimum(plan.edges.direction, 1)].sum())
 
 
-def _squares(problem: SupportProblem, plan: SupportPlan) -> int:
+def _squares(plan: SupportPlan) -> int:
     """Return the number of squares from which an edge in use leads down."""
-    return len(np.unique(_number(problem, plan, 0)))
+    return len(np.unique(square_keys(plan.edges.upper)))
 
 
-def _max_paths_per_square(problem: SupportProblem, plan: SupportPlan) -> int:
+def _max_paths_per_square(plan: SupportPlan) -> int:
     """Return the largest number of paths that leave a square or arrive at one."""
     most = 0
-    for end in (0, 1):
-        _, square = np.unique(_number(problem, plan, end), return_inverse=True)
+    for squares in (plan.edges.upper, plan.edges.lower):
+        _, square = np.unique(square_keys(squares), return_inverse=True)
         most = max(most, int(np.bincount(square, weights=plan.edges.flow).max(initial=0)))
     return most
-
-
-def _number(problem: SupportProblem, plan: SupportPlan, end: int) -> Int64s:
-    """Return the number of each edge's upper (0) or lower (1) square."""
-    _, ny, nx = problem.voxels.shape
-    step = end * np.array(DIRECTIONS, np.int64)[plan.edges.direction]
-    plane = plan.edges.plane.astype(np.int64) - end
-    return np.asarray((plane * ny + plan.edges.y + step[:, 0]) * nx + plan.edges.x + step[:, 1])

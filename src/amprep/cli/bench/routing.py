@@ -8,31 +8,13 @@ import typer
 
 from amprep.cli.bench.options import AsJson, Seed, finish, print_json
 
+SceneSize = StrEnum("SceneSize", {"A": "A", "B": "B", "C": "C", "D": "D", "E": "E"})
+"""Sizes of the thesis, from about 8,400 to 6.5 million squares."""
 
-class SceneSize(StrEnum):
-    """Sizes of the thesis, from about 8,400 to 6.5 million squares."""
+SceneName = StrEnum("SceneName", {"BALL": "ball", "TWO_BALLS": "two-balls", "PLATE": "plate"})
 
-    A = "A"
-    B = "B"
-    C = "C"
-    D = "D"
-    E = "E"
-
-
-class SceneName(StrEnum):
-    """The generated scenes."""
-
-    BALL = "ball"
-    TWO_BALLS = "two-balls"
-    PLATE = "plate"
-
-
-class EscalationName(StrEnum):
-    """Rule by which capacities are raised."""
-
-    NONE = "none"
-    CUT = "cut"
-    UNIFORM = "uniform"
+Raising = StrEnum("Raising", {"NONE": "none", "CUT": "cut", "UNIFORM": "uniform"})
+"""Rule by which capacities are raised."""
 
 
 def supports(
@@ -60,12 +42,12 @@ def supports(
         ),
     ] = 0,
     escalate: Annotated[
-        EscalationName,
+        Raising,
         typer.Option(
             "--escalate",
             help="Capacities to raise if some overhangs cannot be connected: none, those of a minimum cut, or all.",
         ),
-    ] = EscalationName.NONE,
+    ] = Raising.NONE,
     rivals: Annotated[
         bool, typer.Option("--rivals", help="Also run OR-tools, scipy and networkx on the same scenes.")
     ] = False,
