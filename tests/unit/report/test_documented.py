@@ -113,7 +113,7 @@ def test_powder_that_cannot_leave_dropped_components_and_broken_promises_are_war
         "wheel: 1.5 mm3 of powder in 1 pocket cannot leave, 3.8% of the powder between the cells"
     )
     assert "more open cell" not in powder, "3.8 % is little"
-    assert dropped == ("wheel: dropped 2 disconnected components of cells (0.5 mm3), which nothing holds")
+    assert dropped == ("wheel: dropped 2 disconnected components of cells (0.5 mm3) that nothing holds")
     assert broken == "wheel: clearance: expected 0.5 mm, found 0.2 mm"
     much = replace(INFILL, parts=(replace(FILLED, pockets=(POCKET._replace(volume=20.0),)),))
     assert "more open cell" in next(infill.warnings_of(much))
