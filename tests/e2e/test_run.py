@@ -115,7 +115,13 @@ def test_files_folders_and_counts_may_be_mixed(amprep, fixtures, tmp_path):
     shutil.copy(fixtures / "ball.stl", folder)
     shutil.copy(fixtures / "table.stl", folder)
     outcome = amprep(
-        "run", f"{folder}:2", f"{fixtures / 'knife-edge.stl'}:3", "-o", tmp_path / "out", "--json"
+        "run",
+        f"{folder}:2",
+        f"{fixtures / 'knife-edge.stl'}:3",
+        "-o",
+        tmp_path / "out",
+        "--json",
+        "--dry-run",
     )
     names = sorted(part["name"] for build in outcome.json["builds"] for part in build["parts"])
     assert names == ["ball", "ball-2", "knife-edge", "knife-edge-2", "knife-edge-3", "table", "table-2"]

@@ -141,6 +141,42 @@ def test_an_algorithm_cites_its_own_section(place):
     assert found, f"{place} does not name its source"
 
 
+TESTS_OF_SEVERAL = {
+    "cli/test_help.py": "all commands",
+    "host/test_choosing.py": "choice by the manager, with its mismatches and offers",
+    "job/test_properties.py": "any job file, whichever section it has",
+    "plugins/cells/test_built_in.py": "all built-in cells",
+    "plugins/packers/integer_program/test_model.py": "variables and constraints, which one program holds",
+    "plugins/packers/test_rows.py": "the rows that every packer ends with when it has no time",
+    "plugins/readers/test_inputs.py": "inputs that every reader refuses",
+    "plugins/routers/test_exact.py": "both exact routers",
+    "report/test_documented.py": "every field of the reports",
+    "test_docs.py": "the pages of docs/",
+    "test_fixtures.py": "the meshes of fixtures/",
+    "test_glossary.py": "docs/glossary.md",
+    "test_map.py": "docs/map.md",
+    "test_rooms.py": "the layout of the source",
+    "threemf/package/test_hostile.py": "packages that are made to do harm",
+    "threemf/read/test_parts.py": "everything that a part of a 3MF job has",
+    "threemf/write/test_generic.py": "the generic target, from skeleton to record",
+    "threemf/write/test_programs.py": "files as other programs read them",
+}
+"""Tests of no single module, and of which several."""
+
+
+def test_a_test_file_is_where_its_module_is_in_the_source():
+    tests = ROOT / "tests" / "unit"
+    found = [path.relative_to(tests) for path in sorted(tests.rglob("test_*.py"))]
+    module_of = {path: SOURCE / path.parent / path.stem.removeprefix("test_") for path in found}
+    lost = {
+        path.as_posix()
+        for path, module in module_of.items()
+        if not module.is_dir() and not module.with_suffix(".py").is_file()
+    }
+    assert lost == set(TESTS_OF_SEVERAL)
+    assert [path.as_posix() for path in found if not (SOURCE / path.parent).is_dir()] == []
+
+
 def top_level_imports(path):
     """Modules that a file imports when it is loaded, and the packages that contain them."""
     own = ("amprep." + name_of(path).removesuffix(".py").replace("/", ".")).removesuffix(".__init__")

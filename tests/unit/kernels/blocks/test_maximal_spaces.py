@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.kernels import plain
 
 from amprep.kernels.blocks import maximal_spaces
 from amprep.kernels.blocks.push import push
@@ -20,11 +21,6 @@ ANY_BOX = np.ones((1, 3), np.int64)
 boxes = st.tuples(*[st.tuples(st.integers(0, SIDE - 1), st.integers(1, 3)) for _ in range(3)]).map(
     lambda rows: [*(at for at, _ in rows), *(min(at + size, SIDE) for at, size in rows)]
 )
-
-
-def plain(kernel):
-    """Return the Python function of a kernel; helpers have no wrapper for calls from Python."""
-    return getattr(kernel, "py_func", kernel)
 
 
 def cut_all(placed, monkeypatch):

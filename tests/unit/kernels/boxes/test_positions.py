@@ -6,12 +6,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.kernels import plain
 
 from amprep.kernels.boxes import positions
 
 # compiled helpers are called by kernels only; from Python the plain functions run
-contact_area = getattr(positions.contact_area, "py_func", positions.contact_area)
-feasible_height = getattr(positions.feasible_height, "py_func", positions.feasible_height)
+contact_area = plain(positions.contact_area)
+feasible_height = plain(positions.feasible_height)
 
 SIDE = 6
 ROOM = np.array([0.0, 0, 0, SIDE, SIDE, SIDE, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0])

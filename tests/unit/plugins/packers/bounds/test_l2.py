@@ -163,7 +163,7 @@ def test_fixed_items_that_stand_within_one_another_or_outside_prove_nothing(obje
     sizes = [(10, 10, 8), (10, 10, 8), (10, 10, 6)]
     task = problem(sizes, size=(10, 10, 15), value=600.0, objective=objective, fixed=fixed)
     packing = pack_auto(
-        task, params=AutoParams(), rng=np.random.default_rng(0), stop=Stop.after(5.0), progress=silent
+        task, params=AutoParams(work=1.0), rng=np.random.default_rng(0), stop=Stop(), progress=silent
     )
     assert check_packing(task, packing) == []
 
