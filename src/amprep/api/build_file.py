@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from amprep.api.arguments import require_record
 from amprep.checks.violation import Violation
 from amprep.errors import InputError
 from amprep.model import Build, Progress, Stop, silent
@@ -57,6 +58,7 @@ def write(build: SupportedBuild | Build, path: str | Path) -> Path:
     """
     from amprep.threemf import write_build
 
+    require_record(build, (SupportedBuild, Build), "write", "pass the result of emit_cells")
     path = Path(path)
     if path.suffix.lower() != ".3mf":
         raise InputError(f"{path}: a build job must be a .3mf file; choose another name")
@@ -94,5 +96,6 @@ def verify(
     """
     if isinstance(build, str | Path):
         return Verification(verify_file(Path(build), stop=stop, progress=progress))
+    require_record(build, (SupportedBuild, Build), "verify", "pass a path or the result of emit_cells")
     judged = build.build if isinstance(build, SupportedBuild) else build
     return Verification(verify_build(judged, stop=stop, progress=progress))

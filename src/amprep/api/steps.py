@@ -5,7 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from amprep.api.arguments import require_record
 from amprep.api.job import job_and_host
+from amprep.errors import InputError
 from amprep.host import Host
 from amprep.model import Mesh, Part, Progress, Stop, silent
 from amprep.pipeline.packing import PackedBuild, PackedParts, pack_parts
@@ -123,6 +125,7 @@ def pack(
     >>> [len(build.parts) for build in packed.builds]
     [5]
     """
+    require_record(parts, (LoadedParts,), "pack", "pass the result of load")
     changes = _section("packing", packer, params, settings)
     loaded = replace(parts, resolved=parts.resolved.changed(changes))
     return pack_parts(loaded, Clock(ProgressWatcher(progress)), stop or Stop())
@@ -176,6 +179,8 @@ def plan_supports(
     >>> print(planned)
     bracket.build-1: 412 of 412 red squares connected, pitch 2 mm
     """
+    advice = "pass one of the builds of pack, or the result of load"
+    require_record(build, (PackedBuild, LoadedParts), "plan_supports", advice)
     changes = {**_section("supports", router, params, settings), "cells.strategy": cell}
     if isinstance(build, LoadedParts):
         build = place_as_read(replace(build, resolved=build.resolved.changed(changes)))
@@ -226,6 +231,7 @@ def emit_cells(
     >>> supported.build.unsupported
     ()
     """
+    require_record(planned, (PlannedBuild,), "emit_cells", "pass the result of plan_supports")
     changes = _section("cells", cell, params, settings)
     job = planned.build.resolved.job
     resolved = planned.build.resolved.changed(changes)
@@ -236,7 +242,13 @@ def emit_cells(
 
 
 def _part(geometry: Part | Mesh) -> Part:
-    return geometry if isinstance(geometry, Part) else Part("mesh", geometry, geometry.signed_volume)
+    mesh = geometry.mesh if isinstance(geometry, Part) else geometry
+    least, greatest = mesh.triangles.min(initial=0), mesh.triangles.max(initial=-1)
+    if least < 0 or greatest >= len(mesh.vertices):
+        index = least if least < 0 else greatest
+        message = f"triangles must refer to the vertices 0 to {len(mesh.vertices) - 1}, got the index {index}"
+        raise InputError(f"{message}; pass all vertices of the mesh")
+    return geometry if isinstance(geometry, Part) else Part("mesh", mesh, mesh.signed_volume)
 
 
 def _section(

@@ -191,7 +191,9 @@ class LoadedParts:
     def __str__(self) -> str:
         """Summary in one line."""
         copies = sum(part.quantity for part in self.parts)
-        return f"{len(self.parts)} parts, {copies} copies: {', '.join(part.name for part in self.parts)}"
+        names = ", ".join(part.name for part in self.parts)
+        parts = "1 part" if len(self.parts) == 1 else f"{len(self.parts)} parts"
+        return f"{parts}, {'1 copy' if copies == 1 else f'{copies} copies'}: {names}"
 
 
 def read_job(

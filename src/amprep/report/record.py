@@ -8,6 +8,7 @@ from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import Build, Unsupported
+from amprep.report.counting import counted
 
 
 @dataclass(frozen=True)
@@ -190,6 +191,12 @@ class RunRecord:
     settings: Mapping[str, Any] = field(default_factory=dict)
     objective: str = "builds"
     report_files: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Name, printer, counts and faults of the run in one line."""
+        placed = counted(sum(len(entry.build.parts) for entry in self.builds), "part")
+        counts = f"{placed} in {counted(len(self.builds), 'build')}, {len(self.unplaced)} unplaced"
+        return f"{self.job} on {self.printer}: {counts}, {counted(self.faults, 'fault')}"
 
     @property
     def faults(self) -> int:

@@ -154,6 +154,11 @@ def test_names_from_files_cannot_control_the_terminal_or_the_markup(record):
     assert "[b]y" in text
 
 
+def test_a_record_prints_its_counts_in_one_line(record):
+    assert str(record).startswith("job on MK4: ")
+    assert str(record).endswith(f"in 1 build, 1 unplaced, {record.faults} faults")
+
+
 def test_long_lists_are_shortened_in_the_terminal(record):
     many = tuple(UnplacedRecord("peg", copy, "no room left") for copy in range(1, 101))
     text = printed(replace(record, unplaced=many))
