@@ -104,13 +104,13 @@ def test_sides_conflict_unless_they_are_shared_whole_at_the_same_heights():
 
 
 def height_at(polygon, x, y):
-    """Return the height of a patch above a point by its plane, infinity outside its projection."""
+    """Return the heights of a patch above points by its plane, infinity outside its projection."""
+    x, y = np.asarray(x)[..., None], np.asarray(y)[..., None]
     edges = np.roll(polygon, -1, axis=0) - polygon
     sides = edges[:, 0] * (y - polygon[:, 1]) - edges[:, 1] * (x - polygon[:, 0])
-    if (sides < 0.0).any():
-        return np.inf
     normal = np.cross(polygon[1] - polygon[0], polygon[2] - polygon[0])
-    return polygon[0, 2] - ((x - polygon[0, 0]) * normal[0] + (y - polygon[0, 1]) * normal[1]) / normal[2]
+    fall = ((x - polygon[0, 0]) * normal[0] + (y - polygon[0, 1]) * normal[1])[..., 0] / normal[2]
+    return np.where((sides < 0.0).any(axis=-1), np.inf, polygon[0, 2] - fall)
 
 
 @examples(20)
@@ -124,12 +124,10 @@ def test_visible_patches_are_the_lowest_at_a_sample_point(seed):
     find_visible(raised, raised, spacing, found)
     each = [points[start[k] : start[k + 1]] for k in range(6)]
     nodes = np.arange(-20, 60) * spacing
-    lowest = np.zeros(6, np.bool_)
-    for x in nodes:
-        for y in nodes:
-            heights = np.array([height_at(polygon, x, y) for polygon in each]) + rise
-            if np.isfinite(heights).any():
-                lowest |= heights <= heights.min()
+    heights = np.array([height_at(polygon, *np.meshgrid(nodes, nodes)) for polygon in each])
+    heights += rise[:, None, None]
+    least = heights.min(axis=0)
+    lowest = (np.isfinite(least) & (heights <= least)).any(axis=(1, 2))
     assert (found >= lowest).all(), "a patch that is the lowest at a lattice point is visible"
     for k in np.flatnonzero(found & ~lowest):
         middle = each[k][:, :2].mean(axis=0)

@@ -1,0 +1,64 @@
+"""The command line turns every error into one line and an exit code; with --debug the error itself appears."""
+
+import signal
+
+import pytest
+
+import amprep.cli.app
+from amprep.cli import DONE, WRONG, main
+from amprep.errors import InputError
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Return a function that runs the command line with an app that raises an error."""
+
+    def call(error, *arguments):
+        def app():
+            if error is not None:
+                raise error
+
+        monkeypatch.setattr(amprep.cli.app, "app", app)
+        monkeypatch.setattr("sys.argv", ["amprep", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code, capsys.readouterr().err
+
+    before = signal.getsignal(signal.SIGTERM)
+    yield call
+    signal.signal(signal.SIGTERM, before)
+
+
+def test_a_command_that_ends_without_an_error_is_done(run):
+    assert run(None) == (DONE, "")
+
+
+def test_an_error_of_the_input_is_one_line(run):
+    assert run(InputError("a.stl:\n  expected a file")) == (WRONG, "amprep: a.stl: expected a file\n")
+
+
+def test_memory_that_runs_out_gives_advice(run):
+    code, text = run(MemoryError())
+    assert code == WRONG
+    assert "use a coarser pitch" in text
+
+
+def test_an_error_of_the_program_says_how_to_report_it(run):
+    code, text = run(ZeroDivisionError("division by zero"))
+    assert code == WRONG
+    assert text.startswith(
+        "amprep: internal error, ZeroDivisionError: division by zero; run again with --debug"
+    )
+    assert text.count("\n") == 1
+
+
+@pytest.mark.parametrize("error", [InputError("wrong"), MemoryError(), ZeroDivisionError()])
+def test_with_debug_the_error_is_not_caught(monkeypatch, error):
+    def app():
+        raise error
+
+    monkeypatch.setattr(amprep.cli.app, "app", app)
+    monkeypatch.setattr("sys.argv", ["amprep", "--debug"])
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    with pytest.raises(type(error)):
+        main()
