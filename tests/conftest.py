@@ -2,6 +2,7 @@
 
 import os
 
+import pytest
 from hypothesis import settings
 
 settings.register_profile("usual", deadline=None, derandomize=True, max_examples=100)
@@ -9,7 +10,18 @@ settings.register_profile("nightly", deadline=None, max_examples=2000, print_blo
 settings.load_profile("usual")
 
 
+WITHOUT_COMPILATION = os.environ.get("NUMBA_DISABLE_JIT") == "1"
+
+
 def pytest_configure(config):
     """Let hashes wrap around where kernels run as plain Python: numpy warns of that, numba does not."""
-    if os.environ.get("NUMBA_DISABLE_JIT") == "1":
+    if WITHOUT_COMPILATION:
         config.addinivalue_line("filterwarnings", "ignore:overflow encountered in scalar:RuntimeWarning")
+
+
+def pytest_collection_modifyitems(items):
+    """Skip tests that would take minutes where kernels run as plain Python."""
+    if WITHOUT_COMPILATION:
+        for item in items:
+            if item.get_closest_marker("compiled"):
+                item.add_marker(pytest.mark.skip(reason="too slow without compilation"))

@@ -13,6 +13,8 @@ from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, TabuParams
 from amprep.plugins.packers.tabu import pack_tabu
 
+pytestmark = pytest.mark.compiled
+
 PACKERS: dict[str, Any] = {
     "extreme-points": (pack_extreme_points, ExtremePointsParams()),
     "auto": (pack_auto, AutoParams()),

@@ -90,6 +90,7 @@ def test_a_stopped_run_gives_what_it_has():
     assert (plan.status, plan.stop_reason, plan.bound) == ("feasible", "interrupted", None)
 
 
+@pytest.mark.compiled
 def test_high_costs_need_no_more_than_larger_buckets():
     plan = route("min-cost-flow", one_hole((1, 3, 4), node_capacity=2, costs=(0, 10_000)))
     assert plan.objective == 40_000

@@ -17,6 +17,8 @@ from amprep.plugins.routers import auto
 from amprep.plugins.routers.params import TreeParams
 from amprep.testing.support_scenes import support_scene
 
+pytestmark = pytest.mark.compiled
+
 HOST = Host.load()
 
 
