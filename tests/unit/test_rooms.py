@@ -157,6 +157,7 @@ TESTS_OF_SEVERAL = {
     "test_map.py": "docs/map.md",
     "test_rooms.py": "the layout of the source",
     "cli/test_main.py": "the entry point in cli/__init__.py",
+    "test_words.py": "words that standard terms replace",
     "threemf/package/test_hostile.py": "packages that are made to do harm",
     "threemf/read/test_parts.py": "everything that a part of a 3MF job has",
     "threemf/write/test_generic.py": "the generic target, from skeleton to record",

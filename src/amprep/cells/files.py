@@ -67,7 +67,7 @@ def _variants(table: Mapping[str, Any], beside: Path, read_mesh: ReadMesh) -> tu
     size = number(table, "size_mm", str(beside), 1.0) or 0.0
     if not 0.0 < size < 1e6:
         raise InputError(
-            f"{beside}: size_mm, the edge of the cube in the drawing, must be above 0, got {size:g}"
+            f"{beside}: size_mm, the edge of the cube in which the mesh is drawn, must be above 0, got {size:g}"
         )
     variants = [
         Variant(_shape(each, beside, size, read_mesh), when_of(each, beside))

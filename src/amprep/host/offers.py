@@ -95,9 +95,9 @@ def _params(params: Any) -> list[str]:
         return [f"params must be a dataclass, got {params!r}"]
     if not params.__dataclass_params__.frozen:  # type: ignore[attr-defined]
         return [f"params class {params.__name__} must be frozen: @dataclass(frozen=True)"]
-    bare = [field.name for field in fields(params) if field.init and not _has_default(field)]
-    if bare:
-        return [f"every parameter must have a default; these have none: {', '.join(bare)}"]
+    missing = [field.name for field in fields(params) if field.init and not _has_default(field)]
+    if missing:
+        return [f"every parameter must have a default; these have none: {', '.join(missing)}"]
     try:
         field_types(params)
     except (TypeError, NameError) as error:

@@ -10,7 +10,7 @@ from amprep.errors import JobError
 from amprep.job.loading import make_job
 from amprep.job.settings.job import Job
 
-_BARE_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
+_UNQUOTED_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
 _PARAMS_OF = {
     "packing.strategy": "packing.params",
     "packing.volumes": "packing.volume_params",
@@ -23,7 +23,7 @@ _NAME_OR_FILE = ("printer", "cells.strategy")
 def apply_sets(job: Job, sets: Sequence[str]) -> Job:
     """Return the job with each ``KEY=VALUE`` set; keys are dotted, values are written as in TOML.
 
-    A bare word is a text: ``cells.strategy=prism``.
+    A word without quotation marks is a text: ``cells.strategy=prism``.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def _parsed(text: str) -> dict[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or "\n" in text:
         raise JobError(f"--set: expected key=value, for example supports.pitch_mm=0.8, got {text!r}")
-    for candidate in (value, f'"{value.strip()}"' if _BARE_WORD.fullmatch(value.strip()) else value):
+    for candidate in (value, f'"{value.strip()}"' if _UNQUOTED_WORD.fullmatch(value.strip()) else value):
         try:
             return tomllib.loads(f"{key} = {candidate}")
         except (tomllib.TOMLDecodeError, RecursionError):

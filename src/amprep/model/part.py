@@ -134,6 +134,6 @@ class Part:
         return np.zeros((1, 3)) if self.positions is None else self.positions
 
     @property
-    def worth(self) -> float:
+    def fill_value(self) -> float:
         """The value in a fill problem: `value`, or the volume in mm3."""
         return self.volume_mm3 if self.value is None else self.value

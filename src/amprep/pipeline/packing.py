@@ -128,7 +128,7 @@ def packing_problem(
         Packing settings of the job.
     """
     items = tuple(
-        Item(index, copy, volume, part.worth, part.orientations)
+        Item(index, copy, volume, part.fill_value, part.orientations)
         for index, (part, volume) in enumerate(zip(parts, volumes, strict=True))
         for copy in range(part.quantity)
     )

@@ -72,15 +72,15 @@ class SupportLayout:
         point. If the point is within the rise of the square, the reason is that of the square or, if the square is
         connected, that the connector is blocked. Otherwise there is no free voxel below the point.
         """
-        reds = np.flatnonzero(self.red.part == part)
-        key = self._heights(self.red.square[reds])
+        red_squares = np.flatnonzero(self.red.part == part)
+        key = self._heights(self.red.square[red_squares])
         order = np.argsort(key)
         size = (self.grid.pitch, self.grid.pitch, self.grid.step)
         voxel = np.floor((points - self.grid.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
         below = np.searchsorted(key[order], self._heights(voxel), side="right") - 1
         reasons = [NO_FREE_VOXEL_BELOW] * len(points)
         for i in np.flatnonzero(below >= 0):
-            red = reds[order[below[i]]]
+            red = red_squares[order[below[i]]]
             within = voxel[i, 0] <= self.red.square[red, 0] + self.red.rise[red]
             if within and (self.red.square[red, 1:] == voxel[i, 1:]).all():
                 reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]

@@ -318,7 +318,7 @@ def test_part_entries_change_the_parts_they_name_and_no_others(job_file, tmp_pat
     base, lid, other = apply_part_settings(parts, load_job(job_file(text)))
     assert (base.quantity, lid.quantity, other) == (4, 4, parts[2])
     assert np.array_equal(base.orientations.matrices, quarter_turns())
-    assert (base.value, lid.value, lid.worth) == (None, 0, 0)
+    assert (base.value, lid.value, lid.fill_value) == (None, 0, 0)
     assert present(lid.boxes).tolist() == [[0, 0, 0, 1, 1, 1], [1, 0, 0, 2, 1, 1]]
     assert (lid.overrides.supports, lid.overrides.overhang_angle_deg) == (False, 30)
 

@@ -54,7 +54,7 @@ def pack_shelves(
 ) -> Packing:
     """Place each box in the first row that has room for it (DOI 10.1137/0209062), in time ``O(items * rows)``.
 
-    Every box keeps the clearance from other boxes and from the walls and lid of the build volume.
+    Every box keeps the clearance from other boxes and from the walls and the top of the build volume.
     """
     boxes = sorted(
         (_box(problem, number, item) for number, item in enumerate(problem.items)),

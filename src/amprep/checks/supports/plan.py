@@ -194,8 +194,8 @@ def _check_reasons(problem: SupportProblem, plan: SupportPlan) -> list[Violation
             continue
         untrue.setdefault(f"listed as {each.reason!r}, but {truth}", []).append(each.red)
     return [
-        _violation(f"red square {reds[0]}", f"{message} ({len(reds)} such squares)")
-        for message, reds in untrue.items()
+        _violation(f"red square {red_squares[0]}", f"{message} ({len(red_squares)} such squares)")
+        for message, red_squares in untrue.items()
     ]
 
 

@@ -197,11 +197,11 @@ def find_grounded(
     pieces, piece = label_shells(triangles, len(points)) if len(triangles) else (0, np.empty(0, np.int64))
     plate = len(nodes) + pieces
     low = used[nodes[used, 2] <= 0.5 * radius[used]]
-    standing = np.unique(piece[rests(points)[triangles].any(axis=1)]) if pieces else np.empty(0, np.int64)
+    resting = np.unique(piece[rests(points)[triangles].any(axis=1)]) if pieces else np.empty(0, np.int64)
     touching = [_touches(nodes, radius, used, points, triangles[piece == each]) for each in range(pieces)]
     numbers = np.repeat(np.arange(pieces), [len(each) for each in touching])
-    first = np.concatenate([struts[:, 0], low, len(nodes) + standing, *touching])
-    second = np.concatenate([struts[:, 1], np.full(len(low) + len(standing), plate), len(nodes) + numbers])
+    first = np.concatenate([struts[:, 0], low, len(nodes) + resting, *touching])
+    second = np.concatenate([struts[:, 1], np.full(len(low) + len(resting), plate), len(nodes) + numbers])
     graph = coo_array((np.ones(len(first), np.int8), (first, second)), shape=(plate + 1, plate + 1))
     label = connected_components(graph, directed=False)[1]
     grounded = label == label[plate]

@@ -187,7 +187,7 @@ def _add_box(
 
 
 @helper
-def _open_build(standing: int, instance: BoxInstance, state: PassState) -> None:
+def _open_build(obstacle_count: int, instance: BoxInstance, state: PassState) -> None:
     """Open a build: the least corner is its first point, the walls are its first lines; add the obstacles."""
     room, obstacles = instance.room, instance.obstacles
     placed, points, lines, cursor = state.placed, state.points, state.lines, state.cursor
@@ -195,7 +195,7 @@ def _open_build(standing: int, instance: BoxInstance, state: PassState) -> None:
     cursor[LINES], cursor[LINES + 1] = 1, 1
     lines[0, 0], lines[1, 0] = room[0], room[1]
     _add_point((room[0], room[1], room[2]), room, placed, points, cursor)
-    for j in range(standing):
+    for j in range(obstacle_count):
         _add_box(j, obstacles, (0.0, 0.0, 0.0), room, placed, points, lines, cursor)
 
 
@@ -278,9 +278,9 @@ def pack(
     cursor[WORK] = 0
     while cursor[BUILD] < most_builds:
         build = cursor[BUILD]
-        standing = first_obstacles if build == 0 else zones
+        obstacle_count = first_obstacles if build == 0 else zones
         if cursor[INDEX] == 0:
-            _open_build(standing, instance, state)
+            _open_build(obstacle_count, instance, state)
         while cursor[INDEX] < order.size:
             if cursor[WORK] > work:
                 return PAUSED
@@ -310,7 +310,7 @@ def pack(
                     found = add_crossings(own, instance, state, found)
                 if found:
                     cursor[WORK] += found
-                    choose(o, fixed_height, found, standing, instance, rule, state)
+                    choose(o, fixed_height, found, obstacle_count, instance, rule, state)
             if best[MERIT] == np.inf:
                 failed[item_type] = build
                 continue

@@ -85,7 +85,7 @@ def feasible_height(
     room: Floats,
     placed: Floats,
     count: int,
-    standing: int,
+    obstacle_count: int,
 ) -> float:
     """Return the least height from the position's z to `highest` at which an orientation is feasible.
 
@@ -99,8 +99,8 @@ def feasible_height(
         As in `BoxInstance`.
     placed
         ``(m, 6)`` mm boxes of the build; the first `count` are used.
-    standing
-        The first `standing` of them are obstacles, which give by the slack of the walls.
+    obstacle_count
+        Number of obstacles, which are the first boxes; they give by the slack of the walls.
     """
     slack = room[SLACK]
     x, y, z = position
@@ -121,7 +121,7 @@ def feasible_height(
                 return -1.0
         raised = False
         for j in range(count):
-            give = slack if j < standing else PAIR_SLACK
+            give = slack if j < obstacle_count else PAIR_SLACK
             over_x = x0 < placed[j, 3] - give and placed[j, 0] + give < x1
             if over_x and y0 < placed[j, 4] - give and placed[j, 1] + give < y1:
                 over_z = z0 < placed[j, 5] - give and placed[j, 2] + give < z1
@@ -182,11 +182,11 @@ def _merit(orientation: int, position: Point, orientations: Floats, room: Floats
 
 
 @helper
-def _in_the_way(
-    j: int, own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, standing: int
+def _blocks(
+    j: int, own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, obstacle_count: int
 ) -> bool:
     """Return whether placed box j overlaps one of the boxes of an orientation."""
-    give = room[SLACK] if j < standing else PAIR_SLACK
+    give = room[SLACK] if j < obstacle_count else PAIR_SLACK
     x, y, z = position
     for k in range(own[0], own[1]):
         over_x = x + boxes[k, 0] < placed[j, 3] - give and placed[j, 0] + give < x + boxes[k, 3]
@@ -211,7 +211,7 @@ def choose(
     orientation: int,
     fixed_height: int,
     found: int,
-    standing: int,
+    obstacle_count: int,
     instance: BoxInstance,
     rule: Floats,
     state: PassState,
@@ -224,7 +224,7 @@ def choose(
         The first `fixed_height` candidates keep their height; the others may rise until they are feasible.
     found
         Number of candidates.
-    standing
+    obstacle_count
         Number of obstacles in the build.
     """
     placed, points, _, candidates, _, cursor, best, _ = state
@@ -241,12 +241,12 @@ def choose(
         if point >= 0 and points[point, LAST] >= 0.0:
             cursor[WORK] += 1
             j = int(points[point, LAST])
-            if _in_the_way(j, own, (x, y, z), boxes, room, placed, standing):
+            if _blocks(j, own, (x, y, z), boxes, room, placed, obstacle_count):
                 continue
         if c >= fixed_height and room[FLAT] == 0.0:
             highest = z + (best[MERIT] - merit) / rule[WEIGHT + 2] if simple else np.inf
         cursor[WORK] += count
-        height = feasible_height(own, (x, y, z), highest, boxes, room, placed, count, standing)
+        height = feasible_height(own, (x, y, z), highest, boxes, room, placed, count, obstacle_count)
         if height < 0.0:
             if point >= 0 and height <= -2.0:
                 points[point, LAST] = -2.0 - height

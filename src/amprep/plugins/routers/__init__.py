@@ -56,7 +56,7 @@ def amprep_support_routers() -> Iterable[SupportRouter]:
     """Yield the built-in support routers."""
     yield SupportRouter(
         name="shortest-paths",
-        summary="Iterated shortest paths that gather into trunks; fast on large grids (thesis 3.4).",
+        summary="Iterated shortest paths that merge where they can; fast on large grids (thesis 3.4).",
         run=later("amprep.plugins.routers.shortest_paths:route_shortest_paths"),
         params=ShortestPathsParams,
     )

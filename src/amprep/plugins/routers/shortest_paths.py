@@ -1,4 +1,4 @@
-"""The router `shortest-paths`: iterated shortest paths that gather into trunks (thesis 3.4)."""
+"""The router `shortest-paths`: iterated shortest paths that merge where they can (thesis 3.4)."""
 
 import numpy as np
 

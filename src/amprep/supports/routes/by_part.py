@@ -32,9 +32,9 @@ class Routed(NamedTuple):
 
 def route_together(network: SupportNetwork, progress: Progress) -> Routed:
     """Route all parts as one network, as in the thesis: supports of different parts may merge."""
-    reds = _above_plate(network.red)
-    edges = network.connect(reds, NO_VOXELS, network.stop, progress)
-    return Routed(_with_parts(edges, network.red, reds), tuple(network.reasons))
+    red_squares = _above_plate(network.red)
+    edges = network.connect(red_squares, NO_VOXELS, network.stop, progress)
+    return Routed(_with_parts(edges, network.red, red_squares), tuple(network.reasons))
 
 
 def route_apart(network: SupportNetwork, progress: Progress) -> Routed:
@@ -133,21 +133,21 @@ def _exceeded(edges: SupportEdges, edge_capacity: int, node_capacity: int) -> In
 
 def _complete(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     """Return the edges of a maximum flow in one network of all parts, with escalation where that is allowed."""
-    reds = _above_plate(network.red)
-    posed = network.pose(reds, NO_VOXELS)
+    red_squares = _above_plate(network.red)
+    posed = network.pose(red_squares, NO_VOXELS)
     connected = np.zeros(len(posed.problem.red), np.bool_)
-    connected[posed.number[~np.isin(reds, network.unconnected())]] = True
+    connected[posed.number[~np.isin(red_squares, network.unconnected())]] = True
     plane, y, x = posed.corner
     inner = replace(edges, plane=edges.plane - plane, y=edges.y - y, x=edges.x - x)
     plan = complete_plan(posed.problem, inner, connected, stop=network.stop, progress=silent)
-    return _with_parts(network.read(plan, posed, reds), network.red, reds)
+    return _with_parts(network.read(plan, posed, red_squares), network.red, red_squares)
 
 
-def _with_parts(edges: SupportEdges, red: RedSquares, reds: Ints) -> SupportEdges:
-    """Assign each edge to the smallest part that has a red square, of those numbered `reds`, in its component."""
-    component, of_red = edges.components(red.square[reds])
+def _with_parts(edges: SupportEdges, red: RedSquares, red_squares: Ints) -> SupportEdges:
+    """Assign each edge to the smallest part that has one of the numbered `red_squares` in its component."""
+    component, of_red = edges.components(red.square[red_squares])
     smallest = np.full(
         int(max(component.max(initial=-1), of_red.max(initial=-1))) + 1, np.iinfo(np.int32).max
     )
-    np.minimum.at(smallest, of_red, red.part[reds])
+    np.minimum.at(smallest, of_red, red.part[red_squares])
     return replace(edges, part=smallest[component])

@@ -60,12 +60,12 @@ class SupportNetwork:
         self.reasons = [""] * len(self.red.part)
         self.notes: list[tuple[int | None, str]] = []
 
-    def connect(self, reds: Ints, closed: Ints, stop: Stop, progress: Progress) -> SupportEdges:
+    def connect(self, red_squares: Ints, closed: Ints, stop: Stop, progress: Progress) -> SupportEdges:
         """Route red squares, with further voxels closed, and note why red squares stay unconnected.
 
         Parameters
         ----------
-        reds
+        red_squares
             ``(n,)`` numbers of the red squares to connect.
         closed
             ``(k, 3)`` k, y, x of the voxels that are closed in this problem only.
@@ -79,30 +79,30 @@ class SupportNetwork:
         PluginError
             If the router returns a plan that `check_plan` rejects.
         """
-        blocked = np.isin(square_keys(voxels_below(self.red.square[reds])), square_keys(closed))
-        self.explain(reds[blocked], ENCLOSED)
-        reds = reds[~blocked]
-        if len(reds) and stop():
-            self.explain(reds, OUT_OF_TIME)
-            self._note((f"routing ended early: {stop.reason}",), reds)
-        if not len(reds) or stop():
+        blocked = np.isin(square_keys(voxels_below(self.red.square[red_squares])), square_keys(closed))
+        self.explain(red_squares[blocked], ENCLOSED)
+        red_squares = red_squares[~blocked]
+        if len(red_squares) and stop():
+            self.explain(red_squares, OUT_OF_TIME)
+            self._note((f"routing ended early: {stop.reason}",), red_squares)
+        if not len(red_squares) or stop():
             return SupportEdges.from_rows([])
-        posed = self.pose(reds, closed)
+        posed = self.pose(red_squares, closed)
         plan = self.route(posed.problem, stop, progress)
         violations = check_plan(posed.problem, plan)
         if violations:
             first = violations[0]
             raise PluginError(f"the support router broke its promise: {first.subject} {first.message}")
-        return self.read(plan, posed, reds)
+        return self.read(plan, posed, red_squares)
 
-    def pose(self, reds: Ints, closed: Ints) -> PosedProblem:
+    def pose(self, red_squares: Ints, closed: Ints) -> PosedProblem:
         """Return the problem of connecting one or more red squares.
 
         A path from plane p moves sideways by at most p squares, which bounds the block of voxels.
         """
-        keys = square_keys(self.red.square[reds])
+        keys = square_keys(self.red.square[red_squares])
         _, first, number = np.unique(keys, return_index=True, return_inverse=True)
-        square = self.red.square[reds[first]]
+        square = self.red.square[red_squares[first]]
         top = int(square[:, 0].max())
         _, ny, nx = self.laid.grid.shape
         y, x = _range_around(square[:, 1], top, ny), _range_around(square[:, 2], top, nx)
@@ -117,8 +117,8 @@ class SupportNetwork:
             Grid(grid.origin + corner[::-1] * grid.size, grid.pitch, grid.step, (nz, ny, nx)),
             voxels,
             square - corner,
-            self.red.part[reds[first]],
-            self.red.region[reds[first]],
+            self.red.part[red_squares[first]],
+            self.red.region[red_squares[first]],
             voxels[0] == Voxel.FREE,
             rules.edge_limit(grid, top),
             rules.node_capacity,
@@ -128,23 +128,23 @@ class SupportNetwork:
         )
         return PosedProblem(problem, corner, number)
 
-    def read(self, plan: SupportPlan, posed: PosedProblem, reds: Ints) -> SupportEdges:
+    def read(self, plan: SupportPlan, posed: PosedProblem, red_squares: Ints) -> SupportEdges:
         """Keep the reasons and notes of a plan for the requested red squares; return its edges in the whole grid."""
         sentences = list(plan.notes)
         if plan.raised and self.rules.escalation != "none":
             sentences.append(f"capacities are raised by up to {plan.raised}, as supports.escalation allows")
         if plan.stop_reason != "finished":
             sentences.append(f"routing ended early: {plan.stop_reason}")
-        self._note(sentences, reds)
+        self._note(sentences, red_squares)
         reason = {each.red: each.reason for each in plan.unconnected}
-        for red, i in zip(reds, posed.number.tolist(), strict=True):
+        for red, i in zip(red_squares, posed.number.tolist(), strict=True):
             self.reasons[red] = reason.get(i, "")
         _, y, x = posed.corner
         return replace(plan.edges, y=plan.edges.y + y, x=plan.edges.x + x)
 
-    def explain(self, reds: Ints, reason: str) -> None:
+    def explain(self, red_squares: Ints, reason: str) -> None:
         """Note why red squares are unconnected."""
-        for red in reds:
+        for red in red_squares:
             self.reasons[red] = reason
 
     def unconnected(self, *reasons: str) -> Ints:
@@ -152,9 +152,9 @@ class SupportNetwork:
         chosen = [each in reasons if reasons else each != "" for each in self.reasons]
         return np.flatnonzero(chosen).astype(np.int32)
 
-    def _note(self, sentences: Sequence[str], reds: Ints) -> None:
+    def _note(self, sentences: Sequence[str], red_squares: Ints) -> None:
         """Keep sentences about the parts of red squares, each once."""
-        parts = np.unique(self.red.part[reds])
+        parts = np.unique(self.red.part[red_squares])
         notes = [(int(parts[0]) if len(parts) == 1 else None, each) for each in sentences]
         self.notes += [note for note in notes if note not in self.notes]
 

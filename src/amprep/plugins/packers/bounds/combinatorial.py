@@ -1,6 +1,6 @@
 """Bounds that no packing can beat: least number of builds, greatest value of one build.
 
-All bounds hold for every packing that the judge accepts: distances are Euclidean, and every contact may be
+All bounds are valid for every packing that the judge accepts: distances are Euclidean, and every contact may be
 penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it. Items of several boxes are
 relaxed to one of their boxes, or to the volume of their union.
 """

@@ -1,7 +1,7 @@
 """The fractional covering bound: a lower bound on the builds from set covering over sets of boxes that may fit.
 
 Column generation as in thesis 2.1, but priced by `amprep.kernels.boxes.pricing`, which is fast: it considers every
-set of boxes that is not proved impossible. Feasible builds are among these sets, so the bound holds for them
+set of boxes that is not proved impossible. Feasible builds are among these sets, so the bound is valid for them
 (Farley 1990, doi:10.1287/opre.38.5.922). Items of several boxes, orientations, clearance and round plates are relaxed
 as in `relaxed_boxes`.
 """
