@@ -171,6 +171,16 @@ def test_the_example_of_the_page_about_python_runs(tmp_path, monkeypatch):
     assert (tmp_path / "out" / "example.build-1.3mf").is_file()
 
 
+def test_the_example_of_the_page_about_filled_regions_runs(tmp_path, monkeypatch):
+    import shutil
+
+    shutil.copy(ROOT / "fixtures" / "wheel.3mf", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    for block in python_blocks("lattice.md"):
+        exec(compile(block, "docs/lattice.md", "exec"), {})
+    assert list((tmp_path / "out").glob("wheel*.3mf"))
+
+
 PUBLIC = {"amprep", "amprep.testing", "amprep.hookspecs", "amprep.model", "amprep.cells", "amprep.errors"}
 
 
@@ -178,7 +188,7 @@ def public_sources():
     """Name -> Python code that may use the public modules only: plugins, templates, and examples in pages."""
     for path in [*(ROOT / "plugins").rglob("*.py"), *(ROOT / "src/amprep/templates").glob("*.py.template")]:
         yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8").replace("${module}", "own")
-    for page in ("plugins.md", "python.md"):
+    for page in sorted(path.name for path in (ROOT / "docs").glob("*.md")):
         for number, block in enumerate(python_blocks(page)):
             yield f"docs/{page}, example {number + 1}", block
 
