@@ -58,10 +58,10 @@ def write(build: SupportedBuild | Build, path: str | Path) -> Path:
     """
     from amprep.threemf import write_build
 
-    require_record(build, (SupportedBuild, Build), "write", "pass the result of emit_cells")
     path = Path(path)
     if path.suffix.lower() != ".3mf":
         raise InputError(f"{path}: a build job must be a .3mf file; choose another name")
+    require_record(build, (SupportedBuild, Build), "write", "pass the result of emit_cells")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
