@@ -21,7 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 import pluggy
 
-from amprep.model.bounding_volume import BoundingVolume
+from amprep.model.bounding_volume import BoundingVolume, TurnedVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import CellRequest, Cells
 from amprep.model.control import Progress, Stop
@@ -90,11 +90,14 @@ class ReadMeshes(Protocol):
 
 
 class MakeVolume(Protocol):
-    """Return a bounding volume that contains the part as a solid."""
+    """Return a bounding volume that contains the part as a solid.
+
+    A maker that may choose an orientation among `Part.orientations` returns a `TurnedVolume`.
+    """
 
     def __call__(
         self, part: Part, *, params: Any, rng: np.random.Generator, stop: Stop
-    ) -> BoundingVolume: ...
+    ) -> BoundingVolume | TurnedVolume: ...
 
 
 class Pack(Protocol):
@@ -177,13 +180,14 @@ class VolumeMaker:
 
 @dataclass(frozen=True)
 class Packer:
-    """Offer of a packing algorithm."""
+    """Offer of a packing algorithm; `volumes` names the volume maker of jobs that choose none."""
 
     name: str
     summary: str
     run: Pack
     accepts: PackerAccepts = field(default_factory=PackerAccepts)
     params: type = NoParams
+    volumes: str = "box"
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,17 @@
 """Check the volume maker's promise: the bounding volume contains the part with its interior."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
+from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.distance import box_solids, convex_solid, thickness
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, TurnedVolume
+from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 
 if TYPE_CHECKING:
@@ -17,11 +20,18 @@ if TYPE_CHECKING:
 _NEGLIGIBLE_MM3 = 1e-9
 
 
-def check_volume(part: Part, volume: BoundingVolume) -> list[Violation]:
+def check_volume(part: Part, volume: BoundingVolume | TurnedVolume) -> list[Violation]:
     """Return a violation if the part extends more than `CONTACT_TOLERANCE` beyond the bounding volume.
 
-    The interior of a solid must be covered as well. For a part that is not a solid, the triangles must be.
+    The interior of a solid must be covered as well. For a part that is not a solid, the triangles must be. The
+    rotation of a turned volume must be one of the orientations that the part allows.
     """
+    if isinstance(volume, TurnedVolume):
+        fault = motion_fault(volume.rotation, part.orientations)
+        if fault:
+            return [Violation("allowed motion", part.name, f"the rotation of its bounding volume {fault}")]
+        mesh = Mesh(part.mesh.vertices @ volume.rotation.T, part.mesh.triangles)
+        return check_volume(replace(part, mesh=mesh), volume.volume)
     if isinstance(volume, Boxes) and len(volume.lo) == 1:
         return _in_one_box(part, volume)
     cover = _cover(volume)

@@ -24,6 +24,13 @@ def run(
             help="Packer by name; see 'amprep plugins list'.", rich_help_panel="Settings of the job"
         ),
     ] = None,
+    volumes: Annotated[
+        str | None,
+        typer.Option(
+            help="Volume maker by name, or several as A,B: B bounds the solid that A makes.",
+            rich_help_panel="Settings of the job",
+        ),
+    ] = None,
     *,
     options: BuildOptions,
 ) -> None:
@@ -36,4 +43,5 @@ def run(
     verification, 2 for wrong input (nothing written), 130 if interrupted
     (nothing written).
     """
-    build_and_report("run", inputs, options, {"packing.strategy": packer})
+    named = None if volumes is None else [name.strip() for name in volumes.split(",")]
+    build_and_report("run", inputs, options, {"packing.strategy": packer, "packing.volumes": named})

@@ -12,7 +12,7 @@ from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRout
 from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
 from amprep.host.mismatch import fits
 from amprep.host.offers import KINDS, Kind, Listed
-from amprep.model.bounding_volume import BoundingVolume
+from amprep.model.bounding_volume import BoundingVolume, TurnedVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import Cells
 from amprep.model.packing import Packing, PackingProblem
@@ -143,7 +143,9 @@ class Host:
     @overload
     def call(self, listed: Listed[MeshReader], *args: Any, **kwargs: Any) -> list[Part]: ...
     @overload
-    def call(self, listed: Listed[VolumeMaker], *args: Any, **kwargs: Any) -> BoundingVolume: ...
+    def call(
+        self, listed: Listed[VolumeMaker], *args: Any, **kwargs: Any
+    ) -> BoundingVolume | TurnedVolume: ...
     @overload
     def call(self, listed: Listed[Packer], *args: Any, **kwargs: Any) -> Packing: ...
     @overload

@@ -6,6 +6,7 @@ from amprep.hookspecs import PackerAccepts
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
 from amprep.model.packing import PackingProblem
 from amprep.model.part import Orientations
+from amprep.model.rotations import axis_rotations, quarter_turns
 
 
 def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
@@ -42,6 +43,20 @@ def orientation_word(orientations: Orientations) -> str:
     if len(matrices) == 1:
         return "fixed"
     return "axis" if np.allclose(np.abs(matrices), np.round(np.abs(matrices)), atol=1e-9) else "list"
+
+
+def narrowed(orientations: Orientations, accepts: PackerAccepts) -> Orientations:
+    """Return allowed orientations that the packer can handle: all of them, or else as many as it takes.
+
+    A packer that takes lists only gets the quarter turns about z instead of any angle about z, and the 24 rotations
+    from axis to axis instead of any rotation. Lists are returned as they are.
+    """
+    freedom, words = orientations.freedom, accepts.orientations
+    if freedom == "list" or freedom in words:
+        return orientations
+    if {"axis", "list"} & words:
+        return Orientations("list", quarter_turns() if freedom == "about-z" else axis_rotations())
+    return Orientations("about-z") if freedom == "free" and "about-z" in words else Orientations()
 
 
 def _volumes_handled(accepts: PackerAccepts) -> frozenset[str]:

@@ -6,7 +6,7 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from typing import Any, Final, Generic, Literal, TypeVar
 
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
-from amprep.model.bounding_volume import Boxes, ConvexPieces, Solid
+from amprep.model.bounding_volume import Boxes, ConvexPieces, Solid, TurnedVolume
 from amprep.model.cells import Cells
 from amprep.model.packing import Packing
 from amprep.model.supports import SupportPlan
@@ -28,7 +28,9 @@ class KindOfOffer:
 
 KINDS: Final[Mapping[Kind, KindOfOffer]] = {
     "reader": KindOfOffer("amprep_mesh_readers", MeshReader, "mesh reader", (list,)),
-    "volume": KindOfOffer("amprep_volume_makers", VolumeMaker, "volume maker", (Boxes, ConvexPieces, Solid)),
+    "volume": KindOfOffer(
+        "amprep_volume_makers", VolumeMaker, "volume maker", (Boxes, ConvexPieces, Solid, TurnedVolume)
+    ),
     "packer": KindOfOffer("amprep_packers", Packer, "packer", (Packing,)),
     "router": KindOfOffer("amprep_support_routers", SupportRouter, "support router", (SupportPlan,)),
     "cell": KindOfOffer("amprep_cell_emitters", CellEmitter, "lattice cell", (Cells,)),
@@ -125,9 +127,15 @@ def _particular(offer: Any) -> list[str]:
             *_unknown("objectives", accepts.objectives, OBJECTIVE_WORDS),
             *_unknown("orientations", accepts.orientations, ORIENTATION_WORDS),
             *_unknown("stacking", accepts.stacking, frozenset({True, False})),
+            *_default_volumes(offer.volumes),
         ]
     material = offer.material if isinstance(offer, CellEmitter) else None
     return [] if material is None or callable(material) else ["material must be a function or None"]
+
+
+def _default_volumes(name: Any) -> list[str]:
+    valid = isinstance(name, str) and _NAME.fullmatch(name)
+    return [] if valid else [f"volumes must be the name of a volume maker, got {name!r}"]
 
 
 def _suffixes(suffixes: Any) -> list[str]:

@@ -13,7 +13,6 @@ from amprep.job.settings.job import Job
 _UNQUOTED_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
 _PARAMS_OF = {
     "packing.strategy": "packing.params",
-    "packing.volumes": "packing.volume_params",
     "supports.strategy": "supports.params",
     "cells.strategy": "cells.params",
 }

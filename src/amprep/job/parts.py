@@ -9,6 +9,7 @@ import numpy as np
 from amprep.arrays import Floats, frozen
 from amprep.errors import JobError, nearest_hint
 from amprep.job.settings.job import Job
+from amprep.job.settings.packing import as_names
 from amprep.job.settings.parts import PartSettings
 from amprep.model.part import Part
 
@@ -67,12 +68,20 @@ def _fixed(part: Part, entry: PartSettings) -> Floats | None:
     return frozen(entry.fixed, np.float64, 3) if entry.fixed else part.fixed
 
 
+def _volumes(part: Part, entry: PartSettings) -> tuple[str, ...] | None:
+    """Return the names of the volume makers for the part; boxes in the entry choose the maker that takes them."""
+    if entry.boxes is not None:
+        return ("boxes",)
+    return part.overrides.volumes if entry.volumes is None else as_names(entry.volumes)
+
+
 def _with_settings(part: Part, entry: PartSettings) -> Part:
     angle = entry.overhang_angle_deg
     overrides = replace(
         part.overrides,
         overhang_angle_deg=part.overrides.overhang_angle_deg if angle is None else angle,
         supports=part.overrides.supports if entry.supports is None else entry.supports,
+        volumes=_volumes(part, entry),
     )
     return replace(
         part,

@@ -2,7 +2,7 @@
 
 from amprep.arrays import CONTACT_TOLERANCE
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid, TurnedVolume
 from amprep.model.build import (
     TARGETS,
     Build,
@@ -77,6 +77,7 @@ __all__ = [
     "SupportProblem",
     "Target",
     "Template",
+    "TurnedVolume",
     "Unconnected",
     "Unplaced",
     "Unsupported",

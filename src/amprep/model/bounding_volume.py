@@ -54,3 +54,27 @@ class Solid:
 
 
 BoundingVolume = Boxes | ConvexPieces | Solid
+
+
+@dataclass(frozen=True, eq=False)
+class TurnedVolume:
+    """A bounding volume in an orientation that its maker chose (thesis 2.3, coverings of a part that may be rotated).
+
+    Attributes
+    ----------
+    volume
+        Contains the part after its rotation by `rotation` about the origin of the part.
+    rotation
+        ``(3, 3)`` one of the orientations that the part allows.
+    """
+
+    volume: BoundingVolume
+    rotation: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64).reshape(3, 3))
+
+
+def as_turned(made: "BoundingVolume | TurnedVolume") -> TurnedVolume:
+    """Return what a volume maker returned as a turned volume; a plain volume is turned by the identity."""
+    return made if isinstance(made, TurnedVolume) else TurnedVolume(made, np.eye(3))

@@ -23,9 +23,13 @@ class Item:
     part, copy
         Index of the part in the job, and of the copy, from 0.
     volume
-        Bounding volume in part coordinates, mm; all copies share it.
+        Bounding volume, mm, in the coordinates of the part after its rotation by `turn`; all copies share it.
     value
         Contribution to the objective of a fill problem.
+    orientations
+        Rotations that the packer may give the volume; they come after `turn`.
+    turn
+        ``(3, 3)`` rotation that the volume maker chose; the identity for a volume in part coordinates.
     """
 
     part: int
@@ -33,11 +37,15 @@ class Item:
     volume: BoundingVolume
     value: float
     orientations: Orientations = field(default_factory=Orientations)
+    turn: Floats = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "turn", frozen(self.turn, np.float64).reshape(3, 3))
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """A rigid motion of an item into a build: ``x -> rotation @ x + translation``."""
+    """A rigid motion of the volume of an item into a build: ``x -> rotation @ x + translation``."""
 
     item: int
     rotation: Floats

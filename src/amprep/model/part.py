@@ -53,12 +53,19 @@ class Region:
 
 @dataclass(frozen=True, eq=False)
 class Overrides:
-    """Settings for one part; None keeps the setting of the job."""
+    """Settings for one part; None keeps the setting of the job.
+
+    Attributes
+    ----------
+    volumes
+        Names of the volume makers, each of which works on the result of the one before.
+    """
 
     overhang_angle_deg: float | None = None
     lift_mm: float | None = None
     clearance_mm: float | None = None
     supports: bool | None = None
+    volumes: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from amprep.cells import cell_offer, read_cell
-from amprep.errors import InputError, MeshError
+from amprep.errors import InputError, JobError, MeshError
 from amprep.hookspecs import CellEmitter, Packer, SupportRouter, VolumeMaker
 from amprep.host import Chosen, Host, Listed, choose
-from amprep.job import Job, apply_sets, job_from_inputs, override
+from amprep.job import Job, apply_sets, as_names, job_from_inputs, override
 from amprep.model import CellRequest, Cells, DeclaredCell, Mesh, Part, Progress, Stop, silent
 
 
@@ -39,14 +39,13 @@ class ResolvedJob:
 
     Attributes
     ----------
-    volume, given_boxes
-        Makers of bounding volumes: for parts without and with boxes in the job file.
+    volumes
+        Volume makers for parts that choose none, in the order in which they work.
     """
 
     job: Job
     host: Host
-    volume: Chosen[VolumeMaker]
-    given_boxes: Chosen[VolumeMaker]
+    volumes: tuple[Chosen[VolumeMaker], ...]
     packer: Chosen[Packer]
     router: Chosen[SupportRouter]
     cell: ChosenCell
@@ -54,6 +53,17 @@ class ResolvedJob:
     def read(self, path: Path) -> list[Part]:
         """Read one file with the reader that the job names for its suffix."""
         return self.host.read(path, self.job.reading.readers, self.job.reading.params)
+
+    def makers_for(self, part: Part) -> tuple[Chosen[VolumeMaker], ...]:
+        """Return the volume makers for a part: those that it names, or else those of the job.
+
+        Raises
+        ------
+        PluginError, JobError
+            When the part names a volume maker that does not exist or cannot be in this place.
+        """
+        names = part.overrides.volumes or (None if part.boxes is None else ("boxes",))
+        return self.volumes if names is None else choose_volumes(self.host, self.job, names)
 
     def changed(self, changes: Mapping[str, Any]) -> "ResolvedJob":
         """Return the job with other settings, by dotted keys as in `amprep.job.override`.
@@ -80,15 +90,40 @@ def resolve(job: Job, host: Host) -> ResolvedJob:
         When the file that is to declare the lattice cell declares none.
     """
     packing, supports = job.packing, job.supports
+    packer: Chosen[Packer] = choose(host, "packer", packing.strategy, packing.params)
+    for entry in job.parts:
+        if entry.volumes is not None:
+            choose_volumes(host, job, as_names(entry.volumes))
+    for name, table in packing.volume_params.items():
+        choose(host, "volume", name, table)
     return ResolvedJob(
         job,
         host,
-        packer=choose(host, "packer", packing.strategy, packing.params),
+        packer=packer,
         router=choose(host, "router", supports.strategy, supports.params),
         cell=choose_cell(host, job),
-        volume=choose(host, "volume", packing.volumes, packing.volume_params),
-        given_boxes=choose(host, "volume", "boxes", {}),
+        volumes=choose_volumes(host, job, as_names(packing.volumes or packer.listed.offer.volumes)),
     )
+
+
+def choose_volumes(host: Host, job: Job, names: Sequence[str]) -> tuple[Chosen[VolumeMaker], ...]:
+    """Return volume makers by name, with their parameters in the job.
+
+    Raises
+    ------
+    PluginError
+        When no volume maker has that name.
+    JobError
+        When a parameter is wrong, or a maker before the last makes something else than a solid.
+    """
+    makers = tuple(choose(host, "volume", name, job.packing.volume_params.get(name, {})) for name in names)
+    for maker in makers[:-1]:
+        if maker.listed.offer.makes != "solid":
+            raise JobError(
+                f"volumes: {maker.name!r} must be the last, since it makes {maker.listed.offer.makes!r}; only a "
+                "volume maker that makes a solid can be followed by another"
+            )
+    return makers
 
 
 def choose_cell(host: Host, job: Job) -> ChosenCell:

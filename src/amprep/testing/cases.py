@@ -15,6 +15,7 @@ from amprep.errors import InputError
 from amprep.host import Kind
 from amprep.host.mismatch import fits, volume_word
 from amprep.model import PackingProblem, Part, Stop, SupportProblem
+from amprep.model.bounding_volume import as_turned
 from amprep.pipeline.reading import repair_part
 from amprep.testing.case import Case
 from amprep.testing.offers import SEED, LoadedOffer
@@ -74,7 +75,7 @@ def _volume_cases(offer: LoadedOffer) -> Iterator[Case]:
 
     def judge(part: Part) -> Callable[[Any], Sequence[Violation]]:
         def judged(volume: Any) -> list[Violation]:
-            made = volume_word(volume)
+            made = volume_word(as_turned(volume).volume)
             as_stated = made == makes or (made, makes) == ("box", "boxes")
             wrong = Violation("kind of volume", part.name, f"the offer states makes={makes!r}, got {made!r}")
             return [*check_volume(part, volume), *([] if as_stated else [wrong])]

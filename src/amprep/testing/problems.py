@@ -90,9 +90,9 @@ def support_problems() -> Iterator[tuple[str, SupportProblem]]:
 
 
 def sample_parts() -> list[Part]:
-    """Return a box, a tetrahedron away from the origin, and separate boxes side by side and above each other.
+    """Return a box, a tetrahedron away from the origin, two separate boxes in two positions, and tilted boxes.
 
-    Each has its bounding box.
+    Each has its bounding box. The tilted boxes allow several orientations.
     """
     box = box_mesh(np.zeros(3), np.array([10.0, 20, 30]))
     corner = Mesh(np.array([[5.0, 5, 5], [15, 5, 5], [5, 15, 5], [5, 5, 15]]), np.array(_TETRAHEDRON))
@@ -104,7 +104,16 @@ def sample_parts() -> list[Part]:
         ("two boxes side by side", _both(box, far)),
         ("two boxes above each other", _both(box, high)),
     )
-    return [Part(name, mesh, mesh.signed_volume, boxes=np.array([mesh.bounds])) for name, mesh in named]
+    parts = [Part(name, mesh, mesh.signed_volume, boxes=np.array([mesh.bounds])) for name, mesh in named]
+    turned = Mesh(box.vertices @ _turned_about_z(np.radians([30.0]))[0].T, box.triangles)
+    lists = Orientations("list", _turned_about_z(np.radians([0.0, 60.0])))
+    free = (("listed orientations", lists), ("any turn about z", Orientations("about-z")))
+    for word, allowed in (*free, ("any orientation", Orientations("free"))):
+        bounds = np.array([turned.bounds])
+        parts.append(
+            Part(f"a tilted box, {word}", turned, turned.signed_volume, orientations=allowed, boxes=bounds)
+        )
+    return parts
 
 
 def _both(first: Mesh, second: Mesh) -> Mesh:

@@ -32,7 +32,7 @@ def test_a_job_that_says_nothing_but_its_input_gets_the_defaults_of_metal(job_fi
     assert job.printer_is_default
     assert (job.packing.strategy, job.packing.volumes, job.packing.objective) == (
         "extreme-points",
-        "box",
+        None,
         "builds",
     )
     assert (job.packing.stacking, job.supports.enabled) == (False, True)
@@ -75,7 +75,7 @@ def test_every_section_is_read(job_file):
         objective = "fill"
         clearance_mm = 1
         params = {effort = 3}
-        volume_params = {margin = 1}
+        volume_params = {box = {margin = 1}}
         [supports]
         pitch_mm = 0.8
         share_between_parts = "allow"
@@ -87,7 +87,7 @@ def test_every_section_is_read(job_file):
     assert (job.seed, job.target) == (7, "cura")
     assert (job.reading.readers, job.reading.params) == ({".stl": "mesh"}, {"mesh": {"unit": "inch"}})
     assert (job.packing.objective, job.packing.clearance_mm) == ("fill", 1.0)
-    assert (job.packing.params, job.packing.volume_params) == ({"effort": 3}, {"margin": 1})
+    assert (job.packing.params, job.packing.volume_params) == ({"effort": 3}, {"box": {"margin": 1}})
     assert (job.supports.pitch_mm, job.supports.share_between_parts) == (0.8, "allow")
     assert (job.cells.strategy, job.cells.connector, job.cells.file) == ("prism", "extend", None)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from amprep.model.packing import Objective
-from amprep.validation import require_bounds
+from amprep.validation import require, require_bounds
 
 
 @dataclass(frozen=True)
@@ -15,13 +15,16 @@ class PackingSettings:
     Attributes
     ----------
     volumes
-        Name of the volume maker.
-    volume_params, params
-        Parameters of the volume maker and of the packer.
+        Name of a volume maker, or names of several, each of which works on the result of the one before; None leaves
+        the choice to the packer.
+    params
+        Parameters of the packer.
+    volume_params
+        Parameters of volume makers by name.
     """
 
     strategy: str = "extreme-points"
-    volumes: str = "box"
+    volumes: str | tuple[str, ...] | None = None
     objective: Objective = "builds"
     clearance_mm: float = 2.0
     lift_mm: float = 0.0
@@ -33,3 +36,15 @@ class PackingSettings:
     def __post_init__(self) -> None:
         require_bounds(self, "clearance_mm", "lift_mm", at_least=0)
         require_bounds(self, "time_limit_s", above=0)
+        require(self.volumes != (), "volumes must name at least one volume maker", "none")
+        for name, table in self.volume_params.items():
+            require(
+                isinstance(table, Mapping),
+                "volume_params must hold one table per volume maker",
+                {name: table},
+            )
+
+
+def as_names(volumes: str | tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names of a setting ``volumes``, which may be a single name."""
+    return (volumes,) if isinstance(volumes, str) else volumes

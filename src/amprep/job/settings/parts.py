@@ -25,6 +25,7 @@ class PartSettings:
     quantity: int | None = None
     value: float | None = None
     rotations: str | tuple[Matrix, ...] | None = None
+    volumes: str | tuple[str, ...] | None = None
     boxes: tuple[Box, ...] | None = None
     fixed: tuple[Point, ...] = ()
     supports: bool | None = None
@@ -59,6 +60,12 @@ class PartSettings:
         return None if self.boxes is None else frozen(self.boxes, np.float64, 6)
 
     def _require_boxes(self) -> None:
+        require(self.volumes != (), "volumes must name at least one volume maker", "none")
+        require(
+            self.boxes is None or self.volumes in (None, "boxes"),
+            "a part with boxes must have no volumes, or volumes = 'boxes'",
+            self.volumes,
+        )
         require(self.boxes is None or len(self.boxes) > 0, "boxes must have at least one box", "none")
         for box in self.boxes or ():
             ordered = all(lo < hi for lo, hi in zip(box[:3], box[3:], strict=True))

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from amprep.hookspecs import VolumeMaker, hookimpl
+from amprep.hookspecs import VolumeMaker, hookimpl, later
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
@@ -34,4 +34,10 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         summary="The boxes given in the job for the part; they must contain it.",
         run=_boxes,
         makes="boxes",
+    )
+    yield VolumeMaker(
+        name="mesh",
+        summary="The mesh of the part itself.",
+        run=later("amprep.plugins.volumes.own_mesh:own_mesh"),
+        makes="solid",
     )

@@ -192,13 +192,14 @@ def unsupported_of(record: Any, parts: int) -> Unsupported:
 
 
 def _overrides_record(overrides: Overrides) -> JsonObject:
+    """Return the settings of a part that matter once it is packed; its volume makers do not."""
     names = (*_OVERRIDE_NUMBERS, "supports")
     return {name: getattr(overrides, name) for name in names if getattr(overrides, name) is not None}
 
 
 def _overrides_of(record: Any) -> Overrides:
     values = as_object(record, "overrides")
-    numbers = {name: _number_or_none(values, name) for name in _OVERRIDE_NUMBERS}
+    numbers: dict[str, Any] = {name: _number_or_none(values, name) for name in _OVERRIDE_NUMBERS}
     return Overrides(**numbers, supports=boolean(values, "supports") if "supports" in values else None)
 
 

@@ -7,9 +7,9 @@ from itertools import count
 import numpy as np
 
 from amprep.errors import AmprepError
+from amprep.hookspecs import PackerAccepts
 from amprep.job import PackingSettings
 from amprep.model import (
-    BoundingVolume,
     BuildVolume,
     Item,
     Packing,
@@ -17,9 +17,10 @@ from amprep.model import (
     Part,
     PlacedPart,
     Placement,
-    Progress,
     Stop,
+    TurnedVolume,
 )
+from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
@@ -94,9 +95,10 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
     """
     resolved, job, parts = loaded.resolved, loaded.resolved.job, loaded.parts
     with clock.stage("bound") as progress:
-        volumes = _volumes(loaded, stop, progress)
+        volumes = bound_parts(loaded, stop, progress)
     with clock.stage("pack") as progress:
-        problem = packing_problem(parts, volumes, job.printer.space, job.packing)
+        accepts = resolved.packer.listed.offer.accepts
+        problem = packing_problem(parts, volumes, job.printer.space, job.packing, accepts)
         resolved.host.refuse_mismatch(resolved.packer.listed, problem)
         packing: Packing = resolved.packer.call(
             problem,
@@ -112,7 +114,11 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
 
 
 def packing_problem(
-    parts: Sequence[Part], volumes: Sequence[BoundingVolume], space: BuildVolume, settings: PackingSettings
+    parts: Sequence[Part],
+    volumes: Sequence[TurnedVolume],
+    space: BuildVolume,
+    settings: PackingSettings,
+    accepts: PackerAccepts,
 ) -> PackingProblem:
     """Return the problem with one item for every copy of every part, in the order of the job.
 
@@ -121,19 +127,22 @@ def packing_problem(
     parts
         Parts with their quantities; copies with a fixed position stay there, in the first build.
     volumes
-        Bounding volume of each part, in part coordinates.
+        Bounding volume of each part.
     space
         Build volume of the printer.
     settings
         Packing settings of the job.
+    accepts
+        Problems that the packer can handle; the items are offered those orientations that it can handle.
     """
     items = tuple(
-        Item(index, copy, volume, part.fill_value, part.orientations)
-        for index, (part, volume) in enumerate(zip(parts, volumes, strict=True))
+        Item(index, copy, made.volume, part.fill_value, offered, made.rotation)
+        for index, (part, made) in enumerate(zip(parts, volumes, strict=True))
+        for offered in (offered_orientations(part.orientations, made.rotation, accepts),)
         for copy in range(part.quantity)
     )
     fixed = tuple(
-        Placement(number, np.eye(3), part.fixed[item.copy] - part.mesh.vertices.min(axis=0))
+        Placement(number, item.turn.T, part.fixed[item.copy] - part.mesh.vertices.min(axis=0))
         for number, item in enumerate(items)
         if (part := parts[item.part]).fixed is not None and item.copy < len(part.fixed)
     )
@@ -146,16 +155,6 @@ def packing_problem(
         lift=settings.lift_mm,
         stacking=settings.stacking,
     )
-
-
-def _volumes(loaded: LoadedParts, stop: Stop, progress: Progress) -> list[BoundingVolume]:
-    """Return one bounding volume per part, which its copies share: its boxes in the job file, or a computed one."""
-    resolved, volumes = loaded.resolved, []
-    for index, part in enumerate(loaded.parts):
-        progress(index / len(loaded.parts), part.name)
-        maker = resolved.volume if part.boxes is None else resolved.given_boxes
-        volumes.append(maker.call(part, rng=np.random.default_rng(resolved.job.seed), stop=stop))
-    return volumes
 
 
 def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
@@ -194,7 +193,9 @@ def placed_builds(
 
     def placed(placement: Placement) -> PlacedPart:
         item = problem.items[placement.item]
-        part, matrix = parts[item.part], round_as_stored(placement.matrix)
+        part, turn = parts[item.part], np.eye(4)
+        turn[:3, :3] = item.turn
+        matrix = round_as_stored(placement.matrix @ turn)
         return PlacedPart(names_of[item.part, item.copy], part, matrix, part.orientations)
 
     return [
