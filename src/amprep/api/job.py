@@ -29,7 +29,7 @@ def job_and_host(
     elif default is not None and not inputs:
         job = make_job({}, name=default, folder=None, source="Python")
     else:
-        job = job_of([str(each) for each in inputs])
+        job = job_of([str(each) for each in inputs], source="Python")
     return override(job, changes), host
 
 

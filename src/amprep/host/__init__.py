@@ -2,7 +2,7 @@
 
 from amprep.host.chosen import Chosen, choose
 from amprep.host.manager import Host
-from amprep.host.mismatch import fits
+from amprep.host.mismatch import mismatches
 from amprep.host.offers import KINDS, Kind, Listed
 
-__all__ = ["KINDS", "Chosen", "Host", "Kind", "Listed", "choose", "fits"]
+__all__ = ["KINDS", "Chosen", "Host", "Kind", "Listed", "choose", "mismatches"]

@@ -10,12 +10,12 @@ from amprep import typed
 from amprep.errors import AmprepError, InputError, PluginError, nearest_hint
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
 from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
-from amprep.host.mismatch import fits
+from amprep.host.mismatch import mismatches
 from amprep.host.offers import KINDS, Kind, Listed
 from amprep.model.bounding_volume import BoundingVolume, TurnedVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import Cells
-from amprep.model.packing import Packing, PackingProblem
+from amprep.model.packing import Packing, PackingProblem, require_values
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan
 
@@ -200,18 +200,21 @@ class Host:
         return cell
 
     def refuse_mismatch(self, listed: Listed[Packer], problem: PackingProblem) -> None:
-        """Refuse a packer that cannot handle the problem, and name packers that can.
+        """Refuse values that no packer handles, and a packer that cannot handle the problem; name packers that can.
 
         Raises
         ------
+        JobError
+            When the value of an item is negative, too large or not a number.
         PluginError
             When the packer cannot handle a part of the problem, which the message names.
         """
-        lacking = fits(listed.offer.accepts, problem)
+        require_values(problem)
+        lacking = mismatches(listed.offer.accepts, problem)
         if not lacking:
             return
         packers = [each.offer for each in self._listed["packer"].values() if isinstance(each.offer, Packer)]
-        able = [packer.name for packer in packers if not fits(packer.accepts, problem)]
+        able = [packer.name for packer in packers if not mismatches(packer.accepts, problem)]
         advice = f"choose {' or '.join(able)}" if able else "no installed packer can"
         raise PluginError(f"{listed.title} does not handle {', '.join(lacking)}; {advice}")
 

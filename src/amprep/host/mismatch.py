@@ -9,7 +9,7 @@ from amprep.model.part import Orientations
 from amprep.model.rotations import axis_rotations, quarter_turns
 
 
-def fits(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
+def mismatches(accepts: PackerAccepts, problem: PackingProblem) -> list[str]:
     """Return the features of the problem that the packer does not accept, in a few words each."""
     volumes = {volume_word(item.volume) for item in problem.items} - _volumes_handled(accepts)
     turns = {orientation_word(item.orientations) for item in problem.items} - _turns_handled(accepts)

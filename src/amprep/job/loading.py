@@ -20,8 +20,15 @@ T = TypeVar("T")
 KEYS = ("printer", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
 
 
-def job_of(inputs: Sequence[str | Path]) -> Job:
+def job_of(inputs: Sequence[str | Path], source: str = "command line") -> Job:
     """Return the job of one job file (.toml), or a job of default settings that prints the inputs.
+
+    Parameters
+    ----------
+    inputs
+        The job file, or files and folders, also as ``NAME:quantity``.
+    source
+        Name of a job without a file in messages.
 
     Raises
     ------
@@ -30,7 +37,7 @@ def job_of(inputs: Sequence[str | Path]) -> Job:
     """
     job_files = [str(each) for each in inputs if str(each).lower().endswith(".toml")]
     if not job_files:
-        return job_from_inputs(inputs)
+        return job_from_inputs(inputs, source)
     if len(inputs) > 1:
         raise JobError(
             f"a job file must be the only input, got {len(inputs)}; list the others under inputs = [...] in "
@@ -52,8 +59,10 @@ def load_job(path: Path) -> Job:
     return _with_inputs(make_job(table, name=path.stem, folder=path.resolve().parent, source=str(path)))
 
 
-def job_from_inputs(inputs: Sequence[str | Path]) -> Job:
+def job_from_inputs(inputs: Sequence[str | Path], source: str = "command line") -> Job:
     """Return a job of default settings that prints the inputs: files and folders, also as ``NAME:quantity``.
+
+    Messages name it by `source`.
 
     Raises
     ------
@@ -62,9 +71,7 @@ def job_from_inputs(inputs: Sequence[str | Path]) -> Job:
     """
     table = {"inputs": [str(each) for each in inputs]}
     first = parse_input(str(inputs[0]), "inputs").path if inputs else Path("job")
-    return _with_inputs(
-        make_job(table, name=first.resolve().stem or "job", folder=None, source="command line")
-    )
+    return _with_inputs(make_job(table, name=first.resolve().stem or "job", folder=None, source=source))
 
 
 def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source: str) -> Job:

@@ -10,7 +10,7 @@ import numpy as np
 from amprep.arrays import Floats, Ints, MeshArrays, frozen
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
     """Triangle mesh with shared vertices; normals point out of the solid (right-hand rule).
 
@@ -28,6 +28,10 @@ class Mesh:
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices, np.float64, 3))
         object.__setattr__(self, "triangles", frozen(self.triangles, np.int32, 3))
+
+    def __repr__(self) -> str:
+        """Numbers of vertices and triangles."""
+        return f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles)"
 
     @property
     def arrays(self) -> MeshArrays:

@@ -6,12 +6,16 @@ from typing import Literal
 import numpy as np
 
 from amprep.arrays import Floats, frozen
+from amprep.errors import JobError
 from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.build_volume import BuildVolume
 from amprep.model.part import Orientations
 
 Objective = Literal["fill", "builds", "height"]
 Status = Literal["optimal", "feasible", "infeasible"]
+
+LARGEST_VALUE = 1e15
+"""Greatest value of an item: sums and ratios of values stay finite, and a double counts them to within 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +91,22 @@ class PackingProblem:
     clearance: float = 0.0
     lift: float = 0.0
     stacking: bool = True
+
+
+def require_values(problem: PackingProblem) -> None:
+    """Refuse values of items that are not finite numbers from 0 to `LARGEST_VALUE`.
+
+    Raises
+    ------
+    JobError
+        For the first such item, with its part and value.
+    """
+    for item in problem.items:
+        if not 0.0 <= item.value <= LARGEST_VALUE:
+            raise JobError(
+                f"part {item.part + 1}: the value must be between 0 and {LARGEST_VALUE:g}, got {item.value:g}; "
+                f"correct it in the job file or the call"
+            )
 
 
 @dataclass(frozen=True)

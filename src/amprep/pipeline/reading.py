@@ -12,6 +12,7 @@ from amprep.job import Job, PartSettings, apply_part_settings, names_part
 from amprep.model.control import Progress, silent
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region, RegionKind
+from amprep.model.summary import Summarised
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 
@@ -170,8 +171,8 @@ def _recoloured(appearance: Appearance, repaired: RepairedMesh) -> Appearance:
 Read = Callable[[Path], list[Part]]
 
 
-@dataclass(frozen=True, eq=False)
-class LoadedParts:
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadedParts(Summarised):
     """Parts that were read and checked, with the job that they belong to.
 
     Attributes

@@ -12,6 +12,7 @@ from amprep.model import (
     Progress,
     Stop,
 )
+from amprep.model.summary import Summarised
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
@@ -24,8 +25,8 @@ LARGEST_REACH = 5.0
 """Upper limit (mm) of the default reach: even in a coarse grid, no face farther from a contact counts as held."""
 
 
-@dataclass(frozen=True, eq=False)
-class SupportedBuild:
+@dataclass(frozen=True, eq=False, repr=False)
+class SupportedBuild(Summarised):
     """A build with its supports.
 
     Attributes
@@ -55,8 +56,8 @@ class SupportedBuild:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PlannedBuild:
+@dataclass(frozen=True, eq=False, repr=False)
+class PlannedBuild(Summarised):
     """A build with the layout of its supports, before edges are replaced by cells.
 
     Attributes

@@ -9,6 +9,7 @@ from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
 from amprep.infill.fill_region import FilledPart
 from amprep.model import Part
+from amprep.model.summary import Summarised
 from amprep.report.counting import counted
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.record import StageTime
@@ -71,8 +72,8 @@ class FilledPartRecord:
         return None if self.density_g_cm3 is None else volume_mm3 * self.density_g_cm3 / 1000.0
 
 
-@dataclass(frozen=True, eq=False)
-class InfillRecord:
+@dataclass(frozen=True, eq=False, repr=False)
+class InfillRecord(Summarised):
     """A call of ``amprep lattice``.
 
     Attributes
@@ -98,6 +99,11 @@ class InfillRecord:
     files: tuple[str, ...] = ()
     stages: tuple[StageTime, ...] = ()
     warnings: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Job, cell and counts in one line."""
+        filled = f"{len(self.parts)} filled, {len(self.unchanged_parts)} unchanged"
+        return f"{self.job}, {self.cell}: {filled}, {self.faults} faults"
 
     @property
     def faults(self) -> int:

@@ -8,6 +8,7 @@ from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import Build, Unsupported
+from amprep.model.summary import Summarised
 from amprep.report.counting import counted
 
 
@@ -151,8 +152,8 @@ class BuildRecord:
         return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
 
 
-@dataclass(frozen=True, eq=False)
-class RunRecord:
+@dataclass(frozen=True, eq=False, repr=False)
+class RunRecord(Summarised):
     """A run of a job.
 
     Attributes

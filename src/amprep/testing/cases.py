@@ -13,7 +13,7 @@ from amprep.checks.violation import Violation
 from amprep.checks.volumes import check_volume
 from amprep.errors import InputError
 from amprep.host import Kind
-from amprep.host.mismatch import fits, volume_word
+from amprep.host.mismatch import mismatches, volume_word
 from amprep.model import PackingProblem, Part, Stop, SupportProblem
 from amprep.model.bounding_volume import as_turned
 from amprep.pipeline.reading import repair_part
@@ -58,7 +58,7 @@ def _packer_cases(offer: LoadedOffer) -> Iterator[Case]:
         return lambda packing: check_packing(problem, packing)
 
     for title, problem in packing_problems():
-        if not fits(offer.listed.offer.accepts, problem):
+        if not mismatches(offer.listed.offer.accepts, problem):
             yield Case(title, _runner(offer, problem), judge(problem))
 
 

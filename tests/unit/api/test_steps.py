@@ -162,3 +162,21 @@ def test_a_plan_without_time_leaves_every_square_unconnected_and_says_so():
     )
     supported = amprep.emit_cells(planned)
     assert "time limit" in {region.reason for region in supported.build.unsupported}
+
+
+def test_a_record_shows_its_summary_and_not_what_it_holds():
+    parts = amprep.load(f"{TABLE}:2")
+    packed = amprep.pack(parts)
+    assert repr(parts) == f"<LoadedParts: {parts}>"
+    assert repr(packed) == f"<PackedParts: {packed}>"
+    assert repr(packed.builds[0]) == f"<PackedBuild: {packed.builds[0]}>"
+    mesh = parts.parts[0].mesh
+    assert repr(mesh) == f"Mesh({len(mesh.vertices)} vertices, {len(mesh.triangles)} triangles)"
+    assert "array" not in repr(mesh)
+
+
+def test_messages_to_python_do_not_speak_of_a_command_line():
+    with pytest.raises(JobError) as error:
+        amprep.load(TABLE, settings={"packing.clearance": 1})
+    assert "command line" not in str(error.value)
+    assert str(error.value).startswith("Python: ")

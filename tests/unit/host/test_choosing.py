@@ -17,7 +17,7 @@ from amprep.hookspecs import (
     SupportRouter,
     VolumeMaker,
 )
-from amprep.host import Host, Listed, fits
+from amprep.host import Host, Listed, mismatches
 from amprep.model import (
     Boxes,
     BuildVolume,
@@ -249,8 +249,8 @@ def test_a_packer_is_refused_for_what_it_does_not_handle_with_the_names_of_those
 ):
     poor = PackerAccepts(stacking=frozenset({not word} if field == "stacking" else {True, False}))
     able = replace(PackerAccepts(), **{field: True if word is None else frozenset({word})})
-    assert fits(poor, asked) == [lacking]
-    assert fits(able, asked) == []
+    assert mismatches(poor, asked) == [lacking]
+    assert mismatches(able, asked) == []
     host = host_of(packer(accepts=poor), packer(name="able", accepts=able))
     host.refuse_mismatch(host.choose("packer", "able"), asked)
     with pytest.raises(
@@ -260,9 +260,9 @@ def test_a_packer_is_refused_for_what_it_does_not_handle_with_the_names_of_those
 
 
 def test_a_packer_that_handles_everything_asked_is_accepted_and_everything_missing_is_named():
-    assert fits(PackerAccepts(), problem()) == []
+    assert mismatches(PackerAccepts(), problem()) == []
     much = replace(problem(volume=TWO, objective="fill"), space=BuildVolume(np.full(3, 9.0), "cylinder"))
-    assert len(fits(PackerAccepts(), much)) == 3
+    assert len(mismatches(PackerAccepts(), much)) == 3
     host = host_of(packer())
     with pytest.raises(PluginError, match="no installed packer can"):
         host.refuse_mismatch(host.choose("packer", "rows"), much)
@@ -286,3 +286,10 @@ def test_a_reader_is_found_by_suffix_or_by_the_jobs_choice():
         host.reader_for(Path("a.step"))
     with pytest.raises(InputError, match="no reader for 'files without a suffix'"):
         host.reader_for(Path("readme"))
+
+
+def test_a_value_that_is_no_amount_is_refused_for_every_packer():
+    endless = replace(problem(), items=(replace(problem().items[0], value=np.inf),))
+    host = host_of(packer())
+    with pytest.raises(JobError, match="the value must be between 0 and 1e\\+15, got inf"):
+        host.refuse_mismatch(host.choose("packer", "rows"), endless)

@@ -7,6 +7,7 @@ import numpy as np
 from amprep.arrays import Floats, frozen
 from amprep.errors import JobError
 from amprep.job.settings.bounds import require_quantity
+from amprep.model.packing import LARGEST_VALUE
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
 from amprep.validation import require, require_bounds
@@ -39,7 +40,7 @@ class PartSettings:
         require(bool(self.file or self.name), "a [[part]] entry must have a file or a name", "neither")
         require("\0" not in (self.file or ""), "file must be a path", repr(self.file))
         require_quantity(self.quantity)
-        require_bounds(self, "value", at_least=0)
+        require_bounds(self, "value", at_least=0, at_most=LARGEST_VALUE)
         require_bounds(self, "overhang_angle_deg", at_least=0, at_most=89)
         self._require_boxes()
         try:

@@ -146,11 +146,17 @@ def contact_area(
         x0, x1 = x + boxes[k, 0], x + boxes[k, 3]
         y0, y1 = y + boxes[k, 1], y + boxes[k, 4]
         z0, z1 = z + boxes[k, 2], z + boxes[k, 5]
-        if abs(x0 - room[0]) <= near or abs(x1 - room[3]) <= near:
+        if abs(x0 - room[0]) <= near:
             area += (y1 - y0) * (z1 - z0)
-        if abs(y0 - room[1]) <= near or abs(y1 - room[4]) <= near:
+        if abs(x1 - room[3]) <= near:
+            area += (y1 - y0) * (z1 - z0)
+        if abs(y0 - room[1]) <= near:
             area += (x1 - x0) * (z1 - z0)
-        if abs(z0 - room[2]) <= near or abs(z1 - room[5]) <= near:
+        if abs(y1 - room[4]) <= near:
+            area += (x1 - x0) * (z1 - z0)
+        if abs(z0 - room[2]) <= near:
+            area += (x1 - x0) * (y1 - y0)
+        if abs(z1 - room[5]) <= near:
             area += (x1 - x0) * (y1 - y0)
         for j in range(count):
             shared_x = max(0.0, min(x1, placed[j, 3]) - max(x0, placed[j, 0]))

@@ -20,6 +20,7 @@ from amprep.model import (
     Stop,
     TurnedVolume,
 )
+from amprep.model.summary import Summarised
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
@@ -27,8 +28,8 @@ from amprep.pipeline.stages import Clock
 from amprep.threemf.transforms import round_as_stored
 
 
-@dataclass(frozen=True, eq=False)
-class PackedBuild:
+@dataclass(frozen=True, eq=False, repr=False)
+class PackedBuild(Summarised):
     """The parts of one build, each in its place.
 
     Attributes
@@ -51,8 +52,8 @@ class PackedBuild:
         return f"{self.build_id}: {', '.join(placed.label for placed in self.parts)}"
 
 
-@dataclass(frozen=True, eq=False)
-class PackedParts:
+@dataclass(frozen=True, eq=False, repr=False)
+class PackedParts(Summarised):
     """Result of packing: the builds, and the parts that are in none of them.
 
     Attributes

@@ -28,9 +28,9 @@ def pack_tabu(
     """Pack into as few builds as possible by tabu search (thesis 2.4).
 
     After Lodi, Martello, Vigo, EJOR 141 (2002), doi:10.1016/S0377-2217(02)00134-0. The thesis leaves some details
-    open. Here a penalty is tabu while it is among the last `tenure` penalties of moves with the same k; after a strong
-    diversification d and k start anew; the search ends when the lower bound is met, or after `patience` strong
-    diversifications without success. No random numbers are drawn.
+    open. Here a penalty is tabu while it is among the last `tenure` penalties of moves with the same k. After every
+    diversification k starts again at 1; after a strong one d does, too. The search ends when the lower bound is met, or
+    after `patience` strong diversifications without success. No random numbers are drawn.
     """
     del rng
     instance = prepare(problem)
@@ -42,12 +42,12 @@ def pack_tabu(
             reason = "bound met"
         elif stop():
             reason = stop.reason
-        elif search.work > params.work * 1e6:
+        elif search.work >= params.work * 1e6:
             reason = "work used up"
         elif search.idle > params.patience:
             reason = "no better one found"
         else:
-            progress(min(search.work / (params.work * 1e6), 1.0), f"{search.best.builds} builds")
+            progress(min(search.work / max(params.work * 1e6, 1.0), 1.0), f"{search.best.builds} builds")
             if not search.search(stop):
                 search.diversify()
     return as_packing(instance, PackerResult(search.best, float(bound), reason))

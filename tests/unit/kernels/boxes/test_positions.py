@@ -77,3 +77,10 @@ def test_a_box_in_the_way_is_named():
     own, placed = np.array([[0.0, 0, 0, 2, 2, 2]]), np.array([[0.0, 0, 0, 1, 1, 1], [3, 3, 0, 5, 5, 4]])
     assert feasible_height((0, 1), (4.0, 4.0, 0.0), 0.0, own, ROOM, placed, 2, 0) == -3.0
     assert feasible_height((0, 1), (5.0, 0.0, 0.0), 0.0, own, ROOM, placed, 2, 0) == -1.0
+
+
+def test_a_box_from_wall_to_wall_touches_both_walls():
+    # 10 x 4 x 3 in the corner of a 10-cube: two ends of 4 x 3, a side of 10 x 3 and the floor of 10 x 4
+    room = np.array([0.0, 0, 0, 10, 10, 10, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0])
+    own = np.array([[0.0, 0, 0, 10, 4, 3]])
+    assert contact_area((0, 1), (0.0, 0.0, 0.0), own, room, np.empty((0, 6)), 0) == 94.0

@@ -7,11 +7,15 @@ from tests.shared.boxes import cut
 from tests.shared.grids import Late
 
 from amprep.checks.packing.volumes_placed import check_packing
+from amprep.errors import JobError
+from amprep.kernels.boxes.records import Arrangement
 from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
-from amprep.plugins.packers.auto import pack_auto
+from amprep.plugins.packers import extreme_points
+from amprep.plugins.packers.auto import fill, pack_auto
 from amprep.plugins.packers.auto.ruin_and_recreate import no_builds
 from amprep.plugins.packers.extreme_points import pack_extreme_points
+from amprep.plugins.packers.instance.arrangement import PackerResult
 from amprep.plugins.packers.params import AutoParams, ExtremePointsParams
 
 
@@ -137,3 +141,24 @@ def test_a_round_build_is_filled_as_well_as_by_the_orderings_that_the_search_beg
         task, params=ExtremePointsParams(), rng=np.random.default_rng(0), stop=Stop(), progress=silent
     )
     assert value(run(task, work=20.0, patience=2)) >= value(ordered)
+
+
+def test_items_are_out_of_time_only_when_the_search_was_stopped(monkeypatch):
+    # the early limit of the orderings ends the first of them; the blocks then end by themselves
+    task = problem(np.random.default_rng(4).integers(2, 5, (60, 3)).tolist(), objective="fill")
+    monkeypatch.setattr(extreme_points, "PAUSE", 1)
+    monkeypatch.setattr(fill, "ORDERINGS_FRACTION", 0.0)
+    nothing = PackerResult(Arrangement.unassigned(60), 1000.0, "work used up")
+    monkeypatch.setattr(fill, "fill_by_blocks", lambda *_: nothing)
+    packing = run(task, Stop.after(60.0))
+    assert packing.stop_reason == "work used up"
+    assert {unplaced.reason for unplaced in packing.unplaced} == {"no room left"}
+
+
+@pytest.mark.parametrize("packer", [pack_auto, pack_extreme_points])
+@pytest.mark.parametrize("value", [np.inf, np.nan, -1.0, 1e16])
+def test_a_value_that_is_no_amount_is_refused(packer, value):
+    task = problem([(5, 5, 5)] * 2, values=[1.0, value], objective="fill")
+    params = AutoParams() if packer is pack_auto else ExtremePointsParams()
+    with pytest.raises(JobError, match="part 2: the value must be between 0 and 1e"):
+        packer(task, params=params, rng=np.random.default_rng(0), stop=Stop(), progress=silent)

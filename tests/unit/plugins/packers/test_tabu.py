@@ -11,6 +11,7 @@ from amprep.model import BuildVolume, PackingProblem, Stop, silent
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import TabuParams
 from amprep.plugins.packers.tabu import TabuSearch, pack_tabu
+from amprep.testing.packing_instances import mpv_instance
 
 
 def run(task, stop=None, **params):
@@ -118,3 +119,8 @@ def test_a_round_plate_is_refused_with_the_names_of_others():
     task = PackingProblem((), BuildVolume(np.full(3, 10.0), "cylinder"))
     with pytest.raises(PluginError, match="extreme-points"):
         host.refuse_mismatch(listed, task)
+
+
+def test_without_work_the_start_is_the_result():
+    packing = run(mpv_instance(1, 30, 2).problem, work=0)
+    assert (packing.stop_reason, len(packing.unplaced)) == ("work used up", 0)

@@ -45,7 +45,8 @@ def fill_build(
         reason = orderings.run(stop, params.work)
         results.append(orderings.result(reason))
     best = max(results, key=lambda result: value_of(instance, result.arrangement))
-    return best._replace(stop_reason=reason)
+    # an ordering that only the early limit ended leaves items for lack of room, once the blocks have had their time
+    return best._replace(stop_reason=reason, complete=best.complete or not stop())
 
 
 class OrderingSearch:

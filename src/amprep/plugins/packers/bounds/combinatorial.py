@@ -114,8 +114,8 @@ def _taken(instance: PreparedInstance, dimensions: int) -> Floats:
     )
     side = np.maximum(hi - lo, 0.0)[:, :dimensions]
     if dimensions == 2:
-        # only boxes on the plate are certainly beside each other
-        low = lo[:, 2] <= CONTACT_TOLERANCE
+        # only boxes on the plate are certainly beside each other, and flat ones only where a clearance is kept
+        low = (lo[:, 2] <= CONTACT_TOLERANCE) & ((hi[:, 2] > lo[:, 2]) | (radius > 0.0))
         side, hi = side * low[:, None], np.where(low[:, None], hi, lo)
     box = np.cumsum([0, *(len(v.lo) for v in orientations)])
     grown = np.maximum.reduceat(_grown(side, radius), box[:-1]) if orientations else np.empty(0)
@@ -189,7 +189,8 @@ def _core(orientation: Orientation, instance: PreparedInstance) -> Floats:
     """Return the sides of the largest box; without stacking only boxes on the plate count."""
     side = orientation.hi - orientation.lo
     if instance.space.flat:
-        side = np.where(orientation.lo[:, 2:] <= CONTACT_TOLERANCE, side, 0.0)
+        thick = (side[:, 2:] > CONTACT_TOLERANCE) | (instance.problem.clearance > CONTACT_TOLERANCE)
+        side = np.where((orientation.lo[:, 2:] <= CONTACT_TOLERANCE) & thick, side, 0.0)
         side[:, 2] = core_room(instance)[2] - CONTACT_TOLERANCE  # the height of the room
     return np.asarray(side[side.prod(axis=1).argmax()] if len(side) > 1 else side[0])
 

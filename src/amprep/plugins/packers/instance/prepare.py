@@ -11,7 +11,7 @@ from amprep.errors import AmprepError
 from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
 from amprep.kernels.boxes.records import PAIR_SLACK, BoxInstance
 from amprep.model.bounding_volume import BoundingVolume, Boxes
-from amprep.model.packing import Item, Objective, PackingProblem
+from amprep.model.packing import Item, Objective, PackingProblem, require_values
 
 SAME = 1e-8
 """Difference (mm) up to which the boxes of two orientations count as equal."""
@@ -123,13 +123,9 @@ def prepare(problem: PackingProblem) -> PreparedInstance:
     Raises
     ------
     AmprepError
-        If a volume is not made of boxes, or a value is negative.
+        If a volume is not made of boxes, or a value is negative or not finite.
     """
-    for item in problem.items:
-        if not item.value >= 0.0:
-            raise AmprepError(
-                f"part {item.part}: the value must be at least 0, got {item.value:g}; correct it in the job file"
-            )
+    require_values(problem)
     space = empty_space(problem)
     known: dict[tuple[bytes, ...], int] = {}
     types: list[ItemType] = []

@@ -1,12 +1,16 @@
 """Bounds: against the published means of L2, by hand, and with clearance, zones and round plates."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared.boxes import boxes_problem
 from tests.shared.examples import examples
 
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem
+from amprep.checks.packing.volumes_placed import check_packing
+from amprep.model import Boxes, BuildVolume, Item, Orientations, Packing, PackingProblem, Placement
 from amprep.plugins.packers.bounds import l2
 from amprep.plugins.packers.bounds.combinatorial import builds_bound, fill_bound
 from amprep.plugins.packers.bounds.l2 import l2_bound
@@ -174,3 +178,12 @@ def test_fixed_items_that_keep_the_rules_count():
     fixed = (Placement(0, np.eye(3), np.zeros(3)),)
     assert bound([(51, 51, 51)] * 3, fixed=fixed) == 3
     assert fill_bound(prepare(problem([(100, 100, 60)] * 2, value=6.0, fixed=fixed))) < 10.1
+
+
+@pytest.mark.parametrize("height", [0.0, 1e-4])
+def test_boxes_too_thin_to_be_apart_take_no_plate_area(height):
+    # without clearance the judge accepts all of them in one place
+    task = boxes_problem([(60, 60, height)] * 5, 100, stacking=False)
+    in_one_place = tuple(Placement(i, np.eye(3), np.zeros(3)) for i in range(5))
+    assert check_packing(task, Packing((in_one_place,), bound=float(builds_bound(prepare(task))))) == []
+    assert builds_bound(prepare(replace(task, clearance=1.0))) == 5
