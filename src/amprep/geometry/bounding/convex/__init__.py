@@ -1,0 +1,1 @@
+"""Convex pieces: decomposition of a solid, inflation, collision and distance."""
