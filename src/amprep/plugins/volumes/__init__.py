@@ -9,6 +9,7 @@ from amprep.hookspecs import VolumeMaker, hookimpl, later
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
+from amprep.plugins.volumes.params import TwoBoxesParams
 
 amprep_api = 1
 
@@ -40,4 +41,11 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         summary="The mesh of the part itself.",
         run=later("amprep.plugins.volumes.own_mesh:own_mesh"),
         makes="solid",
+    )
+    yield VolumeMaker(
+        name="boxes-two",
+        summary="Two boxes of least union, or whose larger one is smallest (Bespamyatnikh, Segal).",
+        run=later("amprep.plugins.volumes.two_boxes:cover_with_two"),
+        makes="boxes",
+        params=TwoBoxesParams,
     )

@@ -1,0 +1,1 @@
+"""Coverings with boxes."""

@@ -1,0 +1,55 @@
+"""Shrink boxes that cover polygons to what only they must cover."""
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.geometry.bounding.boxes.polygons import ConvexPolygons, outside
+from amprep.geometry.bounding.boxes.union import union_volume, volumes
+
+MARGIN = 1e-6
+"""Length (mm) by which the faces between boxes are moved outwards at the end."""
+
+
+def shrink(polygons: ConvexPolygons, boxes: Floats) -> Floats:
+    """Shrink each box to what the others leave uncovered; return the boxes that are left, ``(k, 6)``.
+
+    The boxes are shrunk one after another, the largest first and the smallest first; the smaller union counts,
+    then the smaller sum of volumes. Afterwards no box can be shrunk alone.
+
+    Parameters
+    ----------
+    polygons
+        What the union of the boxes covers and covers afterwards.
+    boxes
+        ``(k, 6)``, k at least 1.
+    """
+    order = np.argsort(volumes(boxes), kind="stable")
+    results = [_shrunk_in(polygons, boxes, list(way)) for way in (order[::-1], order)]
+    return min(results, key=lambda result: (round(union_volume(result), 9), volumes(result).sum()))
+
+
+def _shrunk_in(polygons: ConvexPolygons, boxes: Floats, order: list[int]) -> Floats:
+    boxes = boxes.copy()
+    kept = np.ones(len(boxes), np.bool_)
+    for number in order:
+        kept[number] = False
+        needed = outside(polygons, boxes[kept]).bounds
+        if needed[0] <= needed[3]:
+            boxes[number] = needed
+            kept[number] = True
+    return np.asarray(boxes[kept])
+
+
+def seal(boxes: Floats, bounds: Floats) -> Floats:
+    """Return the boxes enlarged by `MARGIN`, but not beyond the enclosing box of the part, ``(6,)``.
+
+    Boxes that share a face then overlap, so that rounding leaves no gap between them.
+    """
+    return np.hstack(
+        (np.maximum(boxes[:, :3] - MARGIN, bounds[:3]), np.minimum(boxes[:, 3:] + MARGIN, bounds[3:]))
+    )
+
+
+def all_covered(polygons: ConvexPolygons, boxes: Floats) -> bool:
+    """Tell whether the union of boxes ``(k, 6)`` contains the polygons."""
+    return len(outside(polygons, boxes).points) == 0

@@ -1,0 +1,36 @@
+import numpy as np
+from tests.shared.coverings import boxes_volume, dense_points, in_some_box, polygons_of_part, solid_of
+
+from amprep.geometry.bounding.boxes.fit import MARGIN, all_covered, seal, shrink
+
+L_SHAPE = [[0, 0, 0, 30, 10, 10], [0, 0, 0, 10, 10, 40]]
+
+
+def test_boxes_are_shrunk_to_what_only_they_must_cover():
+    polygons = polygons_of_part(solid_of(L_SHAPE))
+    loose = np.array([[-1.0, -2, -3, 35, 12, 11], [-5, -5, 5, 10, 20, 50]])
+    boxes = shrink(polygons, loose)
+    assert boxes_volume(boxes) == 6000
+    assert all_covered(polygons, boxes)
+
+
+def test_a_box_that_others_replace_is_dropped():
+    polygons = polygons_of_part(solid_of(L_SHAPE))
+    boxes = shrink(polygons, np.array([*L_SHAPE, [1, 1, 1, 5, 5, 30]], float))
+    assert len(boxes) == 2
+    assert boxes_volume(boxes) == 6000
+
+
+def test_boxes_that_leave_out_a_part_of_a_triangle_do_not_cover():
+    part = solid_of(L_SHAPE)
+    leaving = np.array([[0.0, 0, 0, 30, 10, 9.999], [0, 0, 0, 9.999, 10, 40]])
+    assert not all_covered(polygons_of_part(part), leaving)
+    assert not in_some_box(dense_points(part), leaving).all()
+
+
+def test_sealed_boxes_overlap_but_stay_inside_the_enclosing_box():
+    boxes = np.array([[0.0, 0, 0, 5, 1, 1], [5, 0, 0, 9, 1, 1]])
+    sealed = seal(boxes, np.array([0.0, 0, 0, 9, 1, 1]))
+    assert np.isclose(sealed[0, 3] - sealed[1, 0], 2 * MARGIN, rtol=1e-6)
+    assert sealed[:, [1, 2, 4, 5]].tolist() == boxes[:, [1, 2, 4, 5]].tolist()
+    assert (sealed[0, 0], sealed[1, 3]) == (0, 9)
