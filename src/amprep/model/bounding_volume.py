@@ -66,10 +66,13 @@ class TurnedVolume:
         Contains the part after its rotation by `rotation` about the origin of the part.
     rotation
         ``(3, 3)`` one of the orientations that the part allows.
+    bound
+        Proven lower bound (mm3) on the volume of every covering among which the maker chose; None if it proves none.
     """
 
     volume: BoundingVolume
     rotation: Floats
+    bound: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rotation", frozen(self.rotation, np.float64).reshape(3, 3))

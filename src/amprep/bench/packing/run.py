@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from amprep.checks.packing.volumes_placed import check_packing
-from amprep.geometry.boxes.build_space import union_volume
 from amprep.host import Host
-from amprep.model import Boxes, PackingProblem, Stop, silent
+from amprep.measures.bounding_volume import volume_of
+from amprep.measures.objective import objective_reached
+from amprep.model import PackingProblem, Stop, silent
 from amprep.model.packing import Packing
 from amprep.testing.packing_instances import PackingInstance
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12, "proof": 1e12}
 """Parameters that would end a packer before the time limit, and values that never do."""
 
+_MEASURES = {"builds": "builds", "fill": "value", "height": "height_mm"}
+"""Objective -> what a result reaches."""
+
 
 @dataclass(frozen=True)
 class PackingResult:
@@ -29,11 +33,11 @@ class PackingResult:
     Attributes
     ----------
     measure
-        ``builds`` (fewer is better) or ``value`` (more is better).
+        ``builds`` (fewer is better), ``value`` (more is better) or ``height_mm`` (less is better).
     reached, bound
-        Number of builds or value, and a proven bound on it.
+        Value of the objective, and a proven bound on it.
     fill_ratio
-        Volume of the placed items over the volume of the builds used.
+        See the function `fill_ratio`.
     faults
         Violations that the independent check found.
     """
@@ -171,28 +175,29 @@ def means(results: Sequence[PackingResult]) -> dict[str, float]:
     return found
 
 
+def fill_ratio(problem: PackingProblem, packing: Packing) -> float:
+    """Return the volume of the placed bounding volumes over the volume of the builds used.
+
+    Overlaps of the boxes, pieces or shells of an item count once; copies share their volume, which is measured once.
+    """
+    placed = [problem.items[placement.item].volume for build in packing.builds for placement in build]
+    measured = {id(volume): volume_of(volume) for volume in {id(each): each for each in placed}.values()}
+    total = sum(measured[id(volume)] for volume in placed)
+    return total / (problem.space.volume_mm3 * max(len(packing.builds), 1))
+
+
 def _result(instance: PackingInstance, packing: Packing, seconds: float) -> PackingResult:
     problem = instance.problem
-    placed = [placement.item for build in packing.builds for placement in build]
-    is_fill = problem.objective == "fill"
-    value = sum(problem.items[item].value for item in placed)
-    volume = sum(_volume(problem, item) for item in placed)
     faults = check_packing(problem, packing)
     return PackingResult(
         name=instance.name,
-        measure="value" if is_fill else "builds",
-        reached=value if is_fill else float(len(packing.builds)),
+        measure=_MEASURES[problem.objective],
+        reached=objective_reached(problem, packing),
         bound=packing.bound,
-        fill_ratio=volume / (problem.space.volume_mm3 * max(len(packing.builds), 1)),
+        fill_ratio=fill_ratio(problem, packing),
         unplaced=len(packing.unplaced),
         status=packing.status,
         stop_reason=packing.stop_reason,
         seconds=seconds,
         faults=tuple(f"{fault.promise}: {fault.subject} {fault.message}" for fault in faults),
     )
-
-
-def _volume(problem: PackingProblem, item: int) -> float:
-    """Return the volume of the union of an item's boxes."""
-    volume = problem.items[item].volume
-    return union_volume(volume.lo, volume.hi) if isinstance(volume, Boxes) else 0.0

@@ -4,11 +4,23 @@ import json
 
 import numpy as np
 import pytest
+from tests.shared.builds import box_mesh
 from typer.testing import CliRunner
 
 from amprep.bench.packing.container_loading import read_instances
+from amprep.bench.packing.run import fill_ratio
 from amprep.cli.app import app
 from amprep.errors import InputError
+from amprep.model import (
+    Boxes,
+    BuildVolume,
+    ConvexPieces,
+    Item,
+    Packing,
+    PackingProblem,
+    Placement,
+    Solid,
+)
 
 
 def test_mpv_prints_checked_instances_as_json():
@@ -73,3 +85,13 @@ def test_the_thesis_tables_list_its_results_next_to_ours():
     for table in (builds, fill):
         assert list(table["instances"]) == ["extreme-points"]
         assert all(instance["validated"] for instance in table["instances"]["extreme-points"])
+
+
+def test_filling_counts_every_kind_of_bounding_volume():
+    cube = box_mesh((0, 0, 0), (10, 10, 10))
+    half = box_mesh((5, 0, 0), (10, 10, 10))
+    volumes = (ConvexPieces((cube, half)), Solid(cube), Boxes([[0, 0, 0]], [[10, 10, 10]]))
+    items = tuple(Item(part, 0, volume, 1.0) for part, volume in enumerate(volumes))
+    problem = PackingProblem(items, BuildVolume([100, 10, 10]), "fill")
+    places = tuple(Placement(item, np.eye(3), [20.0 * item, 0, 0]) for item in range(3))
+    assert fill_ratio(problem, Packing((places,))) == pytest.approx((1500 + 1000 + 1000) / 10000)
