@@ -168,6 +168,9 @@ def test_unplaced_parts_of_a_fill_job_are_not_faults(amprep, tmp_path):
     assert len(outcome.json["builds"]) == 1
     assert len(outcome.json["builds"][0]["parts"]) == 4
     assert len(outcome.json["unplaced"]) == 5
+    assert outcome.json["reached"] == pytest.approx(4 * 40.0**3)
+    assert outcome.json["total_value"] == pytest.approx(9 * 40.0**3)
+    assert [part["value"] for part in outcome.json["builds"][0]["parts"]] == pytest.approx([40.0**3] * 4)
 
 
 def _box_stl(path: Path, side: float) -> Path:

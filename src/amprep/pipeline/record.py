@@ -8,6 +8,7 @@ import numpy as np
 from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.measures.density import build_density, build_height, support_volume
+from amprep.measures.objective import objective_reached
 from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Build, Unsupported
 from amprep.overhangs.unsupported import region_name
@@ -75,10 +76,12 @@ def run_record(
         objective=job.packing.objective,
         builds=tuple(builds),
         unplaced=tuple(
-            UnplacedRecord(loaded.parts[item.part].name, item.copy + 1, why) for item, why in unplaced
+            UnplacedRecord(loaded.parts[item.part].name, item.copy + 1, why, item.value)
+            for item, why in unplaced
         ),
         status=packing.status,
         stop_reason=packing.stop_reason,
+        reached=objective_reached(packed.problem, packing) if packed.problem.items else None,
         bound=packing.bound,
         warnings=(*loaded.resolved.host.warnings, *left, *advice),
         notes=(*(f"{part.name}: {note}" for part in loaded.parts for note in part.notes), *loaded.notes),

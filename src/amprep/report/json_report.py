@@ -7,6 +7,7 @@ from amprep.measures.density import part_volume
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
+from amprep.report.objective import gap_of, total_value
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
 
 FORMAT = 1
@@ -26,6 +27,7 @@ _OVERHANG_SIZES = {"face": "area_mm2", "edge": "length_mm", "tip": "height_mm"}
 
 def to_json(record: RunRecord) -> dict[str, Any]:
     """Return a run as plain values: dicts, lists, strings, finite numbers, booleans and None."""
+    fill = record.objective == "fill"
     report = {
         "format": FORMAT,
         "amprep_version": record.version,
@@ -36,9 +38,12 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "objective": record.objective,
         "status": record.status,
         "stop_reason": record.stop_reason,
+        "reached": record.reached,
         "bound": record.bound,
-        "builds": [_build(entry) for entry in record.builds],
-        "unplaced": [vars(item) for item in record.unplaced],
+        "gap": gap_of(record),
+        "total_value": total_value(record) if fill else None,
+        "builds": [_build(entry, fill) for entry in record.builds],
+        "unplaced": [vars(item) | {"value": item.value if fill else None} for item in record.unplaced],
         "stages": stages_json(record.stages),
         "warnings": list(record.warnings),
         "notes": list(record.notes),
@@ -53,7 +58,7 @@ def write_json(record: RunRecord, path: Path) -> None:
     write_json_file(to_json(record), path)
 
 
-def _build(entry: BuildRecord) -> dict[str, Any]:
+def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
     build = entry.build
     return {
         "id": build.settings.build_id,
@@ -64,14 +69,14 @@ def _build(entry: BuildRecord) -> dict[str, Any]:
         "build_volume_shape": build.settings.space.shape,
         "density": entry.density,
         "height_mm": entry.height_mm,
-        "parts": [_part(placed) for placed in build.parts],
+        "parts": [_part(placed, fill) for placed in build.parts],
         "supports": _supports(entry),
         "verified": entry.verification is not None,
         "violations": violations_json(entry.verification or ()),
     }
 
 
-def _part(placed: PlacedPart) -> dict[str, Any]:
+def _part(placed: PlacedPart, fill: bool) -> dict[str, Any]:
     low, high = placed.mesh.bounds
     return {
         "name": placed.label,
@@ -80,6 +85,7 @@ def _part(placed: PlacedPart) -> dict[str, Any]:
         "source": placed.part.source,
         "transform": placed.matrix,
         "volume_mm3": part_volume(placed),
+        "value": placed.part.fill_value if fill else None,
         "low_mm": low,
         "high_mm": high,
         "triangles": len(placed.part.mesh.triangles),

@@ -8,6 +8,7 @@ from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import Build, Unsupported
+from amprep.model.packing import Objective
 from amprep.model.summary import Summarised
 from amprep.report.counting import counted
 
@@ -84,11 +85,12 @@ class OverhangRecord:
 
 @dataclass(frozen=True)
 class UnplacedRecord:
-    """A copy of a part that is in no build, with the reason; copies are counted from 1."""
+    """A copy of a part that is in no build, with the reason and its value; copies are counted from 1."""
 
     name: str
     copy: int
     reason: str
+    value: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,8 +166,11 @@ class RunRecord(Summarised):
         Version of amprep.
     status, stop_reason
         Status of the packing, and why it ended.
+    reached
+        Value of the objective: number of builds, value of the placed parts, or height of the packing (mm); None if
+        nothing was packed.
     bound
-        Bound on the packing's objective, or None.
+        Bound on it: no packing has fewer builds, more value, or less height; None if not known.
     warnings, notes
         One sentence each: what needs attention; what was repaired or found in an input.
     settings
@@ -190,7 +195,8 @@ class RunRecord(Summarised):
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
-    objective: str = "builds"
+    objective: Objective = "builds"
+    reached: float | None = None
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amprep.report.counting import counted
+from amprep.report.objective import amount, objective_words, part_values
 from amprep.report.record import BuildRecord, RunRecord, StageTime
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     from rich.text import Text
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
+    blocks += [Text(_printable(line), style="dim") for line in _listed(_values(record), "in the report")]
     issues = _listed(_issues(record), "in the report")
     blocks += [Text(f"! {_printable(line)}", style="yellow") for line in issues]
     blocks += [Text(_stages(record.stages), style="dim")]
@@ -61,9 +63,18 @@ def _verified(entry: BuildRecord) -> str:
 
 def _totals(record: RunRecord) -> str:
     placed = sum(len(entry.build.parts) for entry in record.builds)
-    bound = "" if record.bound is None else f", bound {record.bound:g}"
     counts = f"{counted(placed, 'part')} in {counted(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
-    return f"{counts}; packing {record.status} ({record.stop_reason}{bound}); seed {record.seed}"
+    words = objective_words(record)
+    reached = f": {words}" if words else ""
+    return f"{counts}; packing {record.status} ({record.stop_reason}){reached}; seed {record.seed}"
+
+
+def _values(record: RunRecord) -> list[str]:
+    """Return one line for each part of a fill problem."""
+    return [
+        f"{each.name}: {each.placed} of {each.copies} placed, value {amount(each.value)} each"
+        for each in part_values(record)
+    ]
 
 
 def _issues(record: RunRecord) -> list[str]:

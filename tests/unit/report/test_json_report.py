@@ -56,7 +56,7 @@ def test_the_json_report_contains_the_results_of_the_run(record):
     assert {"volume_mm3", "demand_squares", "unconnected_squares"} <= build["supports"].keys()
     assert {"builds", "unplaced", "stages", "seed", "status", "stop_reason", "bound"} <= report.keys()
     assert report["stages"] == [{"name": "read", "seconds": 0.25}, {"name": "pack", "seconds": 1.5}]
-    assert report["unplaced"] == [{"name": "crane", "copy": 2, "reason": "too large"}]
+    assert report["unplaced"] == [{"name": "crane", "copy": 2, "reason": "too large", "value": None}]
     assert build["supports"]["unconnected_squares"][0]["reason"] == "enclosed"
     assert build["violations"][0]["promise"] == "clearance"
 

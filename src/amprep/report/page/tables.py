@@ -10,11 +10,19 @@ from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
 from amprep.report.counting import counted
 from amprep.report.json_values import plain
+from amprep.report.objective import amount, gap_of, objective_words, part_values, total_value
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 
 Cell = str | float | tuple[str, str]
 """Text that is escaped; a number, aligned to the right; or a CSS class and HTML, used as it is."""
+
+_BOUNDS = {
+    "fill": "Bound on the value",
+    "height": "Bound on the height",
+    "builds": "Bound on the builds",
+}
+"""Objective -> heading of its bound."""
 
 
 def header(record: RunRecord) -> str:
@@ -47,6 +55,7 @@ def body_sections(record: RunRecord) -> str:
     numbered = list(enumerate(record.builds, start=1))
     sections = [
         ("Builds", _builds(record)),
+        ("Values", _values(record)),
         ("Unplaced copies", _unplaced(record)),
         ("Unsupported regions", _unsupported(record)),
         ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
@@ -98,6 +107,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     density = sum(entry.density for entry in builds) / max(len(builds), 1)
     return [
         ("Builds", str(len(builds)), False),
+        *_objective_figures(record),
         ("Parts placed", str(placed), False),
         ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
@@ -107,6 +117,41 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         ("Violations", violations, bool(broken)),
         ("Run time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
     ]
+
+
+def _objective_figures(record: RunRecord) -> list[tuple[str, str, bool]]:
+    """Return the objective that was reached, its bound and the gap."""
+    if record.reached is None:
+        return []
+    unit = {"fill": "", "height": " <small>mm</small>", "builds": ""}[record.objective]
+    bound = "unknown" if record.bound is None else amount(record.bound) + unit
+    found = {
+        "fill": [
+            ("Value placed", f"{amount(record.reached)} <small>of {amount(total_value(record))}</small>")
+        ],
+        "height": [("Packing height", f"{amount(record.reached)}{unit}")],
+        "builds": [],
+    }[record.objective]
+    found.append((_BOUNDS[record.objective], bound))
+    gap = gap_of(record)
+    if gap is not None and record.objective != "builds":
+        found.append(("Gap to the bound", f"{100 * gap:.1f} <small>%</small>"))
+    return [(name, value, False) for name, value in found]
+
+
+def _values(record: RunRecord) -> str:
+    rows = [
+        (
+            each.name,
+            ("number", amount(each.value)),
+            each.placed,
+            each.copies,
+            ("number", amount(each.value * each.placed)),
+        )
+        for each in part_values(record)
+    ]
+    headings = ("Part", "Value of a copy|", "Copies placed|", "Copies|", "Value placed|")
+    return f"<p>{escape(objective_words(record))}.</p>{table(headings, rows)}" if rows else ""
 
 
 def _builds(record: RunRecord) -> str:

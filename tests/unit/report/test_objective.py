@@ -1,0 +1,77 @@
+"""Terminal, JSON and HTML say what a packing reached, what its bound bounds, the gap, and the value of parts."""
+
+from dataclasses import replace
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+from amprep.report.json_report import to_json
+from amprep.report.objective import amount, gap_of, objective_words, part_values, total_value
+from amprep.report.page.html import html_text
+from amprep.report.record import BuildRecord, RunRecord, UnplacedRecord
+from amprep.report.terminal import summary
+
+
+@pytest.fixture
+def filled(make_build) -> RunRecord:
+    """A fill problem: a build of parts, and two copies of a crane of value 30 that are left."""
+    left = tuple(UnplacedRecord("crane", copy, "no room left", 30.0) for copy in (1, 2))
+    build = make_build()
+    worth = sum(placed.part.fill_value for placed in build.parts)
+    return RunRecord(
+        "job", "1", 0, "MK4", "generic", (BuildRecord(build),), left,
+        objective="fill", reached=worth, bound=1.25 * worth,
+    )  # fmt: skip
+
+
+def printed(record):
+    console = Console(width=200, record=True, file=StringIO())
+    console.print(summary(record))
+    return console.export_text()
+
+
+def test_a_fill_run_tells_value_bound_gap_and_the_value_of_each_part_everywhere(filled):
+    worth = filled.reached
+    words = f"value {amount(worth)} of {amount(worth + 60)}, no packing has more than {amount(1.25 * worth)}"
+    assert objective_words(filled) == f"{words}, gap 25.0 %"
+    assert total_value(filled) == pytest.approx(worth + 60)
+    text, page, report = printed(filled), html_text(filled), to_json(filled)
+    assert words in text
+    assert words in page
+    assert "crane: 0 of 2 placed, value 30 each" in text
+    assert (report["reached"], report["gap"]) == (worth, pytest.approx(0.25))
+    assert report["total_value"] == pytest.approx(worth + 60)
+    assert [each["value"] for each in report["unplaced"]] == [30.0, 30.0]
+    assert sum(part["value"] for part in report["builds"][0]["parts"]) == pytest.approx(worth)
+
+
+def test_the_copies_of_a_part_are_counted_together(filled):
+    crane = part_values(filled)[-1]
+    assert (crane.name, crane.value, crane.placed, crane.copies) == ("crane", 30.0, 0, 2)
+
+
+@pytest.mark.parametrize(
+    ("objective", "reached", "bound", "words"),
+    [
+        ("builds", 3.0, 2.0, "3 builds, no packing has fewer than 2"),
+        ("builds", 1.0, None, "1 build, no bound known"),
+        ("height", 50.0, 40.0, "height 50.00 mm, no packing is lower than 40.00 mm, gap 20.0 %"),
+        ("fill", None, None, ""),
+    ],
+)
+def test_other_objectives_say_what_their_bound_bounds(filled, objective, reached, bound, words):
+    record = replace(filled, objective=objective, reached=reached, bound=bound)
+    assert objective_words(record) == words
+    assert part_values(record) == ()
+    assert (gap_of(record) is None) == (bound is None)
+    assert html_text(record)
+
+
+def test_large_values_keep_all_digits_before_the_point():
+    assert [amount(value) for value in (1234567.8, 99999.5, 0.125, 0.0)] == [
+        "1,234,568",
+        "99999.5",
+        "0.125",
+        "0",
+    ]
