@@ -1,6 +1,15 @@
-"""Decorator of compiled functions that only other compiled functions call."""
+"""Decorators of compiled functions."""
 
 from numba import njit
 
 helper = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
-"""Such functions compile faster without wrappers, and the caches of their callers contain them."""
+"""Compiles functions that only other compiled functions call.
+
+They compile faster without wrappers, and the caches of their callers contain them.
+"""
+
+kernel = njit(cache=True, _nrt=False)
+"""Compiles functions that create no arrays: without reference counts, which cost more than the work on records."""
+
+inlined = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, forceinline=True)
+"""Compiles functions that only kernels call: inlined, so that they cost no call."""

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.flow.records import ResidualNetwork
-from amprep.kernels.flow.residual import ARCS, head_of, inlined, kernel, residual_capacity, send
+from amprep.kernels.flow.residual import ARCS, head_of, residual_capacity, send
+from amprep.kernels.helper import inlined, kernel
 
 UNSEEN, ON_PATH, CLOSED = 0, 1, 2
 """Marks of states: not yet seen; on a path that was found; left without success, or on the path being searched."""

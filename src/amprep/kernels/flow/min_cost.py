@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.flow.records import ResidualNetwork
-from amprep.kernels.flow.residual import ARCS, head_of, inlined, kernel, residual_capacity, reverse_of, send
+from amprep.kernels.flow.residual import ARCS, head_of, residual_capacity, reverse_of, send
+from amprep.kernels.helper import inlined, kernel
 
 Potentials = NDArray[np.int16] | NDArray[np.int32]
 

@@ -2,8 +2,8 @@
 
 from amprep.arrays import Int64s
 from amprep.kernels.flow.records import Flow, FlowNetwork
-from amprep.kernels.flow.residual import kernel
 from amprep.kernels.flow.shortest_paths import Paths, RoutingState, add_to_edge, add_to_square
+from amprep.kernels.helper import kernel
 
 
 @kernel

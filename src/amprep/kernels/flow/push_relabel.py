@@ -17,16 +17,8 @@ from typing import NamedTuple
 
 from amprep.arrays import Bytes, Int32s, Int64s
 from amprep.kernels.flow.records import ResidualNetwork
-from amprep.kernels.flow.residual import (
-    ARCS,
-    head_of,
-    inlined,
-    is_backward,
-    kernel,
-    residual_capacity,
-    reverse_of,
-    send,
-)
+from amprep.kernels.flow.residual import ARCS, head_of, is_backward, residual_capacity, reverse_of, send
+from amprep.kernels.helper import inlined, kernel
 
 CUT_OFF = 1 << 29
 """Level of a state from which no residual path leads to the plate."""

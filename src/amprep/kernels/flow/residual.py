@@ -12,19 +12,13 @@ stay straight where there is a choice (thesis 3.3). An arc that undoes flow is a
 """
 
 import numpy as np
-from numba import njit
 
 from amprep.arrays import Int32s
 from amprep.kernels.flow.records import UNREACHABLE, FlowNetwork, ResidualNetwork
+from amprep.kernels.helper import inlined, kernel
 
 ARCS = 6
 """Number of arcs of a state."""
-
-kernel = njit(cache=True, _nrt=False)
-"""Compiles functions that create no arrays: without reference counts, which cost more than the work on arcs."""
-
-inlined = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, forceinline=True)
-"""Compiles functions that only kernels call: inlined, so that they cost no call."""
 
 
 @inlined

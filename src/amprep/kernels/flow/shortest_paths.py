@@ -15,7 +15,7 @@ from numba import njit
 
 from amprep.arrays import Bytes, Float32s, Int32s, Int64s
 from amprep.kernels.flow.records import Flow, FlowNetwork
-from amprep.kernels.flow.residual import inlined, kernel
+from amprep.kernels.helper import inlined, kernel
 
 FAR = np.float32(1e30)
 """Distance of a square from which no path leads to the plate."""

@@ -1,0 +1,44 @@
+"""The queries for arrays of poses."""
+
+from amprep.arrays import Bools, Floats
+from amprep.kernels.helper import kernel
+from amprep.kernels.trees.collide import surfaces_collide
+from amprep.kernels.trees.directional import directional_distance
+from amprep.kernels.trees.distance import surface_distance
+from amprep.kernels.trees.records import ObbTree, Stack
+
+
+@kernel
+def collide_each(
+    a: ObbTree, poses_a: Floats, b: ObbTree, poses_b: Floats, margin: float, stack: Stack, answers: Bools
+) -> None:
+    """Write the answers of `surfaces_collide` for ``(n, 12)`` poses of both bodies."""
+    for k in range(answers.shape[0]):
+        answers[k] = surfaces_collide(a, poses_a[k], b, poses_b[k], margin, stack)
+
+
+@kernel
+def distance_each(
+    a: ObbTree, poses_a: Floats, b: ObbTree, poses_b: Floats, limit: float, stack: Stack, answers: Floats
+) -> None:
+    """Write the answers of `surface_distance` for ``(n, 12)`` poses of both bodies."""
+    for k in range(answers.shape[0]):
+        answers[k] = surface_distance(a, poses_a[k], b, poses_b[k], limit, stack)
+
+
+@kernel
+def directional_each(
+    a: ObbTree,
+    poses_a: Floats,
+    b: ObbTree,
+    poses_b: Floats,
+    directions: Floats,
+    margin: float,
+    limits: Floats,
+    stack: Stack,
+    answers: Floats,
+) -> None:
+    """Write the answers of `directional_distance` for ``(n, 12)`` poses and ``(n, 3)`` unit vectors."""
+    for k in range(answers.shape[0]):
+        direction = (directions[k, 0], directions[k, 1], directions[k, 2])
+        answers[k] = directional_distance(a, poses_a[k], b, poses_b[k], direction, margin, limits[k], stack)

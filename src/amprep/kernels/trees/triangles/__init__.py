@@ -1,0 +1,1 @@
+"""Compiled kernels on pairs of triangles."""
