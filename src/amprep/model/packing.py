@@ -125,6 +125,9 @@ class Packing:
     ----------
     bound
         Proven bound on the objective: no packing has fewer builds, more value or less height. None when unknown.
+    found_by
+        The method that found the packing, where the packer has several: `ip` names its solver, or the heuristic that
+        the solver started from. Else empty.
     """
 
     builds: tuple[tuple[Placement, ...], ...]
@@ -132,3 +135,4 @@ class Packing:
     bound: float | None = None
     status: Status = "feasible"
     stop_reason: str = "finished"
+    found_by: str = ""

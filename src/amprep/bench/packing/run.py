@@ -40,6 +40,8 @@ class PackingResult:
         See the function `fill_ratio`.
     faults
         Violations that the independent check found.
+    found_by
+        The method that found the packing, where the packer has several.
     """
 
     name: str
@@ -52,6 +54,7 @@ class PackingResult:
     stop_reason: str
     seconds: float
     faults: tuple[str, ...]
+    found_by: str = ""
 
     @property
     def validated(self) -> bool:
@@ -70,6 +73,7 @@ class PackingResult:
             "unplaced": self.unplaced,
             "status": self.status,
             "stop_reason": self.stop_reason,
+            "found_by": self.found_by,
             "seconds": round(self.seconds, 3),
             "validated": self.validated,
             "faults": list(self.faults),
@@ -83,6 +87,7 @@ class PackingResult:
         return (
             f"{self.name}: {self.measure} {self.reached:g}, bound {bound}, filled {self.fill_ratio:.1%}, "
             f"{self.status} ({self.stop_reason}), {self.seconds:.2f} s, {verdict}"
+            + (f", found by {self.found_by}" if self.found_by else "")
         )
 
 
@@ -200,4 +205,5 @@ def _result(instance: PackingInstance, packing: Packing, seconds: float) -> Pack
         stop_reason=packing.stop_reason,
         seconds=seconds,
         faults=tuple(f"{fault.promise}: {fault.subject} {fault.message}" for fault in faults),
+        found_by=packing.found_by,
     )

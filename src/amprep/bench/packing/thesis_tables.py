@@ -44,11 +44,12 @@ FILL_ROWS = (
     TableRow("extreme-points", "extreme-points", {}),
     TableRow("auto", "auto", {}),
     TableRow("ip", "ip", {}),
+    TableRow("ip, no start", "ip", {"start": "none"}),
     *(
         TableRow(
             f"ip-local-search, used {used}, dir {direction}",
             "ip-local-search",
-            {"used_distance": used, "direction_distance": direction},
+            {"used_distance": used, "direction_distance": direction, "start": "extreme-points"},
         )
         for used, direction in ((2, 30), (5, 20), (8, 10))
     ),
@@ -141,6 +142,7 @@ def repeated_boxes(n: int, objective: Objective) -> PackingInstance:
 def table_cell(result: PackingResult) -> str:
     """Return a result as the table shows it."""
     proof = ", proven" if result.status == "optimal" else ""
+    proof += f"; by {result.found_by}" if result.found_by else ""
     if result.measure == "value":
         return f"{result.fill_ratio:.0%}, {result.seconds:.2f} s{proof}"
     return f"{result.reached:g} builds (bound {result.bound or 0:g}), {result.seconds:.2f} s{proof}"

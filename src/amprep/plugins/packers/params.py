@@ -141,6 +141,10 @@ class IpParams:
 
     Attributes
     ----------
+    start
+        The packing that the solver starts from in a fill problem: ``blocks``, the better one of extreme points and
+        block building; ``extreme-points``; or ``none``, to compare: then the packing of the solver counts, even where
+        a heuristic finds a better one.
     solver
         Name of the solver in pulp. Only HiGHS obeys `effort`, `threads` and `seed`, starts from the heuristic's
         packing and reports its bound; any other solver obeys the time limit alone.
@@ -162,6 +166,7 @@ class IpParams:
         Seed of the solver.
     """
 
+    start: str = "blocks"
     solver: str = "HiGHS"
     effort: float = 0.05
     directions: int = 20_000
@@ -172,6 +177,8 @@ class IpParams:
     seed: int = 0
 
     def __post_init__(self) -> None:
+        known = self.start in {"blocks", "extreme-points", "none"}
+        require(known, "start must be blocks, extreme-points or none", repr(self.start))
         require_bounds(self, "effort", "directions", "seed", at_least=0)
         require_bounds(self, "threads", at_least=1)
 
@@ -222,6 +229,7 @@ class ColumnGenerationParams(IpParams):
         Millions of comparisons spent on the fractional covering bound; some 170 per second.
     """
 
+    start: str = "extreme-points"
     effort: float = 0.01
     rounds: int = 60
     restarts: int = 10

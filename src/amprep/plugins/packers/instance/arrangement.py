@@ -18,12 +18,15 @@ class PackerResult(NamedTuple):
         Proven bound: fewest builds, or greatest value of one build.
     complete
         False when items are unplaced because the packer had to stop.
+    found_by
+        The method that found the arrangement, where the packer has several.
     """
 
     arrangement: Arrangement
     bound: float
     stop_reason: str
     complete: bool = True
+    found_by: str = ""
 
 
 def value_of(instance: PreparedInstance, arrangement: Arrangement) -> float:
@@ -60,6 +63,7 @@ def as_packing(instance: PreparedInstance, result: PackerResult) -> Packing:
         bound=result.bound,
         status=status_of(instance, result),
         stop_reason=result.stop_reason,
+        found_by=result.found_by,
     )
 
 

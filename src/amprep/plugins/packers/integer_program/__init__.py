@@ -8,7 +8,6 @@ from amprep.kernels.boxes.records import Arrangement
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.bounds.combinatorial import packing_bound
-from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import (
     PackerResult,
     as_packing,
@@ -18,10 +17,22 @@ from amprep.plugins.packers.instance.arrangement import (
 )
 from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
 from amprep.plugins.packers.integer_program.constraints import make_program
-from amprep.plugins.packers.integer_program.data import ModelData, count_directions, prepare_model_data
+from amprep.plugins.packers.integer_program.data import (
+    ModelData,
+    count_directions,
+    keeps_corners_apart,
+    prepare_model_data,
+)
 from amprep.plugins.packers.integer_program.decode import read_arrangement, start_values
 from amprep.plugins.packers.integer_program.solver import TOLERANCE, Outcome, solve
-from amprep.plugins.packers.params import ExtremePointsParams, IpParams
+from amprep.plugins.packers.integer_program.warm_start import heuristic_packing, without_start
+from amprep.plugins.packers.params import IpParams
+
+SOLVER = "the solver"
+"""Beginning of `PackerResult.found_by` where the integer program found the arrangement."""
+
+NOT_RUN, NOTHING_BETTER = "the solver did not run", "the solver found nothing better"
+"""End of `PackerResult.found_by` where a heuristic found the arrangement."""
 
 
 def pack_ip(
@@ -47,38 +58,86 @@ def solve_instance(
     stop: Stop,
     progress: Progress,
 ) -> PackerResult:
-    """Return the better one of the heuristic's arrangement and that of the integer program.
+    """Return the better one of a heuristic's arrangement and that of the integer program.
 
     In a fill problem the solver starts from the heuristic's arrangement. In a builds problem it gets one build fewer,
-    so that *infeasible* is the proof. Bounds of the program count without clearance only, because with clearance the
-    program demands more distance at corners than the judge. Proofs hold to within the tolerances of the solver.
+    until none is found, so that *infeasible* is the proof. With clearance the relaxed program is solved first, because
+    only it admits every packing that the judge accepts and so proves bounds; where its arrangement cannot keep the
+    clearance, the exact program follows. Proofs hold to within the tolerances of the solver.
     """
-    known = construct(instance, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
+    known = heuristic_packing(instance, params, rng, stop, progress)
     if is_final(instance, known, stop):
-        return known
+        return known._replace(found_by=f"{known.found_by}; {NOT_RUN}")
     directions = count_directions(instance, params)
     if directions > params.directions:
-        return known._replace(stop_reason=too_many(directions, params))
+        reason = too_many(directions, params)
+        return known._replace(stop_reason=reason, found_by=f"{known.found_by}; {NOT_RUN}")
+    best = without_start(known) if instance.filling and params.start == "none" else known
+    nodes = node_budget(directions, params)
+    while True:
+        builds = best.arrangement.builds
+        best, nodes = solve_round(instance, best, params, nodes, stop, progress)
+        if instance.filling or best.arrangement.builds == builds or nodes <= 0:
+            break
+        if is_final(instance, best, stop):
+            break
+    best = best if best.arrangement.builds else known._replace(stop_reason=best.stop_reason, bound=best.bound)
+    if not best.found_by.startswith(SOLVER):
+        best = best._replace(found_by=f"{known.found_by}; {NOTHING_BETTER}")
+    progress(1.0, f"gap {gap_of(instance, best):.1%}")
+    return best
+
+
+def solve_round(
+    instance: PreparedInstance,
+    known: PackerResult,
+    params: IpParams,
+    nodes: int,
+    stop: Stop,
+    progress: Progress,
+) -> tuple[PackerResult, int]:
+    """Solve the relaxed program where a clearance is kept, and the exact one unless that is settled.
+
+    The result is the better one, with the better bound, and the number of nodes that are left.
+    """
+    if keeps_corners_apart(instance):
+        half = stop.within(None if stop.deadline is None else stop.remaining() / 2.0)
+        known, used = improve(
+            instance, known, params, relaxed=True, nodes=(nodes + 1) // 2, stop=half, progress=progress
+        )
+        nodes -= max(used, 1)
+        if nodes <= 0 or is_final(instance, known, stop):
+            return known, nodes
+    known, used = improve(instance, known, params, relaxed=False, nodes=nodes, stop=stop, progress=progress)
+    return known, nodes - max(used, 1)
+
+
+def improve(
+    instance: PreparedInstance,
+    known: PackerResult,
+    params: IpParams,
+    *,
+    relaxed: bool,
+    nodes: int,
+    stop: Stop,
+    progress: Progress,
+) -> tuple[PackerResult, int]:
+    """Solve the program once; return the better result, with the better bound, and the nodes used."""
     progress(0.0, "building the model")
     builds = 1 if instance.filling else builds_used(instance, known.arrangement) - 1
-    data = prepare_model_data(instance, builds, params)
-    program, variables = make_program(data, params)
-    outcome = solve(
-        program,
-        params,
-        nodes=node_budget(directions, params),
-        stop=stop,
-        progress=progress,
-        start=start_values(data, variables, known.arrangement) if instance.filling else None,
-    )
-    arrangement = known.arrangement
+    data = prepare_model_data(instance, builds, params, stop, relaxed=relaxed)
+    program, variables = make_program(data, params, stop)
+    warm = instance.filling and params.start != "none"
+    start = start_values(data, variables, known.arrangement, stop) if warm else None
+    outcome = solve(program, params, nodes=nodes, stop=stop, progress=progress, start=start)
     found = read_arrangement(data, variables) if outcome.solved else None
-    if found is not None and _is_better(instance, found, arrangement):
-        arrangement = found
-    bound = proved_bound(data, outcome)
-    result = PackerResult(arrangement, closed_bound(instance, arrangement, bound), outcome.stop_reason)
-    progress(1.0, f"gap {gap_of(instance, result):.1%}")
-    return result
+    bound = max(known.bound, proved_bound(data, outcome))
+    if instance.filling:
+        bound = min(known.bound, proved_bound(data, outcome))
+    if found is not None and _is_better(instance, found, known.arrangement):
+        known = known._replace(arrangement=found, found_by=f"{SOLVER} {params.solver}")
+    bound = closed_bound(instance, known.arrangement, bound)
+    return known._replace(bound=bound, stop_reason=outcome.stop_reason), outcome.nodes
 
 
 def is_final(instance: PreparedInstance, known: PackerResult, stop: Stop) -> bool:
@@ -110,7 +169,7 @@ def proved_bound(data: ModelData, outcome: Outcome) -> float:
     """Return the better one of the combinatorial bound and the bound of the solver."""
     instance = data.instance
     plain = packing_bound(instance) if instance.filling else max(packing_bound(instance), 1.0)
-    if instance.problem.clearance > 0.0:
+    if not data.proves:
         return plain
     if instance.filling:
         fixed = sum(instance.problem.items[placement.item].value for placement in instance.problem.fixed)

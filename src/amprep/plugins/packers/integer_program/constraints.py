@@ -6,6 +6,7 @@ from itertools import pairwise
 import pulp
 
 from amprep.arrays import CONTACT_TOLERANCE
+from amprep.model.control import Stop
 from amprep.plugins.packers.bounds.combinatorial import amounts_of
 from amprep.plugins.packers.integer_program.data import ModelData, Pair
 from amprep.plugins.packers.integer_program.variables import (
@@ -21,9 +22,8 @@ from amprep.plugins.packers.params import IpParams
 
 
 def separation(program: Program) -> Iterator[Constraint]:
-    """If a direction is 0, the second box is beyond the first on that side, `gap` away."""
+    """If a direction is 0, the second box is beyond the first on that side, by the distance required there."""
     data, variables = program.data, program.variables
-    slack = data.instance.space.slack
     for pair, directions in zip(data.pairs, variables.direction, strict=True):
         for number, direction in enumerate(directions):
             if direction is None:
@@ -33,16 +33,16 @@ def separation(program: Program) -> Iterator[Constraint]:
             before = corner(data, variables, near, axis, upper=True)
             beyond = corner(data, variables, far, axis, upper=False)
             big = _big_m(program, pair, number)
-            yield before + (pair.gap - slack) <= beyond + big * direction
+            yield before + float(pair.required[axis]) <= beyond + big * direction
 
 
 def _big_m(program: Program, pair: Pair, number: int) -> float:
     """Return the greatest violation of a separation: the room's side, or the least value for the pair's ranges."""
     axis, space = number // 2, program.data.instance.space
     if not program.params.tighten and pair.other.copy >= 0:
-        return float(space.hi[axis] - space.lo[axis]) + pair.gap + 2.0 * space.slack
+        return float(space.hi[axis] - space.lo[axis] + pair.required[axis]) + 3.0 * space.slack
     near, far = (pair.one, pair.other) if number % 2 == 0 else (pair.other, pair.one)
-    return max(0.0, float(near.most_hi[axis] - far.least_lo[axis]) + pair.gap - space.slack)
+    return max(0.0, float(near.most_hi[axis] - far.least_lo[axis] + pair.required[axis]))
 
 
 def apart(program: Program) -> Iterator[Constraint]:
@@ -121,11 +121,11 @@ def one_side(program: Program) -> Iterator[Constraint]:
     """No box is on both sides of another along an axis."""
     if not program.params.tighten:
         return
-    thin = 4.0 * CONTACT_TOLERANCE
+    thin = 2.0 * CONTACT_TOLERANCE
     for pair, directions in zip(program.data.pairs, program.variables.direction, strict=True):
         for axis in range(3):
             one, other = directions[2 * axis : 2 * axis + 2]
-            thick = _least_side(program.data, pair, axis) + 2.0 * pair.gap > thin
+            thick = _least_side(program.data, pair, axis) + 2.0 * float(pair.required[axis]) > thin
             if one is not None and other is not None and thick:
                 yield one + other >= 1
 
@@ -223,11 +223,14 @@ those that result from renaming builds and swapping equal items; the orders in s
 
 
 def make_program(
-    data: ModelData, params: IpParams, further: Sequence[Family] = ()
+    data: ModelData, params: IpParams, stop: Stop, further: Sequence[Family] = ()
 ) -> tuple[pulp.LpProblem, Variables]:
     """Return the program of thesis 2.2 for the most value in one build, or the fewest builds.
 
-    With clearance, boxes are that far apart along an axis, which is more than the judge demands at corners.
+    When told to stop, the result is incomplete.
+
+    With clearance, boxes are that far apart along an axis, which is more than the judge demands at corners, unless
+    the data are relaxed.
 
     Parameters
     ----------
@@ -236,11 +239,15 @@ def make_program(
     """
     sense = pulp.LpMaximize if data.filling else pulp.LpMinimize
     problem = pulp.LpProblem("packing", sense)
-    variables = make_variables(problem, data)
+    variables = make_variables(problem, data, stop)
     problem.setObjective(_value(data, variables) if data.filling else pulp.lpSum(variables.opened))
     program = Program(data, variables, params)
     for family in (*FAMILIES, *further):
+        if stop():
+            break
         for constraint in family(program):
+            if stop():
+                break
             problem.addConstraint(constraint)
     return problem, variables
 

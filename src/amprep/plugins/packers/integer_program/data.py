@@ -1,12 +1,15 @@
 """The data of the integer program: copies of items to be placed, obstacles, and pairs of boxes."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats
+from amprep.model.control import Stop
 from amprep.plugins.packers.instance.prepare import ItemType, PreparedInstance
 from amprep.plugins.packers.params import IpParams
 
@@ -67,10 +70,14 @@ class ModelBox(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two boxes that must be `gap` mm apart along an axis when they are in one build.
+    """Two boxes that must be apart along an axis when they are in one build.
 
     Attributes
     ----------
+    gap
+        Distance that the packing keeps along that axis, mm.
+    required
+        ``(3,)`` mm, distance along each axis that the program demands.
     possible
         ``(6,)`` whether there is room for each direction: right, left, up, down, front, back.
     """
@@ -78,6 +85,7 @@ class Pair(NamedTuple):
     one: ModelBox
     other: ModelBox
     gap: float
+    required: Floats
     possible: Bools
 
 
@@ -99,6 +107,8 @@ class ModelData:
         Those of `alike` whose items are single boxes that cannot be turned: they are ordered from left to right.
     reflected
         Whether the first item is kept in the lower half of its build, because every reflection is a packing.
+    relaxed
+        Whether boxes may be closer along an axis than the clearance, because they may be apart at corners as well.
     """
 
     instance: PreparedInstance
@@ -110,6 +120,12 @@ class ModelData:
     reflected: bool
     obstacles: tuple[Obstacle, ...]
     pairs: tuple[Pair, ...]
+    relaxed: bool
+
+    @property
+    def proves(self) -> bool:
+        """Whether the program admits every packing that the judge accepts, so that its bounds hold."""
+        return self.relaxed or not keeps_corners_apart(self.instance)
 
     @property
     def filling(self) -> bool:
@@ -135,8 +151,27 @@ def count_directions(instance: PreparedInstance, params: IpParams) -> int:
     return 6 * ((total**2 - sum(n**2 for n in boxes)) // 2 + total * obstacles)
 
 
-def prepare_model_data(instance: PreparedInstance, builds: int, params: IpParams) -> ModelData:
-    """Return the copies of the items, the obstacles, and the pairs of their boxes."""
+def keeps_corners_apart(instance: PreparedInstance) -> bool:
+    """Return whether a distance at corners is demanded: a clearance above the tolerance."""
+    return instance.problem.clearance > instance.space.slack
+
+
+def prepare_model_data(
+    instance: PreparedInstance, builds: int, params: IpParams, stop: Stop, *, relaxed: bool = False
+) -> ModelData:
+    """Return the copies of the items, the obstacles, and the pairs of their boxes.
+
+    When told to stop, the result is incomplete, as that of `make_program` is. A stop stays true, so `solve` does not
+    run it.
+
+    Parameters
+    ----------
+    builds
+        Greatest number of builds.
+    relaxed
+        Whether the program admits every packing that the judge accepts, also those whose boxes keep the clearance at
+        corners only.
+    """
     items = _in_order(instance)
     copies: list[ItemCopy] = []
     copies_of: list[tuple[int, ...]] = []
@@ -147,7 +182,7 @@ def prepare_model_data(instance: PreparedInstance, builds: int, params: IpParams
     alike = _alike(instance, items) if params.symmetry else ()
     ordered = tuple(run for run in alike if _is_one_box(copies_of[run[0]], copies))
     obstacles = _obstacles(instance)
-    pairs = _without_left(_pairs(instance, copies, obstacles, params), copies, copies_of, ordered)
+    pairs = _pairs(instance, copies, obstacles, params, stop, relaxed=relaxed)
     return ModelData(
         instance,
         builds,
@@ -157,7 +192,8 @@ def prepare_model_data(instance: PreparedInstance, builds: int, params: IpParams
         ordered,
         params.symmetry and not obstacles and all(copy.lo.shape[1] == 1 for copy in copies),
         obstacles,
-        tuple(pairs),
+        tuple(_without_left(pairs, copies, copies_of, ordered)),
+        relaxed,
     )
 
 
@@ -213,18 +249,66 @@ def _obstacles(instance: PreparedInstance) -> tuple[Obstacle, ...]:
 
 
 def _pairs(
-    instance: PreparedInstance, copies: list[ItemCopy], obstacles: tuple[Obstacle, ...], params: IpParams
+    instance: PreparedInstance,
+    copies: list[ItemCopy],
+    obstacles: tuple[Obstacle, ...],
+    params: IpParams,
+    stop: Stop,
+    *,
+    relaxed: bool,
 ) -> list[Pair]:
-    """Return the pairs of boxes of different items, and of boxes and obstacles."""
+    """Return the pairs of boxes of different items, and of boxes and obstacles, as far as `stop` allows."""
     boxes = [_boxes(instance, number, copy) for number, copy in enumerate(copies)]
     blocks = [ModelBox(-1, n, o.lo, o.lo, o.hi, o.hi) for n, o in enumerate(obstacles)]
-    found: list[tuple[ModelBox, ModelBox, float]] = []
+    found: list[Pair] = []
+    for one, other, gap in _box_pairs(instance, copies, obstacles, boxes, blocks):
+        if stop():
+            break
+        distance = _required(one, other, gap, instance.space.slack, relaxed=relaxed)
+        found.append(Pair(one, other, gap, distance, _possible(one, other, distance, params)))
+    return found
+
+
+def _box_pairs(
+    instance: PreparedInstance,
+    copies: list[ItemCopy],
+    obstacles: tuple[Obstacle, ...],
+    boxes: list[list[ModelBox]],
+    blocks: list[ModelBox],
+) -> Iterator[tuple[ModelBox, ModelBox, float]]:
+    """Yield the pairs with the distance that they keep, mm."""
     for one, other in combinations(range(len(copies)), 2):
         if copies[one].item != copies[other].item:
-            found += [(a, b, instance.problem.clearance) for a in boxes[one] for b in boxes[other]]
-    found += [(a, block, obstacles[block.number].gap) for own in boxes for a in own for block in blocks]
-    slack = instance.space.slack
-    return [Pair(a, b, gap, _possible(a, b, gap - slack, params)) for a, b, gap in found]
+            for pair in product(boxes[one], boxes[other]):
+                yield (*pair, instance.problem.clearance)
+    for own in boxes:
+        for box, block in product(own, blocks):
+            yield box, block, obstacles[block.number].gap
+
+
+def _required(one: ModelBox, other: ModelBox, gap: float, slack: float, *, relaxed: bool) -> Floats:
+    """Return the least distance of two boxes along the axis on which they are farthest apart, ``(3,)`` mm.
+
+    Strategy: without relaxation it is `gap` along every axis. The judge measures distances in space, so boxes that
+    keep `gap` may be closer than it along every axis. Let the axis be x, and let there be room for distances of at
+    most b and c along y and z. Then x^2 + min(x, b)^2 + min(x, c)^2 is at least gap^2. With b at most c, the least x
+    is gap / sqrt(3) if that is at most b, else the root for y fixed at b if that is at most c, else the root with
+    both fixed.
+    """
+    distance = gap - slack
+    if not relaxed or distance <= 0.0:
+        return np.full(3, distance)
+    room = np.maximum(np.maximum(other.most_lo - one.least_hi, one.most_lo - other.least_hi), 0.0)
+    found = np.empty(3)
+    for axis in range(3):
+        b, c = sorted(np.delete(room, axis).tolist())
+        least = distance / math.sqrt(3.0)
+        if least > b:
+            least = math.sqrt(max(distance**2 - b**2, 0.0) / 2.0)
+            if least > c:
+                least = math.sqrt(max(distance**2 - b**2 - c**2, 0.0))
+        found[axis] = least
+    return found
 
 
 def _boxes(instance: PreparedInstance, number: int, copy: ItemCopy) -> list[ModelBox]:
@@ -246,12 +330,12 @@ def _boxes(instance: PreparedInstance, number: int, copy: ItemCopy) -> list[Mode
     ]
 
 
-def _possible(one: ModelBox, other: ModelBox, gap: float, params: IpParams) -> Bools:
+def _possible(one: ModelBox, other: ModelBox, required: Floats, params: IpParams) -> Bools:
     """Return for each direction whether the second box can be on that side of the first."""
     if not params.tighten:
         return np.ones(6, dtype=bool)
-    beyond = one.least_hi + gap <= other.most_lo + 1e-6
-    before = other.least_hi + gap <= one.most_lo + 1e-6
+    beyond = one.least_hi + required <= other.most_lo + 1e-6
+    before = other.least_hi + required <= one.most_lo + 1e-6
     return np.stack((beyond, before), axis=1).ravel()
 
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.kernels.boxes.records import Arrangement
+from amprep.model.control import Stop
 from amprep.plugins.packers.integer_program.data import ModelBox, ModelData, Pair
-from amprep.plugins.packers.integer_program.variables import Variables
+from amprep.plugins.packers.integer_program.variables import Variable, Variables
 
 
 class PlacedCopy(NamedTuple):
@@ -20,16 +21,17 @@ class PlacedCopy(NamedTuple):
 def read_arrangement(data: ModelData, variables: Variables) -> Arrangement | None:
     """Return the arrangement of a solution, each item as near to the lower corner as its directions allow.
 
-    A solver satisfies constraints to within a tolerance only. So the directions alone are taken from it, and the
-    positions follow exactly. The result is None when these positions are not inside the room.
+    A solver satisfies constraints to within a tolerance only. So one direction for each pair is taken from it, the
+    one along which the boxes are farthest apart, and the positions follow exactly. The result is None when these
+    positions are not inside the room.
     """
     placed = _placed_copies(variables)
+    at = np.array([[axis.varValue for axis in position] for position in variables.position])
     relations = [
         (pair, number)
         for pair, directions in zip(data.pairs, variables.direction, strict=True)
         if _are_together(data, placed, pair)
-        for number, direction in enumerate(directions)
-        if direction is not None and direction.varValue < 0.5
+        for number in _widest(data, placed, at, pair, directions)
     ]
     for slack in (0.0, data.instance.space.slack):
         positions = _least_positions(data, placed, relations, slack)
@@ -94,6 +96,24 @@ def _least_positions(
     return None
 
 
+def _widest(
+    data: ModelData,
+    placed: dict[int, PlacedCopy],
+    position: Floats,
+    pair: Pair,
+    directions: list[Variable | None],
+) -> list[int]:
+    """Return the number of the direction in a solution along which two placed boxes are farthest apart, if any."""
+
+    def distance(number: int) -> float:
+        near, far = (pair.one, pair.other) if number % 2 == 0 else (pair.other, pair.one)
+        lower = _corner(data, placed, position, far, number // 2, upper=False)
+        return lower - _corner(data, placed, position, near, number // 2, upper=True)
+
+    held = [number for number, each in enumerate(directions) if each is not None and each.varValue < 0.5]
+    return sorted(held, key=distance)[-1:]
+
+
 def _corner(
     data: ModelData,
     placed: dict[int, PlacedCopy],
@@ -125,8 +145,8 @@ def _arrangement(data: ModelData, placed: dict[int, PlacedCopy], positions: Floa
     return found
 
 
-def start_values(data: ModelData, variables: Variables, known: Arrangement) -> dict[Any, float]:
-    """Return the values of the variables for a known arrangement in canonical form."""
+def start_values(data: ModelData, variables: Variables, known: Arrangement, stop: Stop) -> dict[Any, float]:
+    """Return the values of the variables for a known arrangement in canonical form, as far as `stop` allows."""
     known = canonical(data, known)
     values: dict[Any, float] = {}
     for number, copy in enumerate(data.copies):
@@ -140,7 +160,10 @@ def start_values(data: ModelData, variables: Variables, known: Arrangement) -> d
         values |= dict(zip(variables.position[number], corner.tolist(), strict=True))
     for b, opened in enumerate(variables.opened):
         values[opened] = float(b < known.builds)
-    for held, directions in zip(holding_directions(data, known), variables.direction, strict=True):
+    for pair, directions in zip(data.pairs, variables.direction, strict=False):
+        if stop():
+            break
+        held = holding(data, known, pair)
         values |= {v: 1.0 - h for v, h in zip(directions, held.tolist(), strict=True) if v is not None}
     return values
 
@@ -183,12 +206,8 @@ def _reflected(data: ModelData, known: Arrangement, axis: int) -> Arrangement:
     return found
 
 
-def holding_directions(data: ModelData, known: Arrangement) -> list[Bools]:
-    """Return for each pair ``(6,)`` the directions that hold; none when its boxes are not in one build."""
-    return [_holding(data, known, pair) for pair in data.pairs]
-
-
-def _holding(data: ModelData, known: Arrangement, pair: Pair) -> Bools:
+def holding(data: ModelData, known: Arrangement, pair: Pair) -> Bools:
+    """Return the directions ``(6,)`` of a pair that hold; none when its boxes are not in one build."""
     none = np.zeros(6, dtype=bool)
     corners, builds = [], []
     for box in (pair.one, pair.other):
@@ -207,5 +226,5 @@ def _holding(data: ModelData, known: Arrangement, pair: Pair) -> Bools:
     if len(builds) == 1 and builds[0] != 0 and not data.obstacles[pair.other.number].everywhere:
         return none
     (lo, hi), (other_lo, other_hi) = corners
-    gap = pair.gap - data.instance.space.slack
-    return np.stack((hi + gap <= other_lo, other_hi + gap <= lo), axis=1).ravel() & pair.possible
+    apart = np.stack((hi + pair.required <= other_lo, other_hi + pair.required <= lo), axis=1).ravel()
+    return np.asarray(apart & pair.possible)

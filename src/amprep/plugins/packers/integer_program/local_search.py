@@ -10,10 +10,12 @@ from amprep.arrays import Bools
 from amprep.kernels.boxes.records import Arrangement
 from amprep.model.control import Progress, Stop, silent
 from amprep.model.packing import Packing, PackingProblem
-from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing, value_of
 from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
 from amprep.plugins.packers.integer_program import (
+    NOT_RUN,
+    NOTHING_BETTER,
+    SOLVER,
     closed_bound,
     is_final,
     node_budget,
@@ -24,13 +26,14 @@ from amprep.plugins.packers.integer_program.constraints import make_program
 from amprep.plugins.packers.integer_program.data import ModelData, count_directions, prepare_model_data
 from amprep.plugins.packers.integer_program.decode import (
     canonical,
-    holding_directions,
+    holding,
     read_arrangement,
     start_values,
 )
 from amprep.plugins.packers.integer_program.solver import TOLERANCE, solve
 from amprep.plugins.packers.integer_program.variables import Constraint, Program
-from amprep.plugins.packers.params import ExtremePointsParams, IpLocalSearchParams
+from amprep.plugins.packers.integer_program.warm_start import heuristic_packing
+from amprep.plugins.packers.params import IpLocalSearchParams
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +99,9 @@ def neighbourhood(
         bool(old.build[copy.item] >= 0 and old.orientation[copy.item] in copy.orientations)
         for copy in data.copies
     )
-    return Neighbourhood(used, tuple(holding_directions(data, old)), used_distance, direction_distance)
+    return Neighbourhood(
+        used, tuple(holding(data, old, pair) for pair in data.pairs), used_distance, direction_distance
+    )
 
 
 def pack_ip_local_search(
@@ -120,33 +125,36 @@ def search_near(
     stop: Stop,
     progress: Progress,
 ) -> PackerResult:
-    """Return the last arrangement of the local search, which starts from that of extreme points.
+    """Return the last arrangement of the local search, which starts from that of a heuristic.
 
     Each step solves the program of `ip` restricted to the neighbourhood of the last arrangement; where that has
     nothing better, the neighbourhood grows. The steps share the `effort`. The bound of the program counts only if a
     neighbourhood has grown to hold every arrangement.
     """
-    known = construct(instance, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
+    known = heuristic_packing(instance, params, rng, stop, progress)
     if is_final(instance, known, stop):
-        return known
+        return known._replace(found_by=f"{known.found_by}; {NOT_RUN}")
     directions = count_directions(instance, params)
     if directions > params.directions:
-        return known._replace(stop_reason=too_many(directions, params))
-    data = prepare_model_data(instance, 1, params)
+        return known._replace(
+            stop_reason=too_many(directions, params), found_by=f"{known.found_by}; {NOT_RUN}"
+        )
+    data = prepare_model_data(instance, 1, params, stop)
     best, bound, reason = known.arrangement, known.bound, "finished"
+    found_by = f"{known.found_by}; {NOTHING_BETTER}"
     used_distance, direction_distance = params.used_distance, params.direction_distance
     budget = node_budget(directions, params)
     for step in range(params.steps):
         progress(step / params.steps, f"value {value_of(instance, best):g}")
         near = neighbourhood(data, best, used_distance, direction_distance)
-        program, variables = make_program(data, params, (near.used_near, near.directions_near))
-        start = start_values(data, variables, best)
+        program, variables = make_program(data, params, stop, (near.used_near, near.directions_near))
+        start = start_values(data, variables, best, stop)
         outcome = solve(program, params, nodes=budget, stop=stop, progress=silent, start=start)
         budget -= max(outcome.nodes, 1)
         found = read_arrangement(data, variables) if outcome.solved else None
         improved = found is not None and value_of(instance, found) > value_of(instance, best)
         if found is not None and improved:
-            best = found
+            best, found_by = found, f"{SOLVER} {params.solver}"
         if near.covers(data):
             bound = min(bound, proved_bound(data, outcome))
         if stop() or budget <= 0:
@@ -160,4 +168,4 @@ def search_near(
             direction_distance = max(direction_distance + 1, int(direction_distance * params.growth))
     else:
         reason = "work used up"
-    return PackerResult(best, closed_bound(instance, best, bound), reason)
+    return PackerResult(best, closed_bound(instance, best, bound), reason, found_by=found_by)

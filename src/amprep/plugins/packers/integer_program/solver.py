@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import highspy
+import numpy as np
 import pulp
 
+from amprep.arrays import Floats
 from amprep.errors import AmprepError, nearest_hint
 from amprep.model.control import Progress, Stop
 from amprep.plugins.packers.params import IpParams
@@ -93,7 +95,6 @@ def _solve_by_highs(
         threads=params.threads,
         gapRel=TOLERANCE,
         gapAbs=TOLERANCE,
-        timeLimit=None if stop.deadline is None else max(stop.remaining(), 0.0),
         random_seed=params.seed,
         mip_allow_restart=False,  # a restart may take longer than a small budget of nodes
         mip_max_nodes=nodes,
@@ -102,15 +103,63 @@ def _solve_by_highs(
         callbacksToActivate=[callbacks.kCallbackMipInterrupt],
     )
     solver.createAndConfigureSolver(program)
-    solver.buildSolverModel(program)
-    highs = program.solverModel
-    variables = program.variables()
+    highs, variables = program.solverModel, program.variables()
+    model = _model_of(program, variables, stop)
+    if model is None:
+        return Outcome("stopped", None, solved=False, stop_reason=stop.reason)
+    highs.passModel(model)
+    if stop.deadline is not None:
+        highs.setOptionValue("time_limit", max(stop.remaining(), 0.0))
     if start:
         known = highspy.HighsSolution()
         known.col_value = [float(start.get(variable, 0.0)) for variable in variables]
         highs.setSolution(known)
     highs.run()
     return _outcome_of_highs(program, variables, stop)
+
+
+def _model_of(program: pulp.LpProblem, variables: list[Any], stop: Stop) -> Any:
+    """Return the program as HiGHS reads it, a matrix by rows; None when told to stop.
+
+    A maximised objective is negated. Strategy: pulp hands over row by row and cannot be interrupted, which takes
+    seconds for large programs. Here the rows are collected in lists and passed on at once.
+    """
+    number = {variable: n for n, variable in enumerate(variables)}
+    sign = -1.0 if program.sense == pulp.LpMaximize else 1.0
+    start, index, value = [0], [], []
+    lower, upper = [], []
+    for row in program.constraints():
+        if stop():
+            return None
+        for variable, factor in row.items():
+            if factor:
+                index.append(number[variable])
+                value.append(float(factor))
+        start.append(len(index))
+        lower.append(row.getLb())
+        upper.append(row.getUb())
+    model = highspy.HighsLp()
+    model.num_col_, model.num_row_ = len(variables), len(lower)
+    model.col_cost_ = np.array([sign * program.objective.get(variable, 0.0) for variable in variables])
+    model.col_lower_ = _bounds([variable.lowBound for variable in variables], -highspy.kHighsInf)
+    model.col_upper_ = _bounds([variable.upBound for variable in variables], highspy.kHighsInf)
+    model.row_lower_, model.row_upper_ = (
+        _bounds(lower, -highspy.kHighsInf),
+        _bounds(upper, highspy.kHighsInf),
+    )
+    model.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
+    model.a_matrix_.start_, model.a_matrix_.index_ = np.array(start), np.array(index)
+    model.a_matrix_.value_ = np.array(value)
+    kinds = highspy.HighsVarType
+    model.integrality_ = [
+        kinds.kInteger if variable.cat == pulp.LpInteger else kinds.kContinuous for variable in variables
+    ]
+    return model
+
+
+def _bounds(values: list[float | None], missing: float) -> Floats:
+    """Return bounds as an array, with `missing` where there is none."""
+    return np.array([missing if value is None else value for value in values], np.float64)
 
 
 def _outcome_of_highs(program: pulp.LpProblem, variables: list[Any], stop: Stop) -> Outcome:

@@ -1,10 +1,12 @@
 """The variables of the packing program, and the expressions in them that the constraints use."""
 
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any
 
 import pulp
 
+from amprep.model.control import Stop
 from amprep.plugins.packers.integer_program.data import ModelBox, ModelData, Pair
 from amprep.plugins.packers.params import IpParams
 
@@ -57,9 +59,13 @@ class Program:
     params: IpParams
 
 
-def make_variables(problem: pulp.LpProblem, data: ModelData) -> Variables:
-    """Return new variables of `problem`."""
+def make_variables(problem: pulp.LpProblem, data: ModelData, stop: Stop) -> Variables:
+    """Return new variables of `problem`, as far as `stop` allows."""
     copies = range(len(data.copies))
+    pairs = enumerate(data.pairs)
+    directions = [
+        _directions(problem, number, pair) for number, pair in takewhile(lambda _: not stop(), pairs)
+    ]
     return Variables(
         inside=[[_binary(problem, f"inside_{a}_{b}") for b in range(data.builds)] for a in copies],
         turned=[
@@ -75,7 +81,7 @@ def make_variables(problem: pulp.LpProblem, data: ModelData) -> Variables:
             ]
             for a, copy in enumerate(data.copies)
         ],
-        direction=[_directions(problem, number, pair) for number, pair in enumerate(data.pairs)],
+        direction=directions,
         opened=[] if data.filling else [_binary(problem, f"opened_{b}") for b in range(data.builds)],
     )
 

@@ -53,10 +53,10 @@ some_sizes = st.lists(st.tuples(side, side, side), min_size=2, max_size=6)
 def test_one_step_changes_no_more_than_the_distances_allow(sizes, used_distance, direction_distance, tighten):
     given_problem = problem(sizes, 5)
     params, instance = IpLocalSearchParams(tighten=tighten), prepare(given_problem)
-    data, old = prepare_model_data(instance, 1, params), start(instance)
+    data, old = prepare_model_data(instance, 1, params, Stop()), start(instance)
     near = neighbourhood(data, old, used_distance, direction_distance)
-    program, variables = make_program(data, params, (near.used_near, near.directions_near))
-    values = start_values(data, variables, old)
+    program, variables = make_program(data, params, Stop(), (near.used_near, near.directions_near))
+    values = start_values(data, variables, old, Stop())
     outcome = solve(program, params, nodes=2000, stop=Stop(), progress=silent, start=values)
     assert outcome.solved
 

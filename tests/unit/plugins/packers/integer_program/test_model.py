@@ -8,11 +8,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.grids import Late
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import AmprepError
 from amprep.kernels.boxes.records import Arrangement
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model import (
+    Boxes,
+    BuildVolume,
+    Item,
+    Orientations,
+    Packing,
+    PackingProblem,
+    Placement,
+    Stop,
+    silent,
+)
+from amprep.plugins.packers.bounds.combinatorial import packing_bound
 from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import PackerResult
 from amprep.plugins.packers.instance.prepare import prepare
@@ -159,12 +171,72 @@ def test_without_stacking_all_stand_at_the_lift():
     assert (value(given_problem, packing), packing.status) == (7.0, "optimal")
 
 
-def test_clearance_is_kept_and_its_bound_is_not_the_programs():
+def test_clearance_is_kept():
     # 1.5 + 1 + 1.5 = 4, and 1 from both walls: a room of 6 just holds two in a row
     given_problem = problem([(1.5, 4, 4)] * 3, "builds", room=(6.0, 6, 6), clearance=1.0)
     packing = run(given_problem)
     assert len(packing.builds) == 2
     assert packing.bound <= 2
+
+
+@pytest.mark.parametrize(("objective", "seed"), [("fill", 4), ("fill", 13), ("builds", 41), ("builds", 124)])
+def test_with_clearance_the_program_proves_what_the_combinatorial_bounds_do_not(objective, seed):
+    sizes = np.random.default_rng(seed).integers(3, 7, (6, 3)).tolist()
+    given_problem = problem(sizes, objective, room=(13.0, 13, 13), clearance=1.0)
+    packing = run(given_problem)
+    assert packing.status == "optimal"
+    assert packing.bound != packing_bound(prepare(given_problem))
+
+
+@pytest.mark.parametrize("objective", ["fill", "builds"])
+@pytest.mark.parametrize(("apart", "axes"), [(0.75, 2), (0.6, 3)])
+def test_with_clearance_the_bound_admits_boxes_that_are_apart_at_their_corners(objective, apart, axes):
+    # two boxes of 4 in a room where they keep 1 mm only across: 0.75 * sqrt(2) and 0.6 * sqrt(3) are above 1
+    room = [8.0 + apart + 2.0] * axes + [6.0] * (3 - axes)
+    given_problem = problem([(4, 4, 4)] * 2, objective, room=tuple(room), clearance=1.0)
+    far = np.array([5.0 + apart] * axes + [1.0] * (3 - axes))
+    across = (Placement(0, np.eye(3), np.ones(3)), Placement(1, np.eye(3), far))
+    packing = run(given_problem)
+    claimed = Packing((across,), bound=packing.bound)
+    assert check_packing(given_problem, claimed) == []
+
+
+@examples(80)
+@given(st.lists(st.tuples(side, side, side), min_size=2, max_size=2), st.floats(0.0, 2.0), st.data())
+def test_boxes_that_the_judge_accepts_are_as_far_apart_as_the_relaxed_program_demands(sizes, gap, data):
+    given_problem = problem(sizes, room=(7.0, 7.5, 9.0), clearance=gap)
+    instance = prepare(given_problem)
+    ends = [(instance.space.lo, instance.space.hi - size) for size in np.array(sizes, float)]
+    if not instance.free.all():
+        return
+    at = [[data.draw(st.floats(a, max(a, b))) for a, b in zip(lo, hi, strict=True)] for lo, hi in ends]
+    placed = tuple(Placement(i, np.eye(3), np.array(position)) for i, position in enumerate(at))
+    if check_packing(given_problem, Packing((placed,))):
+        return
+    (pair,) = prepare_model_data(instance, 1, IpParams(symmetry=False), Stop(), relaxed=True).pairs
+    lo = np.array([at[pair.one.copy], at[pair.other.copy]])
+    hi = lo + np.array(sizes, float)[[pair.one.copy, pair.other.copy]]
+    apart = np.stack((lo[1] - hi[0], lo[0] - hi[1]), axis=1).ravel()
+    assert (pair.possible & (apart >= np.repeat(pair.required, 2) - 1e-9)).any()
+
+
+def test_a_stop_ends_the_building_of_the_model_and_the_handing_over_at_once():
+    given_problem = problem(np.random.default_rng(2).integers(1, 4, (30, 3)).tolist(), room=(6.0, 6, 6))
+    all_asked = Late(10**9)
+    run(given_problem, all_asked, effort=0.0)
+    for number in np.linspace(1, all_asked.asked - 1, 12).astype(int).tolist():
+        stop = Late(number)
+        packing = run(given_problem, stop, effort=0.0)
+        assert (packing.stop_reason, packing.status) == ("time limit", "feasible")
+        assert stop.asked <= number + 40
+
+
+def test_the_result_says_who_found_it_and_whether_the_solver_ran():
+    sizes = np.random.default_rng(4).integers(2, 6, (10, 3)).tolist()
+    given_problem = problem(sizes, room=(9.0, 9, 9))
+    assert run(given_problem, directions=0).found_by.endswith("; the solver did not run")
+    assert run(given_problem, start="none").found_by == "the solver HiGHS"
+    assert run(problem([(4, 4, 4)])).found_by == "extreme points; the solver did not run"
 
 
 def test_an_item_that_fits_no_build_is_named_and_the_rest_packed():
@@ -187,7 +259,7 @@ def test_the_plain_model_has_the_size_that_the_thesis_counts():
     # 4n + 6 C(n, 2) variables and 7 C(n, 2) constraints; once() adds one for each item
     instance, n = prepare(problem([(1, 2, 3), (2, 2, 3), (3, 2, 1), (1, 1, 4), (2, 3, 3)])), 5
     params = IpParams(sharing=False, symmetry=False, tighten=False)
-    program, _ = make_program(prepare_model_data(instance, 1, params), params)
+    program, _ = make_program(prepare_model_data(instance, 1, params, Stop()), params, Stop())
     assert program.numVariables() == 4 * n + 6 * 10
     assert program.numConstraints() == 7 * 10 + n
 
@@ -199,9 +271,9 @@ def test_a_heuristics_packing_satisfies_the_program_as_its_start(sizes, options,
     params, instance = IpParams(**options), prepare(given_problem)
     rng = np.random.default_rng(1)
     known = construct(instance, params=ExtremePointsParams(), rng=rng, stop=Stop(), progress=silent)
-    data = prepare_model_data(instance, 1, params)
-    program, variables = make_program(data, params)
-    for variable, number in start_values(data, variables, known.arrangement).items():
+    data = prepare_model_data(instance, 1, params, Stop())
+    program, variables = make_program(data, params, Stop())
+    for variable, number in start_values(data, variables, known.arrangement, Stop()).items():
         variable.varValue = number
     assert [c.name for c in program.constraints() if not c.valid(1e-6)] == []
 
