@@ -96,7 +96,7 @@ def solve_round(
     stop: Stop,
     progress: Progress,
 ) -> tuple[PackerResult, int]:
-    """Solve the relaxed program where a clearance is kept, and the exact one unless that is settled.
+    """Solve the relaxed program where a clearance is kept, and the exact one unless the gap is closed then.
 
     The result is the better one, with the better bound, and the number of nodes that are left.
     """
