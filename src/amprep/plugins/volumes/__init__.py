@@ -9,7 +9,7 @@ from amprep.hookspecs import VolumeMaker, hookimpl, later
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
-from amprep.plugins.volumes.params import TwoBoxesParams
+from amprep.plugins.volumes.params import BranchAndCutParams, KMeansParams, TwoBoxesParams
 
 amprep_api = 1
 
@@ -48,4 +48,18 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         run=later("amprep.plugins.volumes.two_boxes:cover_with_two"),
         makes="boxes",
         params=TwoBoxesParams,
+    )
+    yield VolumeMaker(
+        name="boxes-branch-and-cut",
+        summary="Two to four boxes of small union, by branch and cut on cells, with a bound (thesis 2.3).",
+        run=later("amprep.plugins.volumes.branch_and_cut:branch_and_cut_boxes"),
+        makes="boxes",
+        params=BranchAndCutParams,
+    )
+    yield VolumeMaker(
+        name="boxes-kmeans",
+        summary="Two to five boxes, by k-means over centres and diagonal directions (thesis 2.3).",
+        run=later("amprep.plugins.volumes.k_means:k_means_boxes"),
+        makes="boxes",
+        params=KMeansParams,
     )

@@ -25,3 +25,52 @@ class TwoBoxesParams:
         known = self.objective in {"union", "larger"}
         require(known, "objective must be union or larger", repr(self.objective))
         require_bounds(self, "planes", at_least=2, at_most=256)
+
+
+@dataclass(frozen=True)
+class BranchAndCutParams:
+    """Parameters of `boxes-branch-and-cut`; the budget counts work, so that the same part gives the same boxes.
+
+    Attributes
+    ----------
+    boxes
+        Greatest number of boxes.
+    cells
+        Cells along the longest side of the part; with more of them the search is finer, and slower.
+    work
+        Millions of steps after which the search ends; some 15 per second. Finding boxes that fit the part exactly takes
+        about a tenth of a second more.
+    """
+
+    boxes: int = 3
+    cells: int = 16
+    work: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "boxes", at_least=2, at_most=4)
+        require_bounds(self, "cells", at_least=2, at_most=64)
+        require_bounds(self, "work", at_least=0)
+
+
+@dataclass(frozen=True)
+class KMeansParams:
+    """Parameters of `boxes-kmeans`.
+
+    Attributes
+    ----------
+    boxes
+        Number of clusters, and greatest number of boxes.
+    restarts
+        Number of random starts; the boxes of least union count.
+    cells
+        The surface is clustered by cells, as many as this along the longest side of the part.
+    """
+
+    boxes: int = 3
+    restarts: int = 20
+    cells: int = 40
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "boxes", at_least=2, at_most=5)
+        require_bounds(self, "restarts", at_least=1)
+        require_bounds(self, "cells", at_least=2, at_most=256)

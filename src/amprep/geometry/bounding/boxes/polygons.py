@@ -1,4 +1,4 @@
-"""Convex polygons: the triangles of a mesh, and what of them boxes leave uncovered."""
+"""Convex polygons, or small boxes: what is to be covered, and what of it boxes leave uncovered."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from amprep.arrays import Floats, Int64s, Ints
 
 
 class ConvexPolygons(NamedTuple):
-    """Convex polygons in space.
+    """Convex polygons in space, or boxes that contain them.
 
     Attributes
     ----------
@@ -18,11 +18,14 @@ class ConvexPolygons(NamedTuple):
         ``(m,)`` index of each corner in `points`, one polygon after another, in order around each.
     first
         ``(p + 1,)`` index in `corners` of the first corner of each polygon, and m.
+    solid
+        Whether each polygon stands for a box, and has its least and its greatest corner instead.
     """
 
     points: Floats
     corners: Int64s
     first: Int64s
+    solid: bool = False
 
     @property
     def bounds(self) -> Floats:
@@ -49,6 +52,13 @@ def polygons_of(vertices: Floats, triangles: Ints) -> ConvexPolygons:
     )
 
 
+def boxes_as_polygons(boxes: Floats) -> ConvexPolygons:
+    """Return boxes ``(k, 6)``, to be covered themselves."""
+    count = 2 * len(boxes)
+    points = np.ascontiguousarray(boxes, np.float64).reshape(count, 3)
+    return ConvexPolygons(points, np.arange(count), np.arange(0, count + 1, 2), solid=True)
+
+
 def outside(polygons: ConvexPolygons, boxes: Floats) -> ConvexPolygons:
     """Return what is left of polygons outside the union of closed boxes ``(k, 6)``.
 
@@ -66,4 +76,4 @@ def outside(polygons: ConvexPolygons, boxes: Floats) -> ConvexPolygons:
         pieces = clip_outside(*polygons, boxes, points, ends)
         room *= 2
     count = ends[pieces]
-    return ConvexPolygons(points[:count].copy(), np.arange(count), ends[: pieces + 1].copy())
+    return ConvexPolygons(points[:count].copy(), np.arange(count), ends[: pieces + 1].copy(), polygons.solid)

@@ -47,8 +47,9 @@ def two_boxes(
     *,
     preferred: Sequence[Floats] = ((), (), ()),  # type: ignore[assignment]
     covered: Floats | None = None,
+    limit: float = np.inf,
 ) -> tuple[Floats, float]:
-    """Return two boxes that cover the polygons, ``(2, 6)``, and the objective.
+    """Return boxes that cover the polygons, ``(2, 6)``, and the objective; no boxes if none are below the limit.
 
     Strategy: one of the boxes touches three faces of the enclosing box; its three free faces are tried on
     planes. What is beyond a plane is enclosed exactly, triangles clipped, so every pair that is tried covers the
@@ -70,19 +71,25 @@ def two_boxes(
         For each axis, coordinates that are tried first, best first; for example those of flat faces.
     covered
         ``(k, 6)``, at most two boxes whose volume does not count; only for the objective ``union``.
+    limit
+        Only a smaller union is of use; the search is faster with it.
     """
     known = np.empty((0, 6)) if covered is None else np.ascontiguousarray(covered)
     bounds = polygons.bounds
     most = search.planes if search.objective == "union" else max(search.planes, _SWEPT)
     planes = [_planes(polygons.points[:, axis], bounds[axis::3], most, preferred[axis]) for axis in range(3)]
-    found = _search(polygons, planes, search.objective, known)
-    best = found[0]
-    for start in _different(found, search.starts):
-        row, around = start, planes
+    slack = 1.0 if search.starts == 1 else 1.02
+    found = _search(polygons, planes, search.objective, known, limit, slack=slack)
+    best = found[np.argmin(found[:, 0])]
+    for choice in _different(found, search.starts):
+        row, around = found[choice], planes
         for _ in range(search.rounds):
             around = _finer(around, row[1:7], bounds, preferred)
-            row = min(row, _search(polygons, around, search.objective, known, row[0])[0], key=lambda r: r[0])
-        best = min(best, row, key=lambda r: r[0])
+            finer = _search(polygons, around, search.objective, known, row[0], choice)[choice]
+            row = finer if finer[0] < row[0] else row
+        best = row if row[0] < best[0] else best
+    if not np.isfinite(best[0]):
+        return np.empty((0, 6)), np.inf
     return best[1:].reshape(2, 6), float(best[0])
 
 
@@ -92,8 +99,10 @@ def _search(
     objective: Objective,
     covered: Floats,
     limit: float = np.inf,
+    only: int = -1,
+    slack: float = 1.0,
 ) -> Floats:
-    """Return rows of the objective and both boxes, best first, ``(n, 13)``; a row of inf if there is nothing."""
+    """Return the objective and both boxes for each choice of free faces, ``(20, 13)``; inf where there is nothing."""
     from amprep.kernels.bounding.boxes.half_spaces import boxes_beyond
     from amprep.kernels.bounding.boxes.two_boxes import search_larger, search_union
 
@@ -104,8 +113,8 @@ def _search(
     if objective == "larger":
         search_larger(rows, counts, beyond, found)
     else:
-        search_union(rows, counts, beyond, covered, limit, 1.02, found)
-    return found[np.argsort(found[:, 0], kind="stable")]
+        search_union(rows, counts, beyond, covered, limit, slack, only, found)
+    return found
 
 
 def _padded(planes: Sequence[Floats]) -> tuple[Floats, Int64s]:
@@ -132,13 +141,15 @@ def _at_least_two(planes: Floats) -> Floats:
     return planes if len(planes) > 1 else np.array([planes[0], np.nextafter(planes[0], np.inf) + 1e-9])
 
 
-def _different(found: Floats, count: int) -> list[Floats]:
-    """Return the first rows whose pairs of boxes differ."""
-    chosen: list[Floats] = []
-    for row in found[np.isfinite(found[:, 0])]:
+def _different(found: Floats, count: int) -> list[int]:
+    """Return the best choices of faces, of those with the same two boxes one."""
+    chosen: list[int] = []
+    for number in np.argsort(found[:, 0], kind="stable").tolist():
+        row = found[number]
         pairs = (row[1:], np.roll(row[1:], 6))
-        if len(chosen) < count and not any(np.allclose(old[1:], pair) for old in chosen for pair in pairs):
-            chosen.append(row)
+        new = not any(np.allclose(found[old, 1:], pair) for old in chosen for pair in pairs)
+        if len(chosen) < count and np.isfinite(row[0]) and new:
+            chosen.append(number)
     return chosen
 
 

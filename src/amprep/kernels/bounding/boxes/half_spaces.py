@@ -21,7 +21,13 @@ def _join(box: Floats, x: float, y: float, z: float) -> None:
 
 @njit(cache=True)
 def boxes_beyond(
-    points: Floats, corners: Int64s, first: Int64s, planes: Floats, counts: Int64s, beyond: Floats
+    points: Floats,
+    corners: Int64s,
+    first: Int64s,
+    solid: bool,
+    planes: Floats,
+    counts: Int64s,
+    beyond: Floats,
 ) -> None:
     """Enclose what the polygons have below and above each plane.
 
@@ -36,6 +42,8 @@ def boxes_beyond(
     points, corners, first
         Convex polygons: polygon p has the corners ``points[corners[first[p]:first[p + 1]]]``; every point is a
         corner.
+    solid
+        Whether each polygon stands for a box, of which its two corners are the least and the greatest.
     planes
         ``(3, k)`` mm, strictly increasing along each axis up to the count.
     counts
@@ -82,7 +90,7 @@ def boxes_beyond(
                 if k >= count or row[k] > points[v, axis]:
                     continue
                 length = points[v, axis] - points[u, axis]
-                if length <= 0.0:
+                if length <= 0.0 or (solid and at > first[p]):
                     continue
                 while k < count and row[k] <= points[v, axis]:
                     t = (row[k] - points[u, axis]) / length
@@ -97,8 +105,12 @@ def boxes_beyond(
                         z = row[k]
                     if row[k] < points[v, axis]:
                         _join(crossing[axis + 3, k], x, y, z)
+                        if solid:
+                            _join_section(crossing[axis + 3, k], points[u], points[v], axis)
                     if row[k] > points[u, axis]:
                         _join(crossing[axis, k], x, y, z)
+                        if solid:
+                            _join_section(crossing[axis, k], points[u], points[v], axis)
                     k += 1
         for k in range(1, count):
             _join_box(beyond[axis, k], beyond[axis, k - 1])
@@ -114,3 +126,12 @@ def _join_box(box: Floats, other: Floats) -> None:
     for c in range(3):
         box[c] = min(box[c], other[c])
         box[c + 3] = max(box[c + 3], other[c + 3])
+
+
+@helper
+def _join_section(box: Floats, low: Floats, high: Floats, axis: int) -> None:
+    """Join the section of the box from `low` to `high` with a plane, without the coordinate along the axis."""
+    for c in range(3):
+        if c != axis:
+            box[c] = min(box[c], low[c])
+            box[c + 3] = max(box[c + 3], high[c])

@@ -13,6 +13,9 @@ from amprep.kernels.helper import helper
 MOST_CORNERS = 64
 """Greatest number of corners of a polygon that is clipped; each half-space adds one."""
 
+ROUNDING = 1e-9
+"""Length (mm) beyond a box that is rounding: what reaches no further out is inside."""
+
 _STACK = 64
 """Pieces of one polygon that wait to be clipped: at most six for each box."""
 
@@ -56,18 +59,35 @@ def _relation(bounds: Floats, box: Floats) -> int:
     """Return 1 if the box contains the bounds, -1 if their interiors are apart, else 0."""
     inside = True
     for c in range(3):
-        if bounds[c + 3] <= box[c] and bounds[c] < box[c]:
+        if bounds[c + 3] <= box[c] and bounds[c] < box[c] - ROUNDING:
             return -1
-        if bounds[c] >= box[c + 3] and bounds[c + 3] > box[c + 3]:
+        if bounds[c] >= box[c + 3] and bounds[c + 3] > box[c + 3] + ROUNDING:
             return -1
-        if bounds[c] < box[c] or bounds[c + 3] > box[c + 3]:
+        if bounds[c] < box[c] - ROUNDING or bounds[c + 3] > box[c + 3] + ROUNDING:
             inside = False
     return 1 if inside else 0
 
 
+@helper
+def _cut(
+    source: Floats, count: int, axis: int, bound: float, sign: float, solid: bool, target: Floats
+) -> int:
+    """Clip a polygon, or a box given by its least and its greatest corner; return the number of corners."""
+    if not solid:
+        return int(clip(source, count, axis, bound, sign, target))
+    for c in range(3):
+        target[0, c] = source[0, c]
+        target[1, c] = source[1, c]
+    if sign > 0.0:
+        target[0, axis] = max(source[0, axis], bound)
+    else:
+        target[1, axis] = min(source[1, axis], bound)
+    return 2 if target[0, axis] <= target[1, axis] else 0
+
+
 @njit(cache=True)
 def clip_outside(
-    points: Floats, corners: Int64s, first: Int64s, boxes: Floats, out: Floats, ends: Int64s
+    points: Floats, corners: Int64s, first: Int64s, solid: bool, boxes: Floats, out: Floats, ends: Int64s
 ) -> int:
     """Write what is left of the polygons outside the union of closed boxes; return the number of pieces.
 
@@ -79,6 +99,8 @@ def clip_outside(
     ----------
     points, corners, first
         The polygons, each of at most `MOST_CORNERS` corners.
+    solid
+        Whether the corners are least and greatest corners of boxes, which are clipped instead.
     boxes
         ``(k, 6)``.
     out, ends
@@ -145,14 +167,13 @@ def clip_outside(
                         axis, sign = face % 3, -1.0 if face < 3 else 1.0
                         crossed = False
                         for i in range(count):
-                            crossed |= sign * (inside[i, axis] - box[face]) > 0.0
+                            crossed |= sign * (inside[i, axis] - box[face]) > ROUNDING
                         if not crossed:
                             continue
-                        counts[top] = clip(inside, count, axis, box[face], sign, stack[top])
+                        counts[top] = _cut(inside, count, axis, box[face], sign, solid, stack[top])
                         levels[top] = level + 1
                         top += 1
-                        kept_count = clip(inside, count, axis, box[face], -sign, beyond)
-                        count = kept_count
+                        count = _cut(inside, count, axis, box[face], -sign, solid, beyond)
                         for i in range(count):
                             for c in range(3):
                                 inside[i, c] = beyond[i, c]

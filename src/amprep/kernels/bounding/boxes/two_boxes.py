@@ -57,7 +57,14 @@ def _place(box: Floats, planes: Floats, counts: Int64s, face: int, k: int) -> in
 
 @njit(cache=True)
 def search_union(
-    planes: Floats, counts: Int64s, beyond: Floats, covered: Floats, limit: float, slack: float, found: Floats
+    planes: Floats,
+    counts: Int64s,
+    beyond: Floats,
+    covered: Floats,
+    limit: float,
+    slack: float,
+    only: int,
+    found: Floats,
 ) -> int:
     """Find the two boxes of least union, for each choice of three faces that the first box leaves free.
 
@@ -77,6 +84,8 @@ def search_union(
         Results of at least this volume are not wanted.
     slack
         For each choice of faces, results are kept up to this ratio to the best of all; at least 1.
+    only
+        Number of the only choice of faces that is tried; -1 for all.
     found
         ``(20, 13)``, receives for each choice of faces: the volume (inf: nothing below the limit), both boxes.
 
@@ -89,10 +98,13 @@ def search_union(
     work = np.empty((2, 6))
     found[:, :] = np.inf
     best = limit
-    tried, choice = 0, 0
+    tried, choice = 0, -1
     for f in range(6):
         for g in range(f + 1, 6):
             for h in range(g + 1, 6):
+                choice += 1
+                if only >= 0 and choice != only:
+                    continue
                 own = np.inf
                 for c in range(3):
                     one[c] = planes[c, 0]
@@ -128,7 +140,6 @@ def search_union(
                                 for c in range(6):
                                     found[choice, 1 + c] = one[c]
                                     found[choice, 7 + c] = two[c]
-                choice += 1
     return tried
 
 
