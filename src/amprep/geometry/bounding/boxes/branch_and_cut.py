@@ -33,7 +33,7 @@ class CellCover(NamedTuple):
 
 
 class _Budget:
-    """Steps of work that are left, and the user's wish to stop."""
+    """Steps of work that are left, and the caller's request to stop."""
 
     def __init__(self, work: float, stop: Callable[[], bool]) -> None:
         self.left = np.array([int(work * 1e6), 0], np.int64)
@@ -48,12 +48,12 @@ def cover_cells(
 ) -> CellCover:
     """Cover cells with `count` blocks of least union.
 
-    Strategy: as in the thesis, the first block is chosen among those that are worth trying, then a covering of the
-    rest with one block less; a covering counts only when no cell is left. The volume of a covering is that
-    of the cells plus its waste, the other cells it contains. Waste only grows from block to block, so a block whose
-    waste reaches the incumbent's is cut with all that follow it in the order by waste. Of n blocks that cover
-    m cells one covers m / n; it is the first. Of the blocks for the last two, the best pair is found
-    directly (Bespamyatnikh and Segal).
+    Strategy: as in the thesis, the first block is chosen among those that can be part of a least covering, then a
+    covering of the rest with one block less; a covering counts only when no cell is left. The volume of a covering
+    is that of the cells plus its waste, the other cells it contains. Waste only grows from block to block, so a
+    block whose waste reaches the incumbent's is cut with all that follow it in the order by waste. Of n blocks that
+    cover m cells one covers m / n; it is the first. For the last two blocks the best pair is found directly
+    (Bespamyatnikh and Segal).
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def _count_block(sums: Int64s, b: Int64s) -> int:
 
 
 @helper
-def _worth_trying(required: Int64s, waste: Int64s, b: Int64s, inside: int, wasted: int) -> bool:
+def _undominated(required: Int64s, waste: Int64s, b: Int64s, inside: int, wasted: int) -> bool:
     """Tell whether a block is the smallest around what it covers, and cannot be enlarged for nothing."""
     for axis in range(3):
         low, high = b[axis], b[axis + 3]
@@ -101,7 +101,7 @@ def blocks_to_try(required: Int64s, waste: Int64s, least: int, limit: int, block
                             if inside < least:
                                 continue
                             b[0], b[1], b[2], b[3], b[4], b[5] = x0, y0, z0, x1, y1, z1
-                            if not _worth_trying(required, waste, b, inside, wasted):
+                            if not _undominated(required, waste, b, inside, wasted):
                                 continue
                             if found == len(blocks):
                                 return -1

@@ -44,18 +44,20 @@ def test_a_solid_of_few_boxes_is_covered_without_any_waste(name):
 
 
 SOLIDS = {
-    "ring": Manifold.cylinder(5, 20, 20, 64) - Manifold.cylinder(5, 15, 15, 64),
-    "turned bracket": (Manifold.cube([40, 10, 5]) + Manifold.cube([5, 10, 30])).rotate([0, 25, 10]),
-    "fan": Manifold.batch_hull([Manifold.sphere(3, 12), Manifold.sphere(6, 12).translate([30, 8, 3])])
-    + Manifold.cylinder(12, 5, 9, 32).translate([0, 20, 0])
-    + Manifold.cube([4, 30, 4]),
+    "ring": lambda: Manifold.cylinder(5, 20, 20, 64) - Manifold.cylinder(5, 15, 15, 64),
+    "turned bracket": lambda: (Manifold.cube([40, 10, 5]) + Manifold.cube([5, 10, 30])).rotate([0, 25, 10]),
+    "fan": lambda: (
+        Manifold.batch_hull([Manifold.sphere(3, 12), Manifold.sphere(6, 12).translate([30, 8, 3])])
+        + Manifold.cylinder(12, 5, 9, 32).translate([0, 20, 0])
+        + Manifold.cube([4, 30, 4])
+    ),
 }
 
 
 @pytest.mark.parametrize("name", SOLIDS)
 @pytest.mark.parametrize("boxes", [2, 3, 4])
 def test_the_boxes_contain_the_solid_and_no_search_worsens_them(name, boxes):
-    part = part_of(SOLIDS[name])
+    part = part_of(SOLIDS[name]())
     found = cover(part, boxes)
     assert len(found.boxes) <= boxes
     assert check_volume(part, Boxes(found.boxes[:, :3], found.boxes[:, 3:])) == []
@@ -81,13 +83,13 @@ def plain_k_means(points, triangles_of, count, restarts):
 
 @pytest.mark.parametrize("name", SOLIDS)
 def test_three_boxes_are_no_larger_than_the_best_of_plain_k_means(name):
-    part = part_of(SOLIDS[name])
+    part = part_of(SOLIDS[name]())
     corners = part.mesh.vertices[part.mesh.triangles]
     assert cover(part).volume <= plain_k_means(corners.mean(axis=1), corners, 3, 50)
 
 
 def test_a_search_that_is_stopped_at_once_still_covers():
-    part = part_of(SOLIDS["fan"])
+    part = part_of(SOLIDS["fan"]())
     mesh = part.mesh
     search = CoverSearch(boxes=3, work=0.0)
     found = cover_mesh(mesh.vertices, mesh.triangles, search, rng=np.random.default_rng(1), stop=lambda: True)
