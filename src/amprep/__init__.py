@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from amprep.api import (
         InfillRecord,
+        InspectionRecord,
         Job,
         LoadedParts,
         PackedBuild,
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
         Violation,
         emit_cells,
         fill_parts,
+        inspect,
         load,
         pack,
         plan_supports,
@@ -35,6 +37,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "InfillRecord",
+    "InspectionRecord",
     "Job",
     "LoadedParts",
     "PackedBuild",
@@ -47,6 +50,7 @@ __all__ = [
     "__version__",
     "emit_cells",
     "fill_parts",
+    "inspect",
     "load",
     "pack",
     "plan_supports",

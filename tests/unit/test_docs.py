@@ -272,3 +272,9 @@ def test_the_page_about_supports_explains_every_reason_in_the_words_of_the_code(
         r"^\| `([^`]+)` \| (.+) \|$", page.partition("| reason |")[2].partition("\n\n")[0], re.M
     )
     assert dict(rows) == REASONS
+
+
+def test_the_example_of_the_page_about_inspection_runs(monkeypatch):
+    monkeypatch.chdir(ROOT / "fixtures")
+    for block in python_blocks("inspect.md"):
+        exec(compile(block, "docs/inspect.md", "exec"), {})

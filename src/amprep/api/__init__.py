@@ -6,6 +6,7 @@ new ones.
 """
 
 from amprep.api.build_file import Verification, verify, write
+from amprep.api.inspection import inspect
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
@@ -14,10 +15,12 @@ from amprep.pipeline.packing import PackedBuild, PackedParts
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
 from amprep.report.infill import InfillRecord
+from amprep.report.inspection.record import InspectionRecord
 from amprep.report.record import RunRecord
 
 __all__ = [
     "InfillRecord",
+    "InspectionRecord",
     "Job",
     "LoadedParts",
     "PackedBuild",
@@ -29,6 +32,7 @@ __all__ = [
     "Violation",
     "emit_cells",
     "fill_parts",
+    "inspect",
     "load",
     "pack",
     "plan_supports",

@@ -7,6 +7,7 @@ import typer
 from amprep import __version__
 from amprep.cli import bench, cells, plugins, printers, run, support, verify
 from amprep.cli import infill as lattice
+from amprep.cli import inspect as inspection
 
 app = typer.Typer(
     name="amprep",
@@ -20,6 +21,7 @@ app.command("run")(run.run)
 app.command("support")(support.support)
 app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
+app.command("inspect")(inspection.inspect)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")

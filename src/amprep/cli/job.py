@@ -13,7 +13,9 @@ from amprep.cli.options import BuildOptions, JobOptions
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from amprep.cli.inspect import InspectionOptions
     from amprep.report.infill import InfillRecord
+    from amprep.report.inspection.record import InspectionRecord
     from amprep.report.record import RunRecord
 
 
@@ -86,10 +88,10 @@ def _shown(folder: Path) -> Path:
 
 
 def finish(
-    record: "RunRecord | InfillRecord",
+    record: "RunRecord | InfillRecord | InspectionRecord",
     to_json: Callable[[Any], Any],
     summary: "Callable[[Any], RenderableType]",
-    options: JobOptions,
+    options: "JobOptions | InspectionOptions",
 ) -> NoReturn:
     """Print a record as JSON, or as a table unless the user asked for quiet, and exit."""
     from rich.console import Console

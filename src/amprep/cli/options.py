@@ -28,8 +28,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON."
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 
 
-_job_option = partial(typer.Option, rich_help_panel=_JOB)
-_output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
+job_option = partial(typer.Option, rich_help_panel=_JOB)
+output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,11 +37,11 @@ class JobOptions:
     """Options of every command that takes a job: `run`, `support` and `lattice`."""
 
     cell: Annotated[
-        str | None, _job_option("--cell", help="Lattice cell by name, or a file that declares one.")
+        str | None, job_option("--cell", help="Lattice cell by name, or a file that declares one.")
     ] = None
     lattice: Annotated[
         str | None,
-        _job_option(
+        job_option(
             "--lattice",
             metavar="FORM",
             help="Write struts of cells as beams (generic files only) or as mesh; default: as the cell says.",
@@ -49,7 +49,7 @@ class JobOptions:
     ] = None
     target: Annotated[
         str | None,
-        _job_option(
+        job_option(
             "--for",
             metavar="TARGET",
             help="Program that will open the build jobs: generic, prusaslicer or cura.",
@@ -57,7 +57,7 @@ class JobOptions:
     ] = None
     sets: Annotated[
         list[str] | None,
-        _job_option(
+        job_option(
             "--set",
             metavar="KEY=VALUE",
             help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
@@ -65,21 +65,21 @@ class JobOptions:
     ] = None
     output: Annotated[
         Path | None,
-        _output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
+        output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
     ] = None
-    stl: Annotated[bool, _output_option("--stl", help="Write STL files as well.")] = False
+    stl: Annotated[bool, output_option("--stl", help="Write STL files as well.")] = False
     dry_run: Annotated[
-        bool, _output_option("--dry-run", help="Plan and verify everything, but write nothing.")
+        bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")
     ] = False
-    as_json: Annotated[
-        bool, _output_option("--json", help="Print the report as JSON on standard output.")
-    ] = False
+    as_json: Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")] = (
+        False
+    )
     quiet: Annotated[
-        bool, _output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
+        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
     ] = False
     plugins: Plugins = None
     no_plugins: NoPlugins = False
-    debug: Annotated[bool, _output_option("--debug", help="Show the traceback of an error.")] = False
+    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
 
     @property
     def changes(self) -> dict[str, Any]:
@@ -93,31 +93,31 @@ class BuildOptions(JobOptions):
 
     printer: Annotated[
         str | None,
-        _job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
+        job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
     ] = None
-    router: Annotated[str | None, _job_option("--router", help="Support router by name.")] = None
+    router: Annotated[str | None, job_option("--router", help="Support router by name.")] = None
     connector: Annotated[
         str | None,
-        _job_option(
+        job_option(
             "--connector", metavar="KIND", help="End of supports at the part: full, teeth, point or extend."
         ),
     ] = None
     base: Annotated[
         str | None,
-        _job_option("--base", metavar="KIND", help="Base of supports on the plate: direct, flange or raft."),
+        job_option("--base", metavar="KIND", help="Base of supports on the plate: direct, flange or raft."),
     ] = None
     supports_as: Annotated[
         str | None,
-        _job_option(
+        job_option(
             "--supports-as",
             metavar="TYPE",
             help="Type of supports in a generic file: support (default) or model.",
         ),
     ] = None
-    seed: Annotated[int | None, _job_option("--seed", help="Seed of the random numbers; default 0.")] = None
+    seed: Annotated[int | None, job_option("--seed", help="Seed of the random numbers; default 0.")] = None
     time_limit: Annotated[
         float | None,
-        _job_option(
+        job_option(
             "--time-limit",
             min=0.0,
             metavar="SECONDS",
@@ -125,7 +125,7 @@ class BuildOptions(JobOptions):
         ),
     ] = None
     allow_surface: Annotated[
-        bool, _job_option("--allow-surface", help="Accept meshes that are not solids as surfaces.")
+        bool, job_option("--allow-surface", help="Accept meshes that are not solids as surfaces.")
     ] = False
 
     @property

@@ -1,7 +1,7 @@
 """Collect the results of the stages in the records from which reports are made."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from amprep.report.record import (
     BuildRecord,
     OverhangRecord,
     RunRecord,
+    ShownVolume,
     Supported,
     UnconnectedSquare,
     UnplacedRecord,
@@ -74,7 +75,7 @@ def run_record(
         printer=job.printer.name,
         target=job.target,
         objective=job.packing.objective,
-        builds=tuple(builds),
+        builds=tuple(replace(entry, volumes=_volumes(packed, number)) for number, entry in enumerate(builds)),
         unplaced=tuple(
             UnplacedRecord(loaded.parts[item.part].name, item.copy + 1, why, item.value)
             for item, why in unplaced
@@ -86,6 +87,17 @@ def run_record(
         warnings=(*loaded.resolved.host.warnings, *left, *advice),
         notes=(*(f"{part.name}: {note}" for part in loaded.parts for note in part.notes), *loaded.notes),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
+    )
+
+
+def _volumes(packed: PackedParts, number: int) -> tuple[ShownVolume, ...]:
+    """Return the bounding volumes of a build, in the order of its parts; empty if nothing was packed."""
+    if number >= len(packed.packing.builds):
+        return ()
+    placed = sorted(packed.packing.builds[number], key=lambda each: each.item)
+    return tuple(
+        ShownVolume(index, packed.problem.items[each.item].volume, each.matrix)
+        for index, each in enumerate(placed)
     )
 
 

@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from amprep.arrays import Floats
 from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
-from amprep.model import Build, Unsupported
+from amprep.model import BoundingVolume, Build, Unsupported
 from amprep.model.packing import Objective
 from amprep.model.summary import Summarised
 from amprep.report.counting import counted
@@ -94,6 +95,25 @@ class UnplacedRecord:
 
 
 @dataclass(frozen=True, eq=False)
+class ShownVolume:
+    """The bounding volume of a placed part.
+
+    Attributes
+    ----------
+    part
+        Index of the part in its build.
+    volume
+        The bounding volume, which copies share.
+    matrix
+        ``(4, 4)``, coordinates of the volume to build coordinates.
+    """
+
+    part: int
+    volume: BoundingVolume
+    matrix: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class BuildRecord:
     """A build and its figures.
 
@@ -119,6 +139,8 @@ class BuildRecord:
         Figures of each support body; empty if not measured.
     advice
         Suggestions for a better build, one sentence each.
+    volumes
+        Bounding volumes that were packed; empty if nothing was packed.
     """
 
     build: Build
@@ -137,6 +159,7 @@ class BuildRecord:
     slenderness: tuple[Slenderness, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
+    volumes: tuple[ShownVolume, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

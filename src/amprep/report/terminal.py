@@ -22,12 +22,12 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     from rich.text import Text
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
-    blocks += [Text(_printable(line), style="dim") for line in _listed(_values(record), "in the report")]
+    blocks += [Text(printable(line), style="dim") for line in _listed(_values(record), "in the report")]
     issues = _listed(_issues(record), "in the report")
-    blocks += [Text(f"! {_printable(line)}", style="yellow") for line in issues]
+    blocks += [Text(f"! {printable(line)}", style="yellow") for line in issues]
     blocks += [Text(_stages(record.stages), style="dim")]
     written = [f"wrote {folder / name}" for name in _files(record)]
-    blocks += [Text(_printable(line), style="dim") for line in _listed(written, f"in {folder}")]
+    blocks += [Text(printable(line), style="dim") for line in _listed(written, f"in {folder}")]
     return Group(*blocks)
 
 
@@ -37,7 +37,7 @@ def _builds(record: RunRecord) -> "Table":
     from rich.text import Text
 
     table = Table(
-        box=box.SIMPLE_HEAD, title=Text(_printable(f"{record.job} on {record.printer}")), title_justify="left"
+        box=box.SIMPLE_HEAD, title=Text(printable(f"{record.job} on {record.printer}")), title_justify="left"
     )
     table.add_column("build")
     for heading in ("parts", "density", "height", "supports", "unsupported", "verified"):
@@ -135,7 +135,7 @@ def _listed(lines: list[str], rest: str) -> list[str]:
     return [*lines[: MOST_LINES - 1], f"... and {len(lines) - MOST_LINES + 1} more {rest}"]
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Return the text without control characters, which names from files may contain."""
     return "".join(
         character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text

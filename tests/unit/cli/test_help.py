@@ -55,5 +55,7 @@ DIFFERENT = {
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",
     "--set": "a key of the job, or a parameter of a cell",
+    "--time-limit": "of packing and routing, or of volume makers",
+    "--volumes": "the volume maker of a run, or the makers to compare",
 }
 """Option -> why its help differs."""

@@ -20,7 +20,8 @@ VIEWER = """\
 <canvas id="canvas" tabindex="0" title="Drag to rotate, scroll to zoom, right-drag to pan, click to identify"></canvas>
 <div id="wait">Loading the geometry ...</div>
 <div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
-<div class="group" id="layers"></div></div>
+<div class="group" id="layers"></div>
+<div class="group" id="volumes" role="radiogroup" aria-label="Bounding volume"></div></div>
 <div id="card" hidden></div>
 <div class="bar" id="bottom"><div class="group" id="views"></div>
 <div class="group">
@@ -44,8 +45,23 @@ def write_html(record: RunRecord, path: Path) -> None:
 
 def html_text(record: RunRecord) -> str:
     """Return the whole page."""
+    body = f"{header(record)}{VIEWER}{body_sections(record)}"
+    return page_text(f"{record.job} - amprep report", body, *view_model(record))
+
+
+def page_text(title: str, body: str, model: dict[str, Any], geometry: str) -> str:
+    """Return a page with the script and the style of the 3D view.
+
+    Parameters
+    ----------
+    title
+        Title of the window; it is escaped.
+    body
+        HTML of the page, with `VIEWER` in it.
+    model, geometry
+        Data of the 3D view.
+    """
     script, style = _resource("viewer.bundle.js"), _resource("page.css")
-    model, geometry = view_model(record)
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
         "img-src data:; base-uri 'none'; form-action 'none'"
@@ -54,9 +70,9 @@ def html_text(record: RunRecord) -> str:
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(record.job)} - amprep report</title>\n<style>{style}</style>\n"
+        f"<title>{escape(title)}</title>\n<style>{style}</style>\n"
         "</head>\n<body>\n<main>\n"
-        f"{header(record)}{VIEWER}{body_sections(record)}</main>\n"
+        f"{body}</main>\n"
         f'<script type="application/json" id="model">{_json(model)}</script>\n'
         f'<script type="text/plain" id="geometry">{geometry}</script>\n'
         f"<script>{script}</script>\n</body>\n</html>\n"

@@ -1,21 +1,35 @@
 """Make the data of the 3D view: names, colours, matrices and descriptions of each build's contents."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.measures.density import build_height, part_volume
-from amprep.model import Build, Mesh, PlacedPart, SupportBody, Unsupported
+from amprep.model import (
+    BoundingVolume,
+    Boxes,
+    Build,
+    ConvexPieces,
+    Mesh,
+    PlacedPart,
+    SupportBody,
+    Unsupported,
+)
+from amprep.model.mesh import join_meshes
+from amprep.report.counting import counted
 from amprep.report.page.geometry import GeometryPack
-from amprep.report.picture.colours import SUPPORT, part_colours
+from amprep.report.picture.colours import PALETTE, SUPPORT, VOLUME, part_colours
 from amprep.report.picture.marks import mark_radius, thinned
-from amprep.report.record import RunRecord
+from amprep.report.record import BuildRecord, RunRecord
+from amprep.report.volume_meshes import meshes_of
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
     """Return the model as plain values, and the geometry in base64, of the 3D view."""
     pack = GeometryPack()
-    builds = [_build(entry.build, pack) for entry in record.builds]
+    builds = [_build(entry.build, pack) | {"volumes": _packed(entry, pack)} for entry in record.builds]
     return {"builds": builds, "meshes": pack.entries}, pack.base64()
 
 
@@ -37,6 +51,55 @@ def _build(build: Build, pack: GeometryPack) -> dict[str, Any]:
         "supports": [_support(body, build, pack) for body in build.supports],
         "unsupported": [_unsupported(region, pack) for region in build.unsupported],
     }
+
+
+def _packed(entry: BuildRecord, pack: GeometryPack) -> list[dict[str, Any]]:
+    """Return the bounding volumes of a build as one choice of the view; none if nothing was packed."""
+    if not entry.volumes:
+        return []
+    names = [placed.label for placed in entry.build.parts]
+    shown = [
+        volume_model(
+            each.volume, each.matrix, pack, f"bounding volume of {names[each.part]}", _counted(each.volume)
+        )
+        for each in entry.volumes
+    ]
+    return [{"name": "bounding volumes", "shown": shown}]
+
+
+def volume_model(
+    volume: BoundingVolume, matrix: Floats, pack: GeometryPack, name: str, facts: Sequence[str]
+) -> dict[str, Any]:
+    """Return the data of a bounding volume.
+
+    Parameters
+    ----------
+    volume
+        The bounding volume.
+    matrix
+        ``(4, 4)``, its coordinates to build coordinates.
+    pack
+        Collects its mesh.
+    name, facts
+        Shown when it is selected.
+    """
+    pieces = meshes_of(volume)
+    return {
+        "name": name,
+        "mesh": pack.add(join_meshes(pieces)),
+        "pieces": [len(piece.vertices) for piece in pieces],
+        "colours": list(PALETTE) if len(pieces) > 1 else [VOLUME],
+        "matrix": matrix.ravel().tolist(),
+        "facts": list(facts),
+    }
+
+
+def _counted(volume: BoundingVolume) -> list[str]:
+    if isinstance(volume, Boxes):
+        return ["1 box" if len(volume.lo) == 1 else f"{len(volume.lo)} boxes"]
+    if isinstance(volume, ConvexPieces):
+        return [counted(len(volume.pieces), "convex piece")]
+    return [f"solid of {len(volume.mesh.triangles)} triangles"]
 
 
 def _part(placed: PlacedPart, colour: str, pack: GeometryPack) -> dict[str, Any]:

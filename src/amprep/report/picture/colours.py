@@ -10,6 +10,8 @@ PALETTE = (
 )  # fmt: skip
 SUPPORT = "#c9ced6"
 UNSUPPORTED = "#e5202b"
+VOLUME = "#d98b2b"
+"""Colour of a bounding volume of one piece, and of the outlines of all."""
 
 
 def part_colours(build: Build) -> list[str]:

@@ -1,4 +1,4 @@
-// Makes the three.js objects of a build: parts, supports, and marks on unsupported regions.
+// Makes the three.js objects of a build: parts, supports, bounding volumes, and marks on unsupported regions.
 import * as THREE from "three";
 import { decodeMesh } from "./decode.js";
 
@@ -16,6 +16,21 @@ export class Geometries {
   edges(index) {
     if (!this.outlines.has(index)) this.outlines.set(index, new THREE.EdgesGeometry(this.get(index), CREASE_DEG));
     return this.outlines.get(index);
+  }
+
+  // The mesh with a colour for each vertex: `pieces` holds the number of vertices of each piece.
+  coloured(index, pieces, colours) {
+    const geometry = this.get(index);
+    if (!geometry.getAttribute("color")) {
+      const values = new Float32Array(3 * geometry.getAttribute("position").count);
+      let vertex = 0;
+      pieces.forEach((count, piece) => {
+        const colour = new THREE.Color(colours[piece % colours.length]);
+        for (const end = vertex + count; vertex < end; vertex++) colour.toArray(values, 3 * vertex);
+      });
+      geometry.setAttribute("color", new THREE.BufferAttribute(values, 3));
+    }
+    return geometry;
   }
 
   get(index) {
@@ -67,6 +82,31 @@ export function showBuild(build, geometries) {
   shown.group.add(...shown.parts, ...shown.supports, ...shown.marks.filter(Boolean));
   shown.group.updateMatrixWorld(true);
   return shown;
+}
+
+// Bounding volumes with their outlines: each piece has a colour of its own, and shows the part through its faces.
+export function showVolumes(volumes, geometries) {
+  const group = new THREE.Group();
+  const shown = volumes.map((volume, index) => {
+    const geometry = geometries.coloured(volume.mesh, volume.pieces, volume.colours);
+    const look = new THREE.MeshStandardMaterial({
+      vertexColors: true, flatShading: true, roughness: 0.7, side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 0.5, polygonOffsetUnits: 0.5, // before parts, which have 1
+    });
+    const mesh = new THREE.Mesh(geometry, look);
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.set(...volume.matrix);
+    mesh.renderOrder = 1;
+    mesh.userData = { kind: "volume", index };
+    const line = new THREE.LineBasicMaterial({ color: 0x7a4a10, transparent: true, opacity: 0.8 });
+    const edges = new THREE.LineSegments(geometries.edges(volume.mesh), line);
+    edges.raycast = () => {};
+    mesh.add(edges);
+    return mesh;
+  });
+  group.add(...shown);
+  group.updateMatrixWorld(true);
+  return { meshes: shown, group };
 }
 
 // Spheres at the points of an unsupported region; they are faintly visible through parts.

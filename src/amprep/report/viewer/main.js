@@ -1,7 +1,7 @@
 // Starts the 3D view of a report: reads the data blocks of the page, shows a build and connects the controls.
 import * as THREE from "three";
 import { inflate } from "./decode.js";
-import { addEdges, Geometries, retire, showBuild } from "./build.js";
+import { addEdges, Geometries, retire, showBuild, showVolumes } from "./build.js";
 import { Stage, surroundings } from "./stage.js";
 
 const VIEWS = {
@@ -46,7 +46,7 @@ class Viewer {
     this.model = model;
     this.geometries = new Geometries(bytes, model.meshes);
     this.stage = new Stage(element("canvas"));
-    this.layers = { parts: true, supports: true, marks: true, edges: true, frame: true, transparent: false };
+    this.layers = { parts: true, supports: true, marks: true, edges: true, frame: !model.alone, transparent: false };
     this.hidden = new Set();
     this.#tabs();
     this.#toolbar();
@@ -67,6 +67,8 @@ class Viewer {
     this.stage.scene.add(this.shown.group);
     this.#surround();
     this.#lists();
+    this.#choices();
+    this.choose(-1);
     this.select(null);
     const slider = element("section");
     slider.max = Math.ceil(10 * this.build.height) / 10 || 1;
@@ -80,15 +82,32 @@ class Viewer {
     addEdges(this.shown, this.geometries, () => this.#apply());
   }
 
+  // Shows one of the sets of bounding volumes, or none for -1.
+  choose(number) {
+    if (this.volumes) {
+      this.stage.scene.remove(this.volumes.group);
+      retire(this.volumes);
+    }
+    const set = this.build.volumes[number];
+    this.volumes = set ? showVolumes(set.shown, this.geometries) : null;
+    this.chosen = set;
+    if (set) this.stage.scene.add(this.volumes.group);
+    element("volumes").querySelectorAll("button").forEach((button, index) => {
+      button.setAttribute("aria-checked", String(index === number + 1));
+    });
+    this.select(set?.shown.length === 1 ? { kind: "volume", index: 0 } : null);
+    this.#apply();
+  }
+
   view(name) {
     const [x, y] = this.build.space.size;
-    const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, 10)));
+    const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, this.model.alone ? 0 : 10)));
     const ball = box.getBoundingSphere(new THREE.Sphere());
     this.stage.look(ball.center, 0.87 * ball.radius, VIEWS[name].clone());
   }
 
   select(found) {
-    for (const mesh of [...this.shown.parts, ...this.shown.supports]) mesh.material.emissive.setHex(0);
+    for (const mesh of [...this.shown.parts, ...this.shown.supports, ...(this.volumes?.meshes ?? [])]) mesh.material.emissive.setHex(0);
     document.querySelectorAll("#lists [aria-current]").forEach((row) => row.removeAttribute("aria-current"));
     const card = element("card");
     card.replaceChildren();
@@ -104,8 +123,9 @@ class Viewer {
       row.closest("details").open = true;
       row.scrollIntoView({ block: "nearest" });
     }
-    if (kind !== "unsupported") this.shown[kind === "part" ? "parts" : "supports"][index].material.emissive.setHex(0x3a4c6c);
-    const entry = { part: this.build.parts, support: this.build.supports, unsupported: this.build.unsupported }[kind][index];
+    const lit = { part: this.shown.parts, support: this.shown.supports }[kind];
+    if (lit) lit[index].material.emissive.setHex(0x3a4c6c);
+    const entry = { part: this.build.parts, support: this.build.supports, unsupported: this.build.unsupported, volume: this.chosen?.shown }[kind][index];
     card.append(make("strong", {}, entry.name), ...entry.facts.map((line) => make("span", {}, line)));
   }
 
@@ -133,6 +153,14 @@ class Viewer {
     for (const mesh of shown.supports) mesh.visible = layers.supports;
     for (const mesh of shown.marks) if (mesh) mesh.visible = layers.marks;
     for (const edges of shown.edges) edges.visible = layers.edges;
+    // volumes without parts are drawn as solids
+    this.volumes?.meshes.forEach((mesh, index) => {
+      mesh.visible = this.chosen.shown.length !== shown.parts.length || !this.hidden.has(index);
+      mesh.material.transparent = layers.parts;
+      mesh.material.opacity = layers.parts ? 0.3 : 1;
+      mesh.material.depthWrite = !layers.parts;
+      mesh.children[0].visible = layers.edges;
+    });
     this.around.getObjectByName("frame").visible = layers.frame;
     this.stage.draw();
   }
@@ -140,7 +168,7 @@ class Viewer {
   #tabs() {
     const builds = this.model.builds;
     const tabs = builds.map((build, number) => make(
-      "button", { type: "button", role: "tab", title: build.id, onclick: () => this.open(number) }, `Build ${number + 1}`,
+      "button", { type: "button", role: "tab", title: build.id, onclick: () => this.open(number) }, this.model.alone ? build.id : `Build ${number + 1}`,
     ));
     element("tabs").replaceChildren(...tabs);
     element("tabs").hidden = builds.length < 2;
@@ -148,7 +176,8 @@ class Viewer {
 
   #toolbar() {
     const names = { parts: "Parts", supports: "Supports", marks: "Unsupported regions", edges: "Outlines", frame: "Build volume", transparent: "Transparent parts" };
-    const boxes = Object.entries(names).map(([key, words]) => {
+    const missing = (key) => this.model.alone && ["supports", "marks", "frame"].includes(key);
+    const boxes = Object.entries(names).filter(([key]) => !missing(key)).map(([key, words]) => {
       const checkbox = make("input", { type: "checkbox", id: `layer-${key}` });
       checkbox.checked = this.layers[key];
       checkbox.addEventListener("change", () => {
@@ -161,6 +190,13 @@ class Viewer {
     const views = Object.keys(VIEWS).map((name) => make("button", { type: "button", onclick: () => this.view(name) }, name));
     element("views").replaceChildren(...views);
     element("section").addEventListener("input", () => this.#cut());
+  }
+
+  #choices() {
+    const names = ["no volume", ...this.build.volumes.map((set) => set.name)];
+    const buttons = names.map((name, index) => make("button", { type: "button", role: "radio", onclick: () => this.choose(index - 1) }, name));
+    element("volumes").replaceChildren(...buttons);
+    element("volumes").hidden = names.length < 2;
   }
 
   #cut() {
@@ -219,7 +255,7 @@ class Viewer {
 
   #hit(caster) {
     const visible = [...this.shown.marks.filter(Boolean).flatMap((group) => (group.visible ? group.children : [])),
-      ...this.shown.parts, ...this.shown.supports].filter((mesh) => mesh.visible);
+      ...this.shown.parts, ...this.shown.supports, ...(this.layers.parts ? [] : this.volumes?.meshes ?? [])].filter((mesh) => mesh.visible);
     const cut = this.stage.renderer.clippingPlanes;
     const hits = caster.intersectObjects(visible, false)
       .filter(({ point }) => cut.every((plane) => plane.distanceToPoint(point) >= 0));

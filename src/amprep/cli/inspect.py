@@ -1,0 +1,115 @@
+"""``amprep inspect``: say what is in a file and what is wrong with it, and compare bounding volumes."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from amprep.cli.job import finish
+from amprep.cli.options import NoPlugins, Plugins, job_option, output_option, with_options
+
+if TYPE_CHECKING:
+    from amprep.report.inspection.record import InspectionRecord
+
+
+@dataclass(frozen=True, kw_only=True)
+class InspectionOptions:
+    """Options of the command that do not choose what is inspected."""
+
+    printer: Annotated[
+        str | None,
+        job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
+    ] = None
+    sets: Annotated[
+        list[str] | None,
+        job_option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a key of the job file, for example supports.overhang_angle_deg=40; repeatable.",
+        ),
+    ] = None
+    time_limit: Annotated[
+        float | None,
+        job_option(
+            "--time-limit",
+            min=0.0,
+            metavar="SECONDS",
+            help="After this time, end volume makers with their best result and begin no other.",
+        ),
+    ] = None
+    output: Annotated[
+        Path | None,
+        output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
+    ] = None
+    as_json: Annotated[bool, output_option("--json", help="Print the result as JSON.")] = False
+    quiet: Annotated[
+        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
+    ] = False
+    plugins: Plugins = None
+    no_plugins: NoPlugins = False
+    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
+
+
+@with_options(InspectionOptions)
+def inspect(
+    inputs: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="PART...",
+            help="Mesh files, 3MF files and folders, or a job file (.toml).",
+            show_default=False,
+        ),
+    ],
+    volumes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--volumes",
+            metavar="MAKER",
+            help="Compare bounding volumes: 'all', a volume maker, or a chain A,B; repeatable.",
+        ),
+    ] = None,
+    *,
+    options: InspectionOptions,
+) -> None:
+    """Say what is in a file, what is wrong with it, what needs support, and which printers it fits.
+
+    With --volumes it bounds every part by each volume maker and prints the
+    ratio of the volumes, the number of pieces, the time, and the verdict of
+    the judge. With -o it writes NAME.inspect.html with a 3D view that switches
+    between the part and its bounding volumes, NAME.inspect.json, and a picture
+    of each volume.
+
+    Exit codes: 0 if nothing is wrong, 1 if a part is not a solid, fits no
+    printer or is not inside its bounding volume, 2 for wrong input.
+    """
+    record = _inspected(inputs, volumes or [], options)
+
+    from amprep.report.inspection.json_form import to_json
+    from amprep.report.inspection.terminal import summary
+
+    finish(record, to_json, lambda found: summary(found, options.output or Path()), options)
+
+
+def _inspected(inputs: list[str], volumes: list[str], options: InspectionOptions) -> "InspectionRecord":
+    """Call the public API with progress bars."""
+    from rich.console import Console
+
+    from amprep.cli.progress import Bars
+    from amprep.host import Host
+    from amprep.job import apply_sets, job_of, override
+
+    job = apply_sets(override(job_of(inputs), {"printer": options.printer}), options.sets or [])
+    with Bars(Console(stderr=True, quiet=options.quiet)) as bars:
+        with bars.stage("start"):
+            from amprep import api
+
+            host = Host.load(modules=options.plugins or [], plugins_enabled=not options.no_plugins)
+        return api.inspect(
+            job,
+            volumes=volumes,
+            output=options.output,
+            time_limit_s=options.time_limit,
+            plugins=host,
+            watcher=bars,
+        )

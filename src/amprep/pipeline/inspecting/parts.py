@@ -1,0 +1,95 @@
+"""Describe a part: contents, problems, overhangs, and the printers that it fits."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from amprep.job import Job, list_printers
+from amprep.measures.contents import MeshContents, measure_contents
+from amprep.measures.overhangs import measure_overhangs
+from amprep.measures.printer_fit import poses_of
+from amprep.model import Part, PlacedPart
+from amprep.report.counting import counted
+from amprep.report.inspection.record import InspectedPart, PrinterFit
+
+SMALL_MM, LARGE_MM = 1.0, 2000.0
+"""Longest sides below and above which the unit of a file is doubtful."""
+
+
+def describe_part(part: Part, problem: str, job: Job) -> InspectedPart:
+    """Return everything that is found about a part but its bounding volumes.
+
+    Parameters
+    ----------
+    part
+        The part after repair, or as it was read if its mesh cannot be used.
+    problem
+        Why its mesh cannot be used; empty if it can.
+    job
+        Printer, clearance, lift and rules for overhangs.
+    """
+    if problem:
+        return InspectedPart(part, problems=(problem,), findings=part.notes)
+    contents, fits = measure_contents(part), _fits(part, job)
+    problems = (*_problems(part, contents), *_misfits(fits, job))
+    notes = (note for note in part.notes if not note.startswith("not a solid: "))
+    return InspectedPart(
+        part,
+        contents,
+        problems,
+        (*notes, *_findings(contents)),
+        measure_overhangs(_on_plate(part, job.packing.lift_mm), job.supports),
+        fits,
+    )
+
+
+def _on_plate(part: Part, lift: float) -> PlacedPart:
+    """Return the part as it lies, `lift` mm above the plate."""
+    matrix = np.eye(4)
+    matrix[2, 3] = lift - float(part.mesh.bounds[0][2])
+    return PlacedPart(part.name, part, matrix, part.orientations)
+
+
+def _problems(part: Part, contents: MeshContents) -> Iterator[str]:
+    for note in part.notes:
+        if note.startswith("not a solid: "):
+            yield note.removesuffix("; taken as a surface")
+    if not part.is_solid and contents.open_edges:
+        yield f"{counted(contents.open_edges, 'open edge')}"
+
+
+def _misfits(fits: tuple[PrinterFit, ...], job: Job) -> Iterator[str]:
+    able = [each for each in fits if each.fit in ("as it lies", "in an allowed orientation")]
+    if able:
+        return
+    turned = [each.printer for each in fits if each.fit == "in another orientation"]
+    which = f"{job.printer.name}" if len(fits) == 1 else "no known printer"
+    words = f"it does not fit {which}" if len(fits) == 1 else f"it fits {which}"
+    advice = f"; it would fit {turned[0]} if it may be turned" if turned else ""
+    yield f"{words} with a clearance of {job.packing.clearance_mm:g} mm{advice}"
+
+
+def _findings(contents: MeshContents) -> Iterator[str]:
+    if contents.nonmanifold_edges:
+        edges = counted(contents.nonmanifold_edges, "edge")
+        yield f"the surface touches itself: more than two triangles meet at {edges}"
+    if contents.overlap_mm3:
+        yield f"shells overlap one another, by {contents.overlap_mm3:.6g} mm3; they count once"
+    if contents.cavities:
+        words = counted(contents.cavities, "closed cavity", "closed cavities")
+        yield f"{words}, which powder cannot leave"
+    if contents.bodies > 1:
+        yield f"it consists of {contents.bodies} bodies"
+    longest = max(contents.size_mm)
+    if not SMALL_MM <= longest <= LARGE_MM:
+        yield f"its longest side is {longest:.4g} mm; check the unit of the file"
+
+
+def _fits(part: Part, job: Job) -> tuple[PrinterFit, ...]:
+    """Return whether the part fits the printer that the job names, or else each known printer."""
+    poses, packing = poses_of(part.mesh.vertices, part.orientations), job.packing
+    printers = list_printers(job.folder)[0] if job.printer_is_default else [job.printer]
+    return tuple(
+        PrinterFit(each.name, poses.fit(each.space, packing.clearance_mm, packing.lift_mm))
+        for each in printers
+    )
