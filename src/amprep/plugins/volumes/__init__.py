@@ -31,6 +31,12 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
     """Yield the built-in volume makers."""
     yield VolumeMaker(name="box", summary="The enclosing box of the part.", run=_box, makes="box")
     yield VolumeMaker(
+        name="oriented-box",
+        summary="The smallest enclosing box over the orientations that the part allows (thesis 2.3).",
+        run=later("amprep.plugins.volumes.oriented_box:oriented_box"),
+        makes="box",
+    )
+    yield VolumeMaker(
         name="boxes",
         summary="The boxes given in the job for the part; they must contain it.",
         run=_boxes,
