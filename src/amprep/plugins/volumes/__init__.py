@@ -9,7 +9,7 @@ from amprep.hookspecs import VolumeMaker, hookimpl, later
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
-from amprep.plugins.volumes.params import BranchAndCutParams, KMeansParams, TwoBoxesParams
+from amprep.plugins.volumes.params import BranchAndCutParams, ConvexPiecesParams, KMeansParams, TwoBoxesParams
 
 amprep_api = 1
 
@@ -68,4 +68,11 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         run=later("amprep.plugins.volumes.k_means:k_means_boxes"),
         makes="boxes",
         params=KMeansParams,
+    )
+    yield VolumeMaker(
+        name="convex-pieces",
+        summary="Nearly convex pieces of the part, replaced by their hulls.",
+        run=later("amprep.plugins.volumes.convex_decomposition:convex_pieces"),
+        makes="convex",
+        params=ConvexPiecesParams,
     )

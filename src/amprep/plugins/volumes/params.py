@@ -74,3 +74,27 @@ class KMeansParams:
         require_bounds(self, "boxes", at_least=2, at_most=5)
         require_bounds(self, "restarts", at_least=1)
         require_bounds(self, "cells", at_least=2, at_most=256)
+
+
+@dataclass(frozen=True)
+class ConvexPiecesParams:
+    """Parameters of `convex-pieces`.
+
+    Attributes
+    ----------
+    pieces
+        Greatest number of pieces.
+    excess
+        Excess of the total volume of the pieces over the volume of the part, as a fraction of it, up to which
+        fewer pieces are preferred.
+    concavity_mm
+        Parts of the solid that are no deeper below their hull than this are not cut further; 0 for no limit.
+    """
+
+    pieces: int = 32
+    excess: float = 0.02
+    concavity_mm: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "pieces", at_least=1, at_most=1000)
+        require_bounds(self, "excess", "concavity_mm", at_least=0)
