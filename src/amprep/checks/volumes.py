@@ -9,7 +9,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.distance import box_solids, convex_solid, thickness
-from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, TurnedVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
@@ -23,8 +23,9 @@ _NEGLIGIBLE_MM3 = 1e-9
 def check_volume(part: Part, volume: BoundingVolume | TurnedVolume) -> list[Violation]:
     """Return a violation if the part extends more than `CONTACT_TOLERANCE` beyond the bounding volume.
 
-    The interior of a solid must be covered as well. For a part that is not a solid, the triangles must be. The
-    rotation of a turned volume must be one of the orientations that the part allows.
+    The interior of a solid must be covered as well, and a mesh that bounds must be closed. For a part that is not a
+    solid, the triangles must be covered. The rotation of a turned volume must be one of the orientations that the
+    part allows.
     """
     if isinstance(volume, TurnedVolume):
         fault = motion_fault(volume.rotation, part.orientations)
@@ -35,6 +36,15 @@ def check_volume(part: Part, volume: BoundingVolume | TurnedVolume) -> list[Viol
     if isinstance(volume, Boxes) and len(volume.lo) == 1:
         return _in_one_box(part, volume)
     cover = _cover(volume)
+    if not accepted(cover):
+        return [
+            Violation("volume is closed", part.name, "the mesh of its bounding volume is not a closed solid")
+        ]
+    return _left_out(part, volume, cover)
+
+
+def _left_out(part: Part, volume: BoundingVolume, cover: "Manifold") -> list[Violation]:
+    """Return a violation if something of the part is outside the cover."""
     outside = (_solid(part) if part.is_solid else _triangle_prisms(part, volume)) - cover
     if outside.is_empty() or outside.volume() <= _NEGLIGIBLE_MM3:
         return []

@@ -66,13 +66,16 @@ class TurnedVolume:
         Contains the part after its rotation by `rotation` about the origin of the part.
     rotation
         ``(3, 3)`` one of the orientations that the part allows.
-    bound
-        Proven lower bound (mm3) on the volume of every covering among which the maker chose; None if it proves none.
+    bound, gap
+        Proven lower bound (mm3) on the volume of every covering among which the maker chose, and the fraction by which
+        the best one that it found among them may exceed the least; None if it proves none. A maker that chooses among
+        coverings of a grid may refine the best one below that bound.
     """
 
     volume: BoundingVolume
     rotation: Floats
     bound: float | None = None
+    gap: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rotation", frozen(self.rotation, np.float64).reshape(3, 3))

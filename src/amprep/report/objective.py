@@ -58,7 +58,7 @@ def objective_words(record: RunRecord) -> str:
 
 def amount(value: float) -> str:
     """Return a value with six digits, or all digits before the point if there are more."""
-    return f"{value:,.0f}" if abs(value) >= 1e5 else f"{value:.6g}"
+    return f"{value:,.0f}" if abs(value) >= 1e5 else f"{value:,.6g}"
 
 
 def _bound(record: RunRecord) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from amprep.report.counting import counted
 from amprep.report.objective import amount, objective_words, part_values
-from amprep.report.record import BuildRecord, RunRecord, StageTime
+from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -80,7 +80,7 @@ def _values(record: RunRecord) -> list[str]:
 def _issues(record: RunRecord) -> list[str]:
     """Return one line for each warning, unplaced copy, broken promise, unsupported region and powder pocket."""
     lines = list(record.warnings)
-    lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in record.unplaced]
+    lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in _lost(record)]
     for number, entry in enumerate(record.builds, start=1):
         lines += [
             f"build {number}: {found.promise}: {found.subject}: {found.message}"
@@ -89,6 +89,11 @@ def _issues(record: RunRecord) -> list[str]:
         lines += [f"build {number}: unsupported: {line}" for line in _unsupported(entry)]
         lines += [f"build {number}: {line}" for line in _trapped_powder(entry)]
     return lines
+
+
+def _lost(record: RunRecord) -> list[UnplacedRecord]:
+    """Return the unplaced copies that get a line: in a fill problem, not those for which no room is left."""
+    return [item for item in record.unplaced if record.objective != "fill" or item.reason != "no room left"]
 
 
 def _unsupported(entry: BuildRecord) -> list[str]:

@@ -18,10 +18,10 @@ def filled(make_build) -> RunRecord:
     """A fill problem: a build of parts, and two copies of a crane of value 30 that are left."""
     left = tuple(UnplacedRecord("crane", copy, "no room left", 30.0) for copy in (1, 2))
     build = make_build()
-    worth = sum(placed.part.fill_value for placed in build.parts)
+    placed = sum(placed.part.fill_value for placed in build.parts)
     return RunRecord(
         "job", "1", 0, "MK4", "generic", (BuildRecord(build),), left,
-        objective="fill", reached=worth, bound=1.25 * worth,
+        objective="fill", reached=placed, bound=1.25 * placed,
     )  # fmt: skip
 
 
@@ -32,18 +32,20 @@ def printed(record):
 
 
 def test_a_fill_run_tells_value_bound_gap_and_the_value_of_each_part_everywhere(filled):
-    worth = filled.reached
-    words = f"value {amount(worth)} of {amount(worth + 60)}, no packing has more than {amount(1.25 * worth)}"
+    placed = filled.reached
+    words = (
+        f"value {amount(placed)} of {amount(placed + 60)}, no packing has more than {amount(1.25 * placed)}"
+    )
     assert objective_words(filled) == f"{words}, gap 25.0 %"
-    assert total_value(filled) == pytest.approx(worth + 60)
+    assert total_value(filled) == pytest.approx(placed + 60)
     text, page, report = printed(filled), html_text(filled), to_json(filled)
     assert words in text
     assert words in page
     assert "crane: 0 of 2 placed, value 30 each" in text
-    assert (report["reached"], report["gap"]) == (worth, pytest.approx(0.25))
-    assert report["total_value"] == pytest.approx(worth + 60)
+    assert (report["reached"], report["gap"]) == (placed, pytest.approx(0.25))
+    assert report["total_value"] == pytest.approx(placed + 60)
     assert [each["value"] for each in report["unplaced"]] == [30.0, 30.0]
-    assert sum(part["value"] for part in report["builds"][0]["parts"]) == pytest.approx(worth)
+    assert sum(part["value"] for part in report["builds"][0]["parts"]) == pytest.approx(placed)
 
 
 def test_the_copies_of_a_part_are_counted_together(filled):
@@ -71,7 +73,7 @@ def test_other_objectives_say_what_their_bound_bounds(filled, objective, reached
 def test_large_values_keep_all_digits_before_the_point():
     assert [amount(value) for value in (1234567.8, 99999.5, 0.125, 0.0)] == [
         "1,234,568",
-        "99999.5",
+        "99,999.5",
         "0.125",
         "0",
     ]

@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.geometry.bounding.boxes.covering import BoxCover, CoverSearch, cover_mesh
 from amprep.geometry.bounding.boxes.fit import seal
-from amprep.model.bounding_volume import Boxes
+from amprep.model.bounding_volume import Boxes, TurnedVolume
 from amprep.model.control import Stop
 from amprep.model.part import Part
 from amprep.plugins.volumes.params import BranchAndCutParams
@@ -18,7 +18,8 @@ def cover_part(part: Part, params: BranchAndCutParams, rng: np.random.Generator,
 
 def branch_and_cut_boxes(
     part: Part, *, params: BranchAndCutParams, rng: np.random.Generator, stop: Stop
-) -> Boxes:
-    """Return boxes that contain the part; the best so far if `stop` becomes true."""
-    boxes = seal(cover_part(part, params, rng, stop).boxes, np.concatenate(part.mesh.bounds))
-    return Boxes(boxes[:, :3], boxes[:, 3:])
+) -> TurnedVolume:
+    """Return boxes that contain the part, with bound and gap; the best so far if `stop` becomes true."""
+    cover = cover_part(part, params, rng, stop)
+    boxes = seal(cover.boxes, np.concatenate(part.mesh.bounds))
+    return TurnedVolume(Boxes(boxes[:, :3], boxes[:, 3:]), np.eye(3), cover.bound, cover.gap)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from amprep.checks.violation import Violation
 from amprep.measures.bounding_volume import count_pieces
 from amprep.measures.contents import MeshContents
-from amprep.measures.objective import relative_gap
 from amprep.measures.overhangs import OverhangFigures
 from amprep.measures.printer_fit import Fit
 from amprep.model import Boxes, ConvexPieces, Part, TurnedVolume
@@ -95,13 +94,13 @@ class InspectedVolume:
 
     @property
     def bound_mm3(self) -> float | None:
-        """Lower bound on the volume, if the maker proved one."""
+        """Lower bound on the volume of the coverings among which the maker chose, if it proved one."""
         return None if self.made is None else self.made.bound
 
     @property
     def gap(self) -> float | None:
-        """The gap to the bound, as a fraction of the volume."""
-        return relative_gap("height", self.volume_mm3, self.bound_mm3)
+        """The gap that the maker proved, of the coverings among which it chose."""
+        return None if self.made is None else self.made.gap
 
     @property
     def verdict(self) -> str:

@@ -106,7 +106,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     volume = sum(entry.support_volume_mm3 for entry in builds) / 1000
     density = sum(entry.density for entry in builds) / max(len(builds), 1)
     return [
-        ("Builds", str(len(builds)), False),
+        *([("Builds", str(len(builds)), False)] if record.objective == "builds" else []),
         *_objective_figures(record),
         ("Parts placed", str(placed), False),
         ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),

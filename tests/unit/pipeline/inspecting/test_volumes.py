@@ -26,7 +26,7 @@ def offers():
 
     def bounded(part, *, params, rng, stop):
         lo, hi = part.mesh.bounds
-        return TurnedVolume(Boxes(lo[None] - 1, hi[None] + 1), np.eye(3), bound=864.0)
+        return TurnedVolume(Boxes(lo[None] - 1, hi[None] + 1), np.eye(3), bound=864.0, gap=0.5)
 
     def half(part, *, params, rng, stop):
         lo, hi = part.mesh.bounds

@@ -1,0 +1,45 @@
+"""The judge of volume makers accepts what contains a part, and nothing else."""
+
+import numpy as np
+import pytest
+from tests.shared.builds import box_mesh
+
+from amprep.checks.volumes import check_volume
+from amprep.model import Boxes, ConvexPieces, Mesh, Part, Solid, TurnedVolume
+from amprep.model.rotations import quarter_turns
+
+BAR = Part("bar", box_mesh((0, 0, 0), (20, 10, 10)), 2000.0)
+LEFT, RIGHT = box_mesh((0, 0, 0), (10, 10, 10)), box_mesh((10, 0, 0), (10, 10, 10))
+
+
+@pytest.mark.parametrize(
+    "volume",
+    [
+        Boxes([[0, 0, 0]], [[20, 10, 10]]),
+        Boxes([[0, 0, 0], [10, 0, 0]], [[10, 10, 10], [20, 10, 10]]),
+        ConvexPieces((LEFT, RIGHT)),
+        Solid(BAR.mesh),
+    ],
+    ids=["box", "boxes", "pieces", "solid"],
+)
+def test_a_volume_that_contains_the_part_passes(volume):
+    assert check_volume(BAR, volume) == []
+
+
+@pytest.mark.parametrize("volume", [Boxes([[0, 0, 0]], [[19, 10, 10]]), ConvexPieces((LEFT,)), Solid(RIGHT)])
+def test_a_volume_that_leaves_something_out_does_not(volume):
+    (found,) = check_volume(BAR, volume)
+    assert found.promise == "volume contains part"
+
+
+def test_a_mesh_that_is_not_closed_bounds_nothing():
+    (found,) = check_volume(BAR, Solid(Mesh(BAR.mesh.vertices, BAR.mesh.triangles[1:])))
+    assert found.promise == "volume is closed"
+
+
+def test_a_turned_volume_must_be_turned_as_the_part_allows():
+    turn = quarter_turns()[1]
+    upright = TurnedVolume(Boxes([[-10, 0, 0]], [[0, 20, 10]]), turn)
+    (found,) = check_volume(BAR, upright)
+    assert found.promise == "allowed motion"
+    assert check_volume(BAR, TurnedVolume(Boxes([[0, 0, 0]], [[20, 10, 10]]), np.eye(3))) == []
