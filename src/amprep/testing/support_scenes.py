@@ -41,11 +41,27 @@ def support_scene(name: str, side: int, *, capacity: int = 0) -> SupportProblem:
         _add_ball(voxels, overhanging, tuple(centre), radius)
     if name == "plate":
         _add_slab(voxels, overhanging)
+    return problem_of_voxels(voxels, overhanging, capacity=capacity)
+
+
+def problem_of_voxels(voxels: Bytes, overhanging: Bools, *, capacity: int) -> SupportProblem:
+    """Return the problem whose red squares are the bottoms of overhanging voxels with room below, 1 mm a voxel.
+
+    Parameters
+    ----------
+    voxels
+        ``(nz, ny, nx)`` state of each voxel.
+    overhanging
+        ``(nz, ny, nx)`` voxels that need support where there is room below them; it is modified.
+    capacity
+        Largest number of paths through a square; 0 for no limit.
+    """
     overhanging[0] = False
     overhanging[1:] &= voxels[:-1] == Voxel.FREE
     red = np.argwhere(overhanging).astype(np.int32)
     zeros = np.zeros(len(red), np.int32)
-    grid = Grid(np.zeros(3), 1.0, 1.0, (side, side, side))
+    nz, ny, nx = voxels.shape
+    grid = Grid(np.zeros(3), 1.0, 1.0, (nz, ny, nx))
     return SupportProblem(grid, voxels, red, zeros, zeros, voxels[0] == Voxel.FREE, node_capacity=capacity)
 
 

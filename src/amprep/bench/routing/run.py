@@ -164,7 +164,7 @@ def run_scene(
     blank = RoutingResult("", name, size, capacity, nodes, edges, len(problem.red), None)
     ours = {}
     for listed in chosen:
-        result = _run(host, listed, problem, seed, blank)
+        result = run_router(host, listed, problem, seed, blank)
         ours[result.router] = result
         yield result
     for rival in RIVALS if rivals else ():
@@ -172,12 +172,29 @@ def run_scene(
             yield _run_rival(rival, problem, ours[rival.router], replace(blank, router=rival.name))
 
 
-def _run(
-    host: Host, listed: "Listed[SupportRouter]", problem: SupportProblem, seed: int, blank: RoutingResult
+def run_router(
+    host: Host,
+    listed: "Listed[SupportRouter]",
+    problem: SupportProblem,
+    seed: int,
+    blank: RoutingResult,
+    *,
+    warm: bool = False,
 ) -> RoutingResult:
+    """Route a problem and return the measured and judged plan.
+
+    Parameters
+    ----------
+    blank
+        Result with the name and the figures of the scene.
+    warm
+        Whether everything is compiled: then the router runs once, and initial paths are not counted.
+    """
     name, size = listed.offer.name, blank.size
-    initial = _route(host, listed, problem, seed, _INITIAL) if name == "shortest-paths" else None
-    _route(host, listed, problem, seed, {})
+    initial = None
+    if not warm:
+        initial = _route(host, listed, problem, seed, _INITIAL) if name == "shortest-paths" else None
+        _route(host, listed, problem, seed, {})
     reset_peak()
     start = time.monotonic()
     plan = _route(host, listed, problem, seed, {})

@@ -1,7 +1,7 @@
 """Options that several benchmark commands share, and their output."""
 
 import json
-from typing import Annotated, Any
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -23,6 +23,6 @@ def print_json(record: Any) -> None:
     typer.echo(json.dumps(record, indent=2))
 
 
-def finish(*, valid: bool) -> None:
+def finish(*, valid: bool) -> NoReturn:
     """End the command with exit code 0, or 1 if a result failed its independent check."""
     raise typer.Exit(cli.DONE if valid else cli.INCOMPLETE)
