@@ -11,5 +11,8 @@ They compile faster without wrappers, and the caches of their callers contain th
 kernel = njit(cache=True, _nrt=False)
 """Compiles functions that create no arrays: without reference counts, which cost more than the work on records."""
 
+uncounted = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
+"""Compiles functions that only kernels call: without wrappers and reference counts, but not always inlined."""
+
 inlined = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, forceinline=True)
 """Compiles functions that only kernels call: inlined, so that they cost no call."""

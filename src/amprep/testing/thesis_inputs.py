@@ -20,6 +20,9 @@ CUBES = {"A": ("ball", 20), "C": ("two-balls", 39), "D": ("plate", 103)}
 PACKED_SIDE, KINDS, COPIES = 186, 24, 12
 """Voxels along each side of input E; kinds of objects offered to it, and copies of each."""
 
+APART = 10.0
+"""Clearance and lift in input E (mm), so that four paths a square suffice for all red squares."""
+
 
 def thesis_input(name: str, *, capacity: int = 0) -> SupportProblem:
     """Return the input ``A`` to ``E``, 1 mm a voxel, with as many nodes as the thesis's within 3 %.
@@ -63,7 +66,7 @@ def _packed_build() -> tuple[Bytes, Bools]:
         for copy in range(COPIES)
     )
     space = BuildVolume(np.full(3, float(PACKED_SIDE)))
-    problem = PackingProblem(items, space, "fill", clearance=2.0, lift=4.0)
+    problem = PackingProblem(items, space, "fill", clearance=APART, lift=APART)
     voxels = np.zeros((PACKED_SIDE,) * 3, np.uint8)
     overhanging = np.zeros(voxels.shape, np.bool_)
     for placement in _packed(problem):

@@ -46,7 +46,7 @@ class RoutingResult:
     red_squares, connected
         Number of red squares, and of those that are connected.
     seconds
-        Time of routing alone, after a warm-up run; None if a solver did not run.
+        Processor time of routing alone, after a warm-up run; None if a solver did not run.
     cost
         Sum of flow times cost over all edges.
     squares_initial, squares_final
@@ -62,7 +62,7 @@ class RoutingResult:
     validated
         True if the independent check found no violation; for another solver, if its values equal ours.
     time_ratio
-        Time of another solver over that of our router.
+        Processor time of another solver over that of our router.
     notes
         Notes of the router, or the reason why a solver did not run.
     """
@@ -196,9 +196,9 @@ def run_router(
         initial = _route(host, listed, problem, seed, _INITIAL) if name == "shortest-paths" else None
         _route(host, listed, problem, seed, {})
     reset_peak()
-    start = time.monotonic()
+    start = time.process_time()
     plan = _route(host, listed, problem, seed, {})
-    took = time.monotonic() - start
+    took = time.process_time() - start
     peak = peak_mb()
     wrong = check_plan(problem, plan)
     if blank.nodes <= _MAX_SQUARES_FOR_RAISES:

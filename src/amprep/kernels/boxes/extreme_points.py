@@ -6,7 +6,6 @@ obstacles, builds without stacking, and more candidates for round plates, where 
 """
 
 import numpy as np
-from numba import njit
 
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.boxes.positions import (
@@ -39,7 +38,7 @@ from amprep.kernels.boxes.records import (
     Arrangement,
     BoxInstance,
 )
-from amprep.kernels.helper import helper
+from amprep.kernels.helper import kernel, uncounted
 
 FINISHED, PAUSED, GAVE_UP = 0, 1, 2
 """Results of `pack`: all items are placed; the work is used up, call again; more builds are needed than allowed."""
@@ -54,7 +53,7 @@ FINISHED, PAUSED, GAVE_UP = 0, 1, 2
 # give by the slack of the room. Time: for each item the number of points times the number of placed boxes.
 
 
-@helper
+@uncounted
 def _residual_space(point: Point, space: Point, lo: Point, hi: Point) -> Point:
     """Return the residual space of a point beside a box; its first length is -1 when the box covers the point.
 
@@ -75,7 +74,7 @@ def _residual_space(point: Point, space: Point, lo: Point, hi: Point) -> Point:
     return space_x, space_y, space_z
 
 
-@helper
+@uncounted
 def _shorten_points(room: Floats, placed: Floats, points: Floats, cursor: Int64s) -> None:
     """Shorten the residual spaces by the newest box; drop points that it covers or that are of no more use."""
     new = cursor[PLACED] - 1
@@ -94,7 +93,7 @@ def _shorten_points(room: Floats, placed: Floats, points: Floats, cursor: Int64s
     cursor[POINTS] = kept
 
 
-@helper
+@uncounted
 def _projection(point: Point, axis: int, room: Floats, placed: Floats, count: int) -> float:
     """Return the coordinate at which a point that moves down `axis` meets a box or the wall."""
     x, y, z = point
@@ -110,7 +109,7 @@ def _projection(point: Point, axis: int, room: Floats, placed: Floats, count: in
     return float(rest)
 
 
-@helper
+@uncounted
 def _add_point(point: Point, room: Floats, placed: Floats, points: Floats, cursor: Int64s) -> None:
     """Add a point with its residual space, unless a box covers it or it is known."""
     x, y, z = point
@@ -135,7 +134,7 @@ def _add_point(point: Point, room: Floats, placed: Floats, points: Floats, curso
     cursor[POINTS] = known + 1
 
 
-@helper
+@uncounted
 def _add_lines(new: int, placed: Floats, lines: Floats, cursor: Int64s) -> None:
     """Note the sides of a box in x and in y as lines, unless they are known."""
     for side in range(6):
@@ -148,7 +147,7 @@ def _add_lines(new: int, placed: Floats, lines: Floats, cursor: Int64s) -> None:
                 cursor[LINES + axis] += 1
 
 
-@helper
+@uncounted
 def _add_box(
     b: int,
     boxes: Floats,
@@ -186,7 +185,7 @@ def _add_box(
     _add_lines(new, placed, lines, cursor)
 
 
-@helper
+@uncounted
 def _open_build(obstacle_count: int, instance: BoxInstance, state: PassState) -> None:
     """Open a build: the least corner is its first point, the walls are its first lines; add the obstacles."""
     room, obstacles = instance.room, instance.obstacles
@@ -199,7 +198,7 @@ def _open_build(obstacle_count: int, instance: BoxInstance, state: PassState) ->
         _add_box(j, obstacles, (0.0, 0.0, 0.0), room, placed, points, lines, cursor)
 
 
-@helper
+@uncounted
 def _measure_build(build: int, zones: int, state: PassState) -> None:
     """Note the height of a build and the area of the rectangle around its boxes in `state.extents`."""
     placed = state.placed
@@ -211,7 +210,7 @@ def _measure_build(build: int, zones: int, state: PassState) -> None:
     state.extents[build, 0], state.extents[build, 1] = z1, max(0.0, x1 - x0) * max(0.0, y1 - y0)
 
 
-@helper
+@uncounted
 def _add_candidates(
     own: Span,
     size: Point,
@@ -241,7 +240,7 @@ def _add_candidates(
     return found
 
 
-@njit(cache=True)
+@kernel
 def pack(
     order: Int64s,
     instance: BoxInstance,

@@ -21,7 +21,7 @@ from amprep.kernels.boxes.records import (
     WEIGHT,
     BoxInstance,
 )
-from amprep.kernels.helper import helper
+from amprep.kernels.helper import uncounted
 
 MOST_SLIDES = 60
 """Greatest number of lines along which an orientation is slid to a round wall."""
@@ -76,7 +76,7 @@ class PassState(NamedTuple):
     extents: Floats
 
 
-@helper
+@uncounted
 def feasible_height(
     own: Span,
     position: Point,
@@ -135,7 +135,7 @@ def feasible_height(
     return z
 
 
-@helper
+@uncounted
 def contact_area(
     own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, count: int
 ) -> float:
@@ -171,7 +171,7 @@ def contact_area(
     return area
 
 
-@helper
+@uncounted
 def _merit(orientation: int, position: Point, orientations: Floats, room: Floats, rule: Floats) -> float:
     """Return the merit of a position under `LOW` or `CENTRE`; it does not fall when z grows."""
     x, y, z = position
@@ -187,7 +187,7 @@ def _merit(orientation: int, position: Point, orientations: Floats, room: Floats
     return float(rule[WEIGHT] * x1 + rule[WEIGHT + 1] * y1 + rule[WEIGHT + 2] * z1)
 
 
-@helper
+@uncounted
 def _blocks(
     j: int, own: Span, position: Point, boxes: Floats, room: Floats, placed: Floats, obstacle_count: int
 ) -> bool:
@@ -212,7 +212,7 @@ def _blocks(
 # the merit is known before the test. The box that last blocked an item at a point blocks the next
 # item too, in most cases; it is tested first and alone. A candidate that may rise is raised from box to box, but no
 # higher than the height at which its merit would equal the best one.
-@helper
+@uncounted
 def choose(
     orientation: int,
     fixed_height: int,
@@ -267,7 +267,7 @@ def choose(
             best[POSITION], best[POSITION + 1], best[POSITION + 2] = x, y, height
 
 
-@helper
+@uncounted
 def _add_ends(
     axis: int, start: float, length: float, across: float, room: Floats, candidates: Floats, found: int
 ) -> int:
@@ -290,7 +290,7 @@ def _add_ends(
     return found
 
 
-@helper
+@uncounted
 def add_round_positions(
     orientation: int, instance: BoxInstance, rule: Floats, state: PassState, found: int
 ) -> int:
@@ -324,7 +324,7 @@ def add_round_positions(
     return found
 
 
-@helper
+@uncounted
 def add_crossings(own: Span, instance: BoxInstance, state: PassState, found: int) -> int:
     """Add all crossings of lines as candidates; return the new number of candidates.
 

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
+from amprep.kernels.helper import inlined
 
 MOST_CORNERS = 16
 """Size of the work arrays; a triangle clipped by six planes has at most nine corners."""
@@ -48,7 +49,7 @@ class PatchBuffers(NamedTuple):
     owner: Int64s
 
 
-@njit(cache=True)
+@inlined
 def _clip(points: Floats, count: int, axis: int, bound: float, above: bool, out: Floats) -> int:
     """Write the part of a polygon on one side of the plane ``axis = bound`` to `out`; return its number of corners."""
     kept = 0
@@ -70,7 +71,7 @@ def _clip(points: Floats, count: int, axis: int, bound: float, above: bool, out:
     return kept
 
 
-@njit(cache=True)
+@inlined
 def _twice_area(points: Floats, count: int) -> float:
     """Return twice the signed area of a polygon in plan."""
     area = 0.0
@@ -100,7 +101,7 @@ def clip_to_columns(corners: Floats, index: ColumnIndex, slack: float, out: Patc
     count
         Number of patches, or -1 when the arrays are too short.
     """
-    a, b = np.empty((MOST_CORNERS, 3)), np.empty((MOST_CORNERS, 3))
+    work, least, most = np.empty((2, MOST_CORNERS, 3)), np.empty(3), np.empty(3)
     grid, lo, hi = index.grid, index.lo, index.hi
     ny, nx = index.shape
     count, used = 0, 0
@@ -112,9 +113,12 @@ def clip_to_columns(corners: Floats, index: ColumnIndex, slack: float, out: Patc
         ) * (triangle[2, 0] - triangle[0, 0])
         if turn >= 0.0:
             continue
-        left, right = np.min(triangle[:, 0]) - grid[0], np.max(triangle[:, 0]) - grid[0]
-        front, back = np.min(triangle[:, 1]) - grid[1], np.max(triangle[:, 1]) - grid[1]
-        bottom, top = np.min(triangle[:, 2]), np.max(triangle[:, 2])
+        for k in range(3):
+            least[k] = min(triangle[0, k], triangle[1, k], triangle[2, k])
+            most[k] = max(triangle[0, k], triangle[1, k], triangle[2, k])
+        left, right = least[0] - grid[0], most[0] - grid[0]
+        front, back = least[1] - grid[1], most[1] - grid[1]
+        bottom, top = least[2], most[2]
         # one more square on each side, because rounding may move a corner across a grid line
         for y in range(max(0, int(front / grid[2]) - 1), min(ny - 1, int(back / grid[2]) + 1) + 1):
             for x in range(max(0, int(left / grid[2]) - 1), min(nx - 1, int(right / grid[2]) + 1) + 1):
@@ -123,12 +127,20 @@ def clip_to_columns(corners: Floats, index: ColumnIndex, slack: float, out: Patc
                     low, high = lo[column, 2] - slack, hi[column, 2] + slack
                     if bottom > high or top < low:
                         continue
-                    n = _clip(triangle, 3, 0, lo[column, 0], True, a)
-                    n = _clip(a, n, 0, hi[column, 0], False, b)
-                    n = _clip(b, n, 1, lo[column, 1], True, a)
-                    n = _clip(a, n, 1, hi[column, 1], False, b)
-                    n = _clip(b, n, 2, low, True, a)
-                    n = _clip(a, n, 2, high, False, b)
+                    n, now = 3, 0
+                    for i in range(3):
+                        for k in range(3):
+                            work[0, i, k] = triangle[i, k]
+                    for side in range(6):
+                        axis, above = side // 2, side % 2 == 0
+                        bound = lo[column, axis] if above else hi[column, axis]
+                        if axis == 2:
+                            bound = low if above else high
+                        # a plane that does not cut the triangle leaves the polygon as it is
+                        if (least[axis] < bound) if above else (most[axis] > bound):
+                            n = _clip(work[now], n, axis, bound, above, work[1 - now])
+                            now = 1 - now
+                    b = work[now]
                     if n < 3 or _twice_area(b, n) > -1e-10:
                         continue
                     if used + n > len(out.points) or count >= len(out.owner):
