@@ -9,7 +9,13 @@ from amprep.hookspecs import VolumeMaker, hookimpl, later
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
-from amprep.plugins.volumes.params import BranchAndCutParams, ConvexPiecesParams, KMeansParams, TwoBoxesParams
+from amprep.plugins.volumes.params import (
+    BranchAndCutParams,
+    ConvexPiecesParams,
+    KMeansParams,
+    TwoBoxesParams,
+    TwoRectanglesParams,
+)
 
 amprep_api = 1
 
@@ -75,4 +81,11 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         run=later("amprep.plugins.volumes.convex_decomposition:convex_pieces"),
         makes="convex",
         params=ConvexPiecesParams,
+    )
+    yield VolumeMaker(
+        name="rectangles-two",
+        summary="Two upright boxes over parallel rectangles of any orientation (Saha, Das; thesis 2.3).",
+        run=later("amprep.plugins.volumes.parallel_rectangles:two_rectangles"),
+        makes="boxes",
+        params=TwoRectanglesParams,
     )

@@ -98,3 +98,20 @@ class ConvexPiecesParams:
     def __post_init__(self) -> None:
         require_bounds(self, "pieces", at_least=1, at_most=1000)
         require_bounds(self, "excess", "concavity_mm", at_least=0)
+
+
+@dataclass(frozen=True)
+class TwoRectanglesParams:
+    """Parameters of `rectangles-two`.
+
+    Attributes
+    ----------
+    objective
+        ``union``: least area of the union of both rectangles; ``larger``: least area of the larger one.
+    """
+
+    objective: str = "union"
+
+    def __post_init__(self) -> None:
+        known = self.objective in {"union", "larger"}
+        require(known, "objective must be union or larger", repr(self.objective))

@@ -1,4 +1,6 @@
-"""Shrink boxes that cover polygons to what only they must cover."""
+"""Shrink boxes that cover polygons to what only they must cover, or enlarge them where it costs nothing."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -53,3 +55,27 @@ def seal(boxes: Floats, bounds: Floats) -> Floats:
 def all_covered(polygons: ConvexPolygons, boxes: Floats) -> bool:
     """Tell whether the union of boxes ``(k, 6)`` contains the polygons."""
     return len(outside(polygons, boxes).points) == 0
+
+
+def enlarged(boxes: Floats, numbers: Sequence[int]) -> Floats:
+    """Return some of the boxes, each face moved outwards as far as the union of all boxes contains what is added."""
+    grown = boxes[list(numbers)].copy()
+    for box in grown:
+        for face in range(6):
+            outwards = 1.0 if face >= 3 else -1.0
+            planes = np.unique(boxes[:, [face % 3, face % 3 + 3]])[:: -1 if face >= 3 else 1]
+            for plane in planes[outwards * (planes - box[face]) > 0]:
+                added = box.copy()
+                added[[face, (face + 3) % 6]] = plane, box[face]
+                if _contains(boxes, added):
+                    box[face] = plane
+                    break
+    return np.asarray(grown)
+
+
+def _contains(boxes: Floats, box: Floats) -> bool:
+    """Tell whether the union of boxes contains a box, but for rounding."""
+    inner = np.hstack((np.maximum(boxes[:, :3], box[:3]), np.minimum(boxes[:, 3:], box[3:])))
+    meets = (inner[:, :3] < inner[:, 3:]).all(axis=1)
+    volume = float(np.prod(box[3:] - box[:3]))
+    return bool(meets.any()) and union_volume(inner[meets]) >= volume * (1 - 1e-9)

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.bounding.boxes.fit import shrink
+from amprep.geometry.bounding.boxes.fit import enlarged, shrink
 from amprep.geometry.bounding.boxes.polygons import ConvexPolygons, outside
 from amprep.geometry.bounding.boxes.two_boxes import TwoBoxSearch, two_boxes
 from amprep.geometry.bounding.boxes.union import union_volume
@@ -74,7 +74,7 @@ def _with_best_two(
     search: TwoBoxSearch,
     preferred: Sequence[Floats],
 ) -> Floats:
-    others = _grown(boxes, [number for number in range(len(boxes)) if number not in chosen])
+    others = enlarged(boxes, [number for number in range(len(boxes)) if number not in chosen])
     alone = outside(polygons, others)
     if not len(alone.points):
         return others
@@ -83,27 +83,3 @@ def _with_best_two(
     pair, _ = two_boxes(alone, search, preferred=preferred, covered=others, limit=limit)
     better = np.vstack((others, pair))
     return better if len(pair) and union_volume(better) < known else boxes
-
-
-def _grown(boxes: Floats, numbers: list[int]) -> Floats:
-    """Return some of the boxes, each face moved outwards as far as the union of all boxes contains what is added."""
-    grown = boxes[numbers].copy()
-    for box in grown:
-        for face in range(6):
-            outwards = 1.0 if face >= 3 else -1.0
-            planes = np.unique(boxes[:, [face % 3, face % 3 + 3]])[:: -1 if face >= 3 else 1]
-            for plane in planes[outwards * (planes - box[face]) > 0]:
-                added = box.copy()
-                added[[face, (face + 3) % 6]] = plane, box[face]
-                if _contains(boxes, added):
-                    box[face] = plane
-                    break
-    return np.asarray(grown)
-
-
-def _contains(boxes: Floats, box: Floats) -> bool:
-    """Tell whether the union of boxes contains a box, but for rounding."""
-    inner = np.hstack((np.maximum(boxes[:, :3], box[:3]), np.minimum(boxes[:, 3:], box[3:])))
-    meets = (inner[:, :3] < inner[:, 3:]).all(axis=1)
-    volume = float(np.prod(box[3:] - box[:3]))
-    return bool(meets.any()) and union_volume(inner[meets]) >= volume * (1 - 1e-9)

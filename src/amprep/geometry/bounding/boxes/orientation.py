@@ -152,9 +152,8 @@ def outline_of(points: Floats) -> Floats:
         return np.asarray(points[[int(along.argmin()), int(along.argmax())]])
 
 
-def side_angles(outline: Floats) -> Floats:
-    """Return the angles (rad) about z, in [0, pi/2), by which sides of a polygon become parallel to an axis."""
-    sides = np.roll(outline, -1, axis=0) - outline
+def angles_of(sides: Floats) -> Floats:
+    """Return the rotations (rad) about z, in [0, pi/2), that make one of the vectors ``(n, 2)`` parallel to an axis."""
     return np.unique(np.round(np.mod(-np.arctan2(sides[:, 1], sides[:, 0]), np.pi / 2), 12))
 
 
@@ -167,7 +166,7 @@ def about_z(angle: float) -> Floats:
 def smallest_box_about_z(points: Floats) -> tuple[float, Floats]:
     """Return the least volume of a box with vertical sides, and the rotation about z to it."""
     outline = outline_of(points[:, :2])
-    angles = side_angles(outline)
+    angles = angles_of(np.roll(outline, -1, axis=0) - outline)
     u = np.column_stack((np.cos(angles), -np.sin(angles)))
     areas = _extent(outline, u) * _extent(outline, np.column_stack((-u[:, 1], u[:, 0])))
     best = int(areas.argmin())

@@ -76,8 +76,12 @@ def two_boxes(
     """
     known = np.empty((0, 6)) if covered is None else np.ascontiguousarray(covered)
     bounds = polygons.bounds
-    most = search.planes if search.objective == "union" else max(search.planes, _SWEPT)
-    planes = [_planes(polygons.points[:, axis], bounds[axis::3], most, preferred[axis]) for axis in range(3)]
+    exact = search.planes if search.objective == "union" else max(search.planes, _SWEPT)
+    planes = []
+    for axis in range(3):
+        distinct = _distinct(polygons.points[:, axis], exact)
+        steps = _planes(bounds[axis::3], search.planes, preferred[axis])
+        planes.append(steps if distinct is None else distinct)
     slack = 1.0 if search.starts == 1 else 1.02
     found = _search(polygons, planes, search.objective, known, limit, slack=slack)
     best = found[np.argmin(found[:, 0])]
@@ -125,12 +129,16 @@ def _padded(planes: Sequence[Floats]) -> tuple[Floats, Int64s]:
     return rows, counts
 
 
-def _planes(coordinates: Floats, ends: Floats, most: int, preferred: Floats) -> Floats:
-    """Return sorted planes: all distinct coordinates if they are few, else preferred ones and equal steps."""
-    if len(np.unique(coordinates[:_SAMPLE])) <= most:
-        distinct = np.unique(coordinates)
-        if len(distinct) <= most:
-            return _at_least_two(distinct)
+def _distinct(coordinates: Floats, most: int) -> Floats | None:
+    """Return the distinct coordinates in order; None if there are more than `most`."""
+    if len(np.unique(coordinates[:_SAMPLE])) > most:
+        return None
+    distinct = np.unique(coordinates)
+    return _at_least_two(distinct) if len(distinct) <= most else None
+
+
+def _planes(ends: Floats, most: int, preferred: Floats) -> Floats:
+    """Return sorted planes: preferred ones, and equal steps between the ends."""
     first = np.asarray(preferred, np.float64)[: most // 2]
     steps = np.linspace(ends[0], ends[1], max(most - len(first), 2))
     return np.unique(np.concatenate((first[(first > ends[0]) & (first < ends[1])], steps)))

@@ -1,7 +1,7 @@
 import numpy as np
 from tests.shared.coverings import boxes_volume, dense_points, in_some_box, polygons_of_part, solid_of
 
-from amprep.geometry.bounding.boxes.fit import MARGIN, all_covered, seal, shrink
+from amprep.geometry.bounding.boxes.fit import MARGIN, all_covered, enlarged, seal, shrink
 
 L_SHAPE = [[0, 0, 0, 30, 10, 10], [0, 0, 0, 10, 10, 40]]
 
@@ -34,3 +34,10 @@ def test_sealed_boxes_overlap_but_stay_inside_the_enclosing_box():
     assert np.isclose(sealed[0, 3] - sealed[1, 0], 2 * MARGIN, rtol=1e-6)
     assert sealed[:, [1, 2, 4, 5]].tolist() == boxes[:, [1, 2, 4, 5]].tolist()
     assert (sealed[0, 0], sealed[1, 3]) == (0, 9)
+
+
+def test_boxes_are_enlarged_only_inside_their_union():
+    boxes = np.array([[0.0, 0, 0, 30, 10, 10], [0, 0, 10, 10, 10, 40], [50, 0, 0, 60, 10, 10]])
+    larger = enlarged(boxes, range(3))
+    assert larger[1].tolist() == [0, 0, 0, 10, 10, 40]
+    assert larger[[0, 2]].tolist() == boxes[[0, 2]].tolist()

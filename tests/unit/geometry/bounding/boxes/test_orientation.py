@@ -8,9 +8,9 @@ from tests.shared.examples import examples
 
 from amprep.geometry.bounding.boxes.orientation import (
     about_z,
+    angles_of,
     hull_of,
     outline_of,
-    side_angles,
     smallest_box_about_z,
     smallest_box_rotation,
 )
@@ -68,8 +68,8 @@ def test_no_rotation_about_z_gives_a_smaller_box(seed):
 
 
 def test_the_angles_of_a_square_are_one():
-    square = np.array([[0.0, 0], [2, 2], [0, 4], [-2, 2]])
-    assert side_angles(outline_of(square)) == pytest.approx([np.pi / 4])
+    square = outline_of(np.array([[0.0, 0], [2, 2], [0, 4], [-2, 2]]))
+    assert angles_of(np.roll(square, -1, axis=0) - square) == pytest.approx([np.pi / 4])
 
 
 def test_the_outline_of_points_on_a_line_is_its_ends():
