@@ -14,7 +14,7 @@ from amprep.model.part import Orientations
 Objective = Literal["fill", "builds", "height"]
 Status = Literal["optimal", "feasible", "infeasible"]
 
-LARGEST_VALUE = 1e15
+LARGEST_VALUE = 10**15
 """Greatest value of an item: sums and ratios of values stay finite, and a double counts them to within 1."""
 
 
@@ -104,7 +104,7 @@ def require_values(problem: PackingProblem) -> None:
     for item in problem.items:
         if not 0.0 <= item.value <= LARGEST_VALUE:
             raise JobError(
-                f"part {item.part + 1}: the value must be between 0 and {LARGEST_VALUE:g}, got {item.value:g}; "
+                f"part {item.part + 1}: the value must be between 0 and {float(LARGEST_VALUE):g}, got {item.value:g}; "
                 f"correct it in the job file or the call"
             )
 

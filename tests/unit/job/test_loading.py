@@ -131,7 +131,7 @@ def test_every_section_is_read(job_file):
             '[[part]]\nname = "a"\nquantity = 0',
             r"\[\[part\]\] 1: quantity must be between 1 and 1000000, got 0",
         ),
-        ('[[part]]\nname = "a"\nvalue = -1', "value must be at least 0, got -1"),
+        ('[[part]]\nname = "a"\nvalue = -1', "value must be between 0 and 1000000000000000, got -1"),
         ('[[part]]\nname = "a"\nrotations = "z91"', r"rotations: expected one of none, z90"),
         ('[[part]]\nname = "a"\nrotations = [[[1,0,0],[0,1,0],[0,0,2]]]', "is not a rotation matrix"),
         ('[[part]]\nname = "a"\nboxes = [[0,0,0,1,1]]', "boxes: expected a list, each a list of a number"),

@@ -250,7 +250,7 @@ def test_a_volume_that_is_not_boxes_is_refused():
 
 
 def test_a_negative_value_is_refused():
-    with pytest.raises(AmprepError, match="between 0 and 1e, got -1"):
+    with pytest.raises(AmprepError, match=r"between 0 and 1e\+15, got -1"):
         pack(boxes_problem([(1, 1, 1)], (9, 9, 9), values=[-1.0], objective="fill"))
 
 

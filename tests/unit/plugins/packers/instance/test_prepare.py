@@ -71,5 +71,5 @@ def test_an_arrangement_becomes_placements_and_reasons():
 
 
 def test_a_negative_value_is_refused_with_the_rule_and_the_value():
-    with pytest.raises(AmprepError, match="part 0: the value must be at least 0, got -1"):
+    with pytest.raises(AmprepError, match=r"part 1: the value must be between 0 and 1e\+15, got -1"):
         prepare(PackingProblem((item(0, (1, 1, 1), -1.0),), ZONE))

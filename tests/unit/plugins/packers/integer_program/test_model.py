@@ -32,6 +32,7 @@ from amprep.plugins.packers.integer_program import gap_of, pack_ip
 from amprep.plugins.packers.integer_program.constraints import make_program
 from amprep.plugins.packers.integer_program.data import count_directions, prepare_model_data
 from amprep.plugins.packers.integer_program.decode import start_values
+from amprep.plugins.packers.integer_program.solver import solve
 from amprep.plugins.packers.params import ExtremePointsParams, IpParams
 
 ROOM = 4
@@ -220,15 +221,21 @@ def test_boxes_that_the_judge_accepts_are_as_far_apart_as_the_relaxed_program_de
     assert (pair.possible & (apart >= np.repeat(pair.required, 2) - 1e-9)).any()
 
 
-def test_a_stop_ends_the_building_of_the_model_and_the_handing_over_at_once():
+def test_a_stop_ends_the_building_of_the_model_at_once_and_the_solver_does_not_run():
     given_problem = problem(np.random.default_rng(2).integers(1, 4, (30, 3)).tolist(), room=(6.0, 6, 6))
-    all_asked = Late(10**9)
-    run(given_problem, all_asked, effort=0.0)
-    for number in np.linspace(1, all_asked.asked - 1, 12).astype(int).tolist():
-        stop = Late(number)
-        packing = run(given_problem, stop, effort=0.0)
-        assert (packing.stop_reason, packing.status) == ("time limit", "feasible")
-        assert stop.asked <= number + 40
+    instance, params = prepare(given_problem), IpParams()
+
+    def build(stop):
+        data = prepare_model_data(instance, 1, params, stop)
+        return make_program(data, params, stop)
+
+    whole, asked = build(endless := Late(10**9)), endless.asked
+    for number in np.linspace(0, asked - 1, 12).astype(int).tolist():
+        program, variables = build(stop := Late(number))
+        assert program.numConstraints() + len(variables.direction) < whole[0].numConstraints() + 435
+        outcome = solve(program, params, nodes=10, stop=stop, progress=silent)
+        assert (outcome.status, outcome.solved, outcome.stop_reason) == ("stopped", False, "time limit")
+        assert stop.asked <= number + 5
 
 
 def test_the_result_says_who_found_it_and_whether_the_solver_ran():
