@@ -98,10 +98,10 @@ def _is_needless(chain: MakerChain, part: Part) -> bool:
 def _measured(part: Part, chain: MakerChain, seed: int, stop: Stop) -> InspectedVolume:
     if stop():
         return InspectedVolume(chain.name, failure="time limit")
-    began = time.perf_counter()
+    began = time.process_time()
     try:
         made = bound_part(part, chain.makers, seed, stop)
-        seconds = time.perf_counter() - began
+        seconds = time.process_time() - began
         volume = volume_of(made.volume)
     except AmprepError as error:
         return InspectedVolume(chain.name, failure=" ".join(str(error).split()))

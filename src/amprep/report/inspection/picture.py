@@ -51,13 +51,16 @@ def draw_volume(
     camera = fitted(VIEW, box_corners(low, high), (2 * size[0], 2 * size[1]), margin=0.22 * size[1])
     lines = outlines(pieces, _LINE_PIXELS / camera.pixels_per_mm)
     marks = ColouredMesh(lines, VOLUME, PART_KIND) if len(lines.triangles) else None
-    left = render([ColouredMesh(turned, _PART, PART_KIND)], marks, camera, size, None)
+    beside = np.eye(4)
+    beside[:3, 3] = VIEW[0] * 2 * size[0] / camera.pixels_per_mm
     colours = PALETTE if len(pieces) > 1 else (VOLUME,)
     shown = [
-        ColouredMesh(piece, colours[number % len(colours)], PART_KIND) for number, piece in enumerate(pieces)
+        ColouredMesh(piece.moved(beside), colours[number % len(colours)], PART_KIND)
+        for number, piece in enumerate(pieces)
     ]
-    right = render(shown, None, camera, size, None)
-    image = _labelled(Image.fromarray(np.concatenate([left, right], axis=1)), title, words)
+    scene = [ColouredMesh(turned, _PART, PART_KIND), *shown]
+    pixels = render(scene, marks, camera, (2 * size[0], size[1]), None)
+    image = _labelled(Image.fromarray(pixels), title, words)
     with replacing(path) as temporary:
         image.save(temporary, format="PNG", compress_level=4)
 

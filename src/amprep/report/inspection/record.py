@@ -58,7 +58,7 @@ class InspectedVolume:
     triangles
         Number of its triangles; a box has 12.
     seconds
-        Wall-clock time of the makers, without the time in which kernels are compiled.
+        Processor time of the makers, without the time in which kernels are compiled.
     violations
         Findings of the judge of volume makers; empty if the volume contains the part.
     failure

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amprep.report.counting import counted
+from amprep.report.inspection.compare import compare_makers
 from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
 from amprep.report.inspection.words import (
     contents_words,
@@ -13,6 +14,7 @@ from amprep.report.inspection.words import (
     overhang_words,
     printer_words,
     ratio_words,
+    shape_words,
 )
 from amprep.report.terminal import printable
 
@@ -33,8 +35,35 @@ def summary(record: InspectionRecord, folder: Path = Path()) -> "RenderableType"
     for each in record.parts:
         blocks += _part(each, record)
     blocks += [Text(f"! {printable(line)}", style="yellow") for line in record.warnings]
-    blocks += [Text(printable(f"wrote {folder / name}"), style="dim") for name in record.report_files]
+    if len(record.parts) > 1 and any(each.volumes for each in record.parts):
+        blocks.append(_makers(record))
+    blocks += [Text(printable(line), style="dim") for line in _written(record, folder)]
     return Group(*blocks)
+
+
+def _written(record: InspectionRecord, folder: Path) -> list[str]:
+    pictures = [name for name in record.report_files if name.endswith(".png")]
+    lines = [f"wrote {folder / name}" for name in record.report_files if name not in pictures]
+    return [*lines, *([f"wrote {counted(len(pictures), 'picture')} in {folder}"] if pictures else [])]
+
+
+def _makers(record: InspectionRecord) -> "Table":
+    """Return a table of the makers over all parts."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    title = Text(f"ratios and mean seconds over {counted(len(record.parts), 'part')}")
+    table = Table(box=box.SIMPLE_HEAD, padding=0, title=title, title_justify="left")
+    table.add_column("volume maker", overflow="fold")
+    for heading in ("mean", "greatest", "seconds", "outside", "not made"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for each in compare_makers(record):
+        ratios = ("-", "-") if each.ratio is None else (f"{each.ratio:.3f}", f"{each.greatest_ratio:.3f}")
+        table.add_row(
+            Text(each.makers), *ratios, f"{each.seconds:.3f}", str(each.outside), str(each.not_made)
+        )
+    return table
 
 
 def _part(each: InspectedPart, record: InspectionRecord) -> "Iterator[RenderableType]":
@@ -51,6 +80,9 @@ def _part(each: InspectedPart, record: InspectionRecord) -> "Iterator[Renderable
         yield _figures(each, record)
     if each.volumes:
         yield _volumes(each)
+        for volume in each.volumes:
+            for line in (*(found.message for found in volume.violations), *filter(None, [volume.failure])):
+                yield Text(printable(f"  ! {volume.makers}: {line}"), style=_verdict(volume)[1])
 
 
 def _figures(each: InspectedPart, record: InspectionRecord) -> "Table":
@@ -76,20 +108,26 @@ def _volumes(each: InspectedPart) -> "Table":
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    table.add_column("volume maker", no_wrap=True)
-    for heading in ("ratio", "kind", "pieces", "triangles", "seconds", "gap"):
+    table = Table(box=box.SIMPLE_HEAD, padding=0)
+    table.add_column("volume maker", overflow="fold")
+    for heading in ("ratio", "shape", "triangles", "seconds", "gap"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("part is")
+    table.add_column("judge", no_wrap=True)
     for volume in each.volumes:
-        style = "red" if volume.violations else ("yellow" if volume.made is None else "")
-        verdict = "; ".join(found.message for found in volume.violations) or volume.failure or "inside"
-        table.add_row(Text(volume.makers), *_row(volume), Text(printable(verdict), style=style))
+        word, style = _verdict(volume)
+        table.add_row(Text(volume.makers), *_row(volume), Text(word, style=style))
     return table
+
+
+def _verdict(volume: InspectedVolume) -> tuple[str, str]:
+    """Return the verdict of the judge in one word, and its style."""
+    if volume.made is None:
+        return "not made", "yellow"
+    return ("outside", "red") if volume.violations else ("inside", "")
 
 
 def _row(volume: InspectedVolume) -> tuple[str, ...]:
     if volume.made is None:
-        return ("",) * 6
-    counts = (str(volume.pieces), str(volume.triangles))
-    return (ratio_words(volume), volume.kind, *counts, f"{volume.seconds:.3f}", gap_words(volume))
+        return ("",) * 5
+    shape = shape_words(volume)
+    return (ratio_words(volume), shape, str(volume.triangles), f"{volume.seconds:.3f}", gap_words(volume))

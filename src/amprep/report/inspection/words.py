@@ -83,15 +83,18 @@ def gap_words(volume: InspectedVolume) -> str:
     return "" if volume.gap is None else f"{100 * volume.gap:.1f} %"
 
 
+def shape_words(volume: InspectedVolume) -> str:
+    """Return for example ``box``, ``3 boxes`` or ``solid``."""
+    return f"{volume.pieces} {volume.kind}" if volume.pieces > 1 else volume.kind.removesuffix("s")
+
+
 def volume_words(volume: InspectedVolume) -> str:
     """Return kind, pieces and ratio of a bounding volume in one line."""
     if volume.made is None:
         return volume.failure
-    kind = {"boxes": "boxes", "convex pieces": "convex pieces"}.get(volume.kind)
-    shape = f"{volume.pieces} {kind}" if kind else volume.kind
     ratio = "" if volume.ratio is None else f", {volume.ratio:.3f} of the part's volume"
     turned = "" if (abs(volume.made.rotation.diagonal() - 1.0) < 1e-9).all() else ", turned"
-    return f"{shape}, {counted(volume.triangles, 'triangle')}{ratio}{turned}, {volume.verdict}"
+    return f"{shape_words(volume)}, {counted(volume.triangles, 'triangle')}{ratio}{turned}, {volume.verdict}"
 
 
 def _topology(contents: MeshContents) -> str:
