@@ -64,11 +64,15 @@ class KMeansParams:
         Number of random starts; the boxes of least union count.
     cells
         The surface is clustered by cells, as many as this along the longest side of the part.
+    rotate
+        Whether a part that may be rotated freely or about z is rotated to the best common orientation of the
+        clusters.
     """
 
     boxes: int = 3
     restarts: int = 20
     cells: int = 40
+    rotate: bool = True
 
     def __post_init__(self) -> None:
         require_bounds(self, "boxes", at_least=2, at_most=5)

@@ -80,7 +80,7 @@ def smallest_box_rotation(hull: Hull) -> tuple[float, Floats]:
     rotation
         ``(3, 3)``; the face of the hull is parallel to the plate afterwards.
     """
-    directions = _distinct(hull.normals)
+    directions, _ = distinct_directions(hull.normals)
     bounds = _lower_bounds(hull, directions)
     best, rotation = np.inf, np.eye(3)
     for number in np.argsort(bounds, kind="stable"):
@@ -92,14 +92,22 @@ def smallest_box_rotation(hull: Hull) -> tuple[float, Floats]:
     return best, rotation
 
 
-def _distinct(normals: Floats) -> Floats:
-    """Return one of each group of parallel directions, upwards where they are not level."""
+def distinct_directions(normals: Floats) -> tuple[Floats, Int64s]:
+    """Return one of each group of parallel directions, upwards where they are not level, and the group of each."""
     largest = np.abs(normals).argmax(axis=1)
     signs = np.sign(normals[np.arange(len(normals)), largest])
-    upright = normals * signs[:, None]
-    _, first = np.unique(np.round(upright / _ALIKE).astype(np.int64), axis=0, return_index=True)
-    chosen = upright[np.sort(first)]
-    return np.asarray(np.where(chosen[:, 2:] < 0, -chosen, chosen))
+    along = normals * signs[:, None]
+    alike = np.round(along / _ALIKE).astype(np.int64)
+    _, first, number = np.unique(alike, axis=0, return_index=True, return_inverse=True)
+    chosen = along[first]
+    return np.where(chosen[:, 2:] < 0, -chosen, chosen), number.reshape(-1)
+
+
+def upright_rotation(direction: Floats) -> Floats:
+    """Return a rotation that turns a direction upwards, ``(3, 3)``."""
+    across = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
+    across /= np.linalg.norm(across)
+    return np.stack((across, np.cross(direction, across), direction))
 
 
 def _lower_bounds(hull: Hull, directions: Floats) -> Floats:
@@ -115,9 +123,7 @@ def _lower_bounds(hull: Hull, directions: Floats) -> Floats:
 
 def _around(hull: Hull, direction: Floats) -> tuple[float, Floats]:
     """Return the least volume of a box with an axis along a direction, and the rotation to it."""
-    across = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
-    across /= np.linalg.norm(across)
-    to_z = np.stack((across, np.cross(direction, across), direction))
+    to_z = upright_rotation(direction)
     volume, turn = smallest_box_about_z(_outer_points(hull, direction) @ to_z.T)
     return volume, turn @ to_z
 

@@ -1,5 +1,7 @@
 """Volumes of boxes and of their union."""
 
+from itertools import combinations
+
 import numpy as np
 
 from amprep.arrays import Floats
@@ -25,3 +27,15 @@ def union_volume(boxes: Floats) -> float:
         inside |= x[:, None, None] & y[:, None] & z
     dx, dy, dz = (np.diff(row) for row in planes)
     return float(np.einsum("ijk,i,j,k->", inside, dx, dy, dz))
+
+
+def union_volumes(boxes: Floats) -> Floats:
+    """Return the volume (mm3) of each union of at most five boxes, ``(n, k, 6)``, by inclusion and exclusion."""
+    count = boxes.shape[1]
+    total = np.zeros(len(boxes))
+    for size in range(1, count + 1):
+        for chosen in combinations(range(count), size):
+            some = boxes[:, chosen]
+            sides = some[:, :, 3:].min(axis=1) - some[:, :, :3].max(axis=1)
+            total -= (-1) ** size * np.prod(np.maximum(sides, 0.0), axis=1)
+    return total
