@@ -43,7 +43,7 @@ def collision_mesh(vertices: Floats, triangles: Ints) -> CollisionMesh:
     vertices, triangles
         A closed mesh, outward oriented: ``(v, 3)`` mm and ``(n, 3)``, n at least 1.
     """
-    from amprep.kernels.trees.build import MOMENTS, build_tree, write_moments
+    from amprep.kernels.trees.build import MOMENTS, build_tree, write_cones, write_moments
     from amprep.kernels.trees.records import NODE_WIDTH, ObbTree
 
     shift = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
@@ -55,9 +55,12 @@ def collision_mesh(vertices: Floats, triangles: Ints) -> CollisionMesh:
     nodes = np.empty((2 * count - 1, NODE_WIDTH))
     work, frames = np.empty((count + 1, 4), np.int64), np.empty((2, 3, 3))
     depth = build_tree(corners, moments, normals, shift, order, nodes, link, work, frames)
+    cones = np.empty((2 * count - 1, 4))
+    write_cones(link, normals[order], cones)
     tree = ObbTree(
         nodes=frozen(nodes, np.float64),
         link=frozen(link, np.int32),
+        cones=frozen(cones, np.float64),
         corners=frozen(vertices[triangles[order]], np.float64, 9),
         normals=frozen(normals[order], np.float64),
         order=frozen(order, np.int64),

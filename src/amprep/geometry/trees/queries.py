@@ -88,3 +88,44 @@ def directional_distances(
         answers,
     )
     return answers
+
+
+def rotational_distances(
+    a: CollisionMesh,
+    b: CollisionMesh,
+    poses_a: Floats,
+    poses_b: Floats,
+    axes: Floats,
+    margin: float = 0.0,
+    limit: float = 2.0 * np.pi,
+) -> Floats:
+    """Return for each pose how far the first body may turn before it is within a margin of the second, ``(n,)`` rad.
+
+    Parameters
+    ----------
+    poses_a, poses_b
+        Rigid motions of the bodies, ``(n, 4, 4)``, or ``(4, 4)`` for all.
+    axes
+        ``(n, 2, 3)`` or ``(2, 3)``: a point on each axis, mm, and its direction, of any length but 0. Turns are
+        counter-clockwise seen against the direction.
+    margin, limit
+        mm and rad; where the body may turn at least to the limit, the limit is returned.
+    """
+    from amprep.kernels.trees.batches import rotational_each
+
+    lines = np.asarray(axes, np.float64).reshape(-1, 2, 3)
+    rows_a, rows_b = pose_rows(poses_a, poses_b, count=len(lines))
+    count = len(rows_a)
+    answers = np.empty(count)
+    rotational_each(
+        a.tree,
+        rows_a,
+        b.tree,
+        rows_b,
+        np.hstack([np.broadcast_to(lines[:, 0], (count, 3)), unit_vectors(lines[:, 1], count)]),
+        margin,
+        float(limit),
+        new_stack(a.tree.depth, b.tree.depth),
+        answers,
+    )
+    return answers

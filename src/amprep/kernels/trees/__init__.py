@@ -15,6 +15,7 @@ Queries
 -------
 ``surfaces_collide(a, pose_a, b, pose_b, margin, stack) -> bool`` (`collide`)
 ``directional_distance(a, pose_a, b, pose_b, direction, margin, limit, stack) -> mm`` (`directional`)
+``rotational_distance(a, pose_a, b, pose_b, point, axis, margin, limit, stack) -> rad`` (`rotational`)
 ``surface_distance(a, pose_a, b, pose_b, limit, stack) -> mm`` (`distance`)
 ``travel_inside(a.hull, pose, direction, walls, margin) -> (first, last) mm`` (`walls`)
 ``turn_inside(a.hull, pose, point, axis, walls, margin, limit) -> rad`` (`walls`)
@@ -25,6 +26,6 @@ Contact
 Lengths up to `TOUCH` = 1e-7 mm count as rounding. Surfaces that touch, at faces, edges or corners, do not collide;
 solids that enter one another by more do. With a positive margin, bodies collide if their distance is below the margin
 minus `TOUCH`. A directional distance ends where the distance is the margin; from there a body may slide and move away,
-and its directional distance is 0 where it would come closer. So a sequence of moves, each at most as long as the
-directional distance, neither gets stuck nor enters another body.
+and its directional distance is 0 where it would come closer; the same applies to the rotational distance. So a sequence
+of moves, each at most as long as these distances, neither gets stuck nor enters another body.
 """

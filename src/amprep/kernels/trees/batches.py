@@ -6,6 +6,7 @@ from amprep.kernels.trees.collide import surfaces_collide
 from amprep.kernels.trees.directional import directional_distance
 from amprep.kernels.trees.distance import surface_distance
 from amprep.kernels.trees.records import ObbTree, Stack
+from amprep.kernels.trees.rotational import rotational_distance
 
 
 @kernel
@@ -42,3 +43,21 @@ def directional_each(
     for k in range(answers.shape[0]):
         direction = (directions[k, 0], directions[k, 1], directions[k, 2])
         answers[k] = directional_distance(a, poses_a[k], b, poses_b[k], direction, margin, limits[k], stack)
+
+
+@kernel
+def rotational_each(
+    a: ObbTree,
+    poses_a: Floats,
+    b: ObbTree,
+    poses_b: Floats,
+    axes: Floats,
+    margin: float,
+    limit: float,
+    stack: Stack,
+    answers: Floats,
+) -> None:
+    """Write the answers of `rotational_distance` for ``(n, 12)`` poses and ``(n, 6)`` points and directions of axes."""
+    for k in range(answers.shape[0]):
+        point, axis = (axes[k, 0], axes[k, 1], axes[k, 2]), (axes[k, 3], axes[k, 4], axes[k, 5])
+        answers[k] = rotational_distance(a, poses_a[k], b, poses_b[k], point, axis, margin, limit, stack)

@@ -8,8 +8,8 @@ from amprep.kernels.trees.records import AXES, CENTRE, HALF, RADIUS, Vector
 
 # Strategy. The moments of a set of triangles are sums over its triangles: area, area times centroid, and the second
 # moments of a uniform distribution on the surface. They are computed once per triangle, about the centre of the mesh,
-# so the covariance of a node is a sum of ten numbers a triangle. Nodes are made top-down in depth-first order with an
-# explicit stack; a node owns an interval of the order of triangles, which its split rearranges in place.
+# so the covariance of a node is a sum of ten numbers a triangle. Nodes are made top-down with an explicit stack; two
+# children are neighbours in memory. A node owns an interval of the order of triangles, which its split rearranges.
 
 MOMENTS = 10
 """Area, area times centroid (3), and second moments xx, xy, xz, yy, yz, zz."""
@@ -200,6 +200,52 @@ def _split(corners: Floats, order: Int64s, start: int, end: int, node: Floats) -
 
 
 @kernel
+def write_cones(link: Int32s, normals: Floats, cones: Floats) -> None:
+    """Write a cone of directions that contains the normals of all triangles below each node.
+
+    The axis of an inner node is the mean direction of its children's axes; the angle covers both of their cones.
+
+    Parameters
+    ----------
+    link
+        Of the tree.
+    normals
+        ``(n, 3)``, in the order of the leaves; triangles without area are ignored.
+    cones
+        ``(2 n - 1, 4)``: unit axis, and the sine of the half angle; 2 where it is a right angle or more. Written in
+        place.
+    """
+    for i in range(link.shape[0] - 1, -1, -1):
+        if link[i] < 0:
+            t = -1 - link[i]
+            cones[i, 0], cones[i, 1], cones[i, 2] = normals[t, 0], normals[t, 1], normals[t, 2]
+            cones[i, 3] = (
+                0.0 if normals[t, 0] != 0.0 or normals[t, 1] != 0.0 or normals[t, 2] != 0.0 else -1.0
+            )
+            continue
+        left, right = link[i], link[i] + 1
+        if cones[left, 3] < 0.0 or cones[right, 3] < 0.0:
+            child = right if cones[left, 3] < 0.0 else left
+            for k in range(4):
+                cones[i, k] = cones[child, k]
+            continue
+        x, y, z = (
+            cones[left, 0] + cones[right, 0],
+            cones[left, 1] + cones[right, 1],
+            cones[left, 2] + cones[right, 2],
+        )
+        length = np.sqrt(x * x + y * y + z * z)
+        cones[i, 0], cones[i, 1], cones[i, 2], cones[i, 3] = 1.0, 0.0, 0.0, 2.0
+        if length < 1e-3 or max(cones[left, 3], cones[right, 3]) > 1.0:
+            continue
+        x, y, z = x / length, y / length, z / length
+        cosine = min(1.0, x * cones[left, 0] + y * cones[left, 1] + z * cones[left, 2])
+        angle = np.arccos(cosine) + np.arcsin(max(cones[left, 3], cones[right, 3])) + 1e-7
+        if angle < 0.5 * np.pi:
+            cones[i, 0], cones[i, 1], cones[i, 2], cones[i, 3] = x, y, z, np.sin(angle)
+
+
+@kernel
 def build_tree(
     corners: Floats,
     moments: Floats,
@@ -228,27 +274,25 @@ def build_tree(
         and matrices.
     """
     matrix, axes = frames[0], frames[1]
-    work[0, 0], work[0, 1], work[0, 2], work[0, 3] = 0, corners.shape[0], -1, 0
-    waiting, count, depth = 1, 0, 0
+    work[0, 0], work[0, 1], work[0, 2], work[0, 3] = 0, corners.shape[0], 0, 0
+    waiting, count, depth = 1, 1, 0
     while waiting > 0:
         waiting -= 1
-        start, end, parent, level = work[waiting, 0], work[waiting, 1], work[waiting, 2], work[waiting, 3]
-        if parent >= 0:
-            link[parent] = count
+        start, end, i, level = work[waiting, 0], work[waiting, 1], work[waiting, 2], work[waiting, 3]
         depth = max(depth, level)
         _principal_axes(moments, order, start, end, matrix, axes)
         if end - start == 1:
             _triangle_axes(corners, normals, order[start], axes)
-        node = nodes[count]
+        node = nodes[i]
         _write_box(corners, order, start, end, axes, shift, node)
         if end - start == 1:
-            link[count] = -1 - start
+            link[i] = -1 - start
         else:
             middle = _split(corners, order, start, end, node)
             work[waiting, 0], work[waiting, 1] = middle, end
-            work[waiting, 2], work[waiting, 3] = count, level + 1
+            link[i] = count
+            work[waiting, 2], work[waiting, 3] = count + 1, level + 1
             work[waiting + 1, 0], work[waiting + 1, 1] = start, middle
-            work[waiting + 1, 2], work[waiting + 1, 3] = -1, level + 1
-            waiting += 2
-        count += 1
+            work[waiting + 1, 2], work[waiting + 1, 3] = count, level + 1
+            waiting, count = waiting + 2, count + 2
     return depth

@@ -61,11 +61,11 @@ def surfaces_collide(
                 if triangles_enter(one, normal, other, (b.normals[t, 0], b.normals[t, 1], b.normals[t, 2])):
                     return True
         elif next_b < 0 or (next_a >= 0 and a.nodes[i, RADIUS] >= b.nodes[j, RADIUS]):
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1] = next_a, j
-            stack.pairs[waiting + 1, 0], stack.pairs[waiting + 1, 1] = i + 1, j
+            stack.pairs[waiting, 0], stack.pairs[waiting, 1] = next_a + 1, j
+            stack.pairs[waiting + 1, 0], stack.pairs[waiting + 1, 1] = next_a, j
             waiting += 2
         else:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1] = i, next_b
-            stack.pairs[waiting + 1, 0], stack.pairs[waiting + 1, 1] = i, j + 1
+            stack.pairs[waiting, 0], stack.pairs[waiting, 1] = i, next_b + 1
+            stack.pairs[waiting + 1, 0], stack.pairs[waiting + 1, 1] = i, next_b
             waiting += 2
     return False

@@ -26,7 +26,7 @@ from amprep.kernels.trees.triangles.travel import EDGE_ON, in_shadow_frame, shad
 
 
 @inlined
-def _across(direction: Vector) -> tuple[Vector, Vector]:
+def across(direction: Vector) -> tuple[Vector, Vector]:
     """Return two unit vectors that form a right-handed frame with a direction."""
     x, y, z = direction
     if abs(x) < 0.6:
@@ -48,6 +48,13 @@ def _cosine(tree: ObbTree, t: int, direction: Vector) -> float:
     """Return the cosine between the normal of a triangle and a direction, both in part coordinates."""
     n = tree.normals
     return n[t, 0] * direction[0] + n[t, 1] * direction[1] + n[t, 2] * direction[2]
+
+
+@inlined
+def _some_within(cones: Floats, i: int, direction: Vector) -> bool:
+    """Return whether a normal below a node may make an acute angle with a direction."""
+    cosine = cones[i, 0] * direction[0] + cones[i, 1] * direction[1] + cones[i, 2] * direction[2]
+    return cosine > -cones[i, 3]
 
 
 @kernel
@@ -84,8 +91,9 @@ def directional_distance(
     """
     frame = relative(pose_a, pose_b)
     z = to_part(pose_b, direction[0], direction[1], direction[2])
-    x, y = _across(z)
+    x, y = across(z)
     back = to_part(pose_a, direction[0], direction[1], direction[2])
+    toward = (-z[0], -z[1], -z[2])
     best, reach = limit, margin + TOUCH
     low = first_overlap(a.nodes, 0, b.nodes, 0, frame, z, reach, best)
     stack.pairs[0, 0], stack.pairs[0, 1], stack.bounds[0] = 0, 0, low
@@ -113,11 +121,14 @@ def directional_distance(
                 best = min(best, travel)
             continue
         if next_b < 0 or (next_a >= 0 and a.nodes[i, RADIUS] >= b.nodes[j, RADIUS]):
-            near_a, near_b, far_a, far_b = i + 1, j, next_a, j
+            near_a, near_b, far_a, far_b = next_a, j, next_a + 1, j
         else:
-            near_a, near_b, far_a, far_b = i, j + 1, i, next_b
-        near = first_overlap(a.nodes, near_a, b.nodes, near_b, frame, z, reach, best)
-        far = first_overlap(a.nodes, far_a, b.nodes, far_b, frame, z, reach, best)
+            near_a, near_b, far_a, far_b = i, next_b, i, next_b + 1
+        near, far = np.inf, np.inf
+        if _some_within(a.cones, near_a, back) and _some_within(b.cones, near_b, toward):
+            near = first_overlap(a.nodes, near_a, b.nodes, near_b, frame, z, reach, best)
+        if _some_within(a.cones, far_a, back) and _some_within(b.cones, far_b, toward):
+            far = first_overlap(a.nodes, far_a, b.nodes, far_b, frame, z, reach, best)
         if far < near:
             near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
         if far < best:

@@ -45,9 +45,9 @@ def surface_distance(
             best = min(best, np.sqrt(gap[0]))
             continue
         if next_b < 0 or (next_a >= 0 and a.nodes[i, RADIUS] >= b.nodes[j, RADIUS]):
-            near_a, near_b, far_a, far_b = i + 1, j, next_a, j
+            near_a, near_b, far_a, far_b = next_a, j, next_a + 1, j
         else:
-            near_a, near_b, far_a, far_b = i, j + 1, i, next_b
+            near_a, near_b, far_a, far_b = i, next_b, i, next_b + 1
         near = distance_bound(a.nodes, near_a, b.nodes, near_b, frame, best)
         far = distance_bound(a.nodes, far_a, b.nodes, far_b, frame, best)
         if far < near:

@@ -25,14 +25,16 @@ Triangle = tuple[float, float, float, float, float, float, float, float, float]
 class ObbTree(NamedTuple):
     """A tree of oriented bounding boxes of the triangles of a closed mesh (Gottschalk, Lin, Manocha 1996), mm.
 
-    Nodes are in depth-first order: the left child of node i is i + 1. The leaves have one triangle each.
+    The children of node i are ``link[i]`` and ``link[i] + 1``. The leaves have one triangle each.
 
     Attributes
     ----------
     nodes
         ``(2 n - 1, 16)``: centre, half lengths, three unit axes as rows, radius.
     link
-        ``(2 n - 1,)`` int32: the right child of an inner node; of a leaf, -1 minus its triangle.
+        ``(2 n - 1,)`` int32: the first child of an inner node; of a leaf, -1 minus its triangle.
+    cones
+        ``(2 n - 1, 4)``, cones of the normals below each node; see `write_cones`.
     corners
         ``(n, 9)``, triangles in the order of the leaves, outward oriented.
     normals
@@ -49,6 +51,7 @@ class ObbTree(NamedTuple):
 
     nodes: Floats
     link: Int32s
+    cones: Floats
     corners: Floats
     normals: Floats
     order: Int64s

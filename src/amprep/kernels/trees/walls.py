@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.kernels.helper import inlined, kernel
+from amprep.kernels.trees.circles import first_exit
 from amprep.kernels.trees.records import TOUCH, Vector
 
 # Strategy. The build volume is convex, so a body is inside if the vertices of its convex hull are, and the travel along
@@ -152,26 +153,6 @@ def travel_inside(
 
 
 @inlined
-def _first_exit(cosine: float, sine: float, most: float) -> float:
-    """Return the first angle from which ``cosine cos(angle) + sine sin(angle)`` exceeds a value; infinity if never."""
-    most = cosine if most < cosine <= most + TOUCH else most
-    if cosine > most:
-        return 0.0
-    amplitude = np.sqrt(cosine * cosine + sine * sine)
-    if amplitude <= most:
-        return np.inf
-    if cosine == most:
-        if sine > 0.0:
-            return 0.0
-        if sine == 0.0:
-            return np.inf if cosine >= 0.0 else 0.0
-    angle = (np.arctan2(sine, cosine) - np.arccos(max(-1.0, most / amplitude))) % (2.0 * np.pi)
-    if sine > 0.0 and angle > np.pi:
-        return 0.0
-    return angle
-
-
-@inlined
 def _steps_in_circle(px: Vector, py: Vector, radius: float, limit: float) -> float:
     """Return an angle up to which a vertex stays in a circle about the origin, at most 1e-9 short.
 
@@ -237,8 +218,8 @@ def turn_inside(
         for k in range(3):
             if k == 2 or not walls.is_cylinder:
                 at = point[k] + fixed[k]
-                best = min(best, _first_exit(out[k], side[k], walls.high[k] - margin - at))
-                best = min(best, _first_exit(-out[k], -side[k], at - walls.low[k] - margin))
+                best = min(best, first_exit(out[k], side[k], walls.high[k] - margin - at))
+                best = min(best, first_exit(-out[k], -side[k], at - walls.low[k] - margin))
         if walls.is_cylinder:
             x, y, room = point[0] + fixed[0] - cx, point[1] + fixed[1] - cy, radius - margin
             if abs(axis[0]) + abs(axis[1]) <= 1e-14:
@@ -246,7 +227,7 @@ def turn_inside(
                 distance = np.sqrt((x + out[0]) ** 2 + (y + out[1]) ** 2)
                 room = distance if room < distance <= room + TOUCH else room
                 most = 0.5 * (room * room - reach)
-                best = min(best, _first_exit(x * out[0] + y * out[1], x * side[0] + y * side[1], most))
+                best = min(best, first_exit(x * out[0] + y * out[1], x * side[0] + y * side[1], most))
             else:
                 steps = _steps_in_circle((x, out[0], side[0]), (y, out[1], side[1]), room, best)
                 best = min(best, steps)

@@ -15,7 +15,8 @@ def triangles_below(tree, node):
     """Triangles of the leaves below a node, in the order of the leaves."""
     if tree.link[node] < 0:
         return [-1 - tree.link[node]]
-    return triangles_below(tree, node + 1) + triangles_below(tree, tree.link[node])
+    left = tree.link[node]
+    return triangles_below(tree, left) + triangles_below(tree, left + 1)
 
 
 @given(st.sampled_from(KINDS), st.integers(0, 2**32 - 1), st.sampled_from([1e-3, 1.0, 1e3]))
@@ -31,6 +32,18 @@ def test_every_box_contains_the_triangles_of_its_leaves(kind, seed, scale):
         assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
         assert (np.abs((points - row[:3]) @ axes.T) <= row[3:6] + 1e-12 * scale).all()
         assert row[15] == pytest.approx(np.linalg.norm(row[3:6]))
+
+
+@given(st.sampled_from(KINDS), st.integers(0, 2**32 - 1))
+@examples(20)
+def test_every_cone_contains_the_normals_of_its_triangles(kind, seed):
+    tree = collision_mesh(*arrays(some_solid(kind, np.random.default_rng(seed)))).tree
+    for node, (*axis, sine) in enumerate(tree.cones):
+        normals = tree.normals[triangles_below(tree, node)]
+        if sine <= 1.0:
+            assert (normals @ axis >= np.sqrt(1.0 - sine * sine) - 1e-12).all()
+        else:
+            assert sine == 2.0
 
 
 def test_the_leaves_are_the_triangles_of_the_mesh():

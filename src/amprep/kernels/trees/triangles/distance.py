@@ -168,6 +168,6 @@ def margin_travel(a: Triangle, b: Triangle, direction: Vector, margin: float, li
             if step <= 0.0:
                 return reached
         travel += step
-        if travel > limit and reached == np.inf:
+        if travel >= limit:
             return np.inf
     return min(travel, reached)
