@@ -10,6 +10,7 @@ from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop
 from amprep.model.part import Part
 from amprep.plugins.volumes.params import (
+    BoundingMeshParams,
     BranchAndCutParams,
     ConvexPiecesParams,
     KMeansParams,
@@ -53,6 +54,13 @@ def amprep_volume_makers() -> Iterable[VolumeMaker]:
         summary="The mesh of the part itself.",
         run=later("amprep.plugins.volumes.own_mesh:own_mesh"),
         makes="solid",
+    )
+    yield VolumeMaker(
+        name="bounding-mesh",
+        summary="The mesh of the part with fewer triangles, simplified outwards (Gaschler, Fischer, Knoll).",
+        run=later("amprep.plugins.volumes.bounding_mesh:bounding_mesh"),
+        makes="solid",
+        params=BoundingMeshParams,
     )
     yield VolumeMaker(
         name="boxes-two",

@@ -6,6 +6,36 @@ from amprep.validation import require, require_bounds
 
 
 @dataclass(frozen=True)
+class BoundingMeshParams:
+    """Parameters of `bounding-mesh`.
+
+    Attributes
+    ----------
+    triangles
+        Number of triangles; None takes `fraction`.
+    fraction
+        Number of triangles as a fraction of those of the part.
+    max_error_mm
+        Greatest distance (mm) of any point of the new surface from the surface of the part; None for no limit. With a
+        limit, more triangles may be left than asked for.
+    cost
+        ``volume``: contract the edge that adds the least volume; ``distance``: the one with the least sum of squared
+        distances to the planes around it.
+    """
+
+    triangles: int | None = None
+    fraction: float = 0.1
+    max_error_mm: float | None = None
+    cost: str = "volume"
+
+    def __post_init__(self) -> None:
+        require(self.cost in {"volume", "distance"}, "cost must be volume or distance", repr(self.cost))
+        require_bounds(self, "triangles", at_least=4)
+        require_bounds(self, "fraction", at_least=0.0, at_most=1.0)
+        require_bounds(self, "max_error_mm", above=0.0)
+
+
+@dataclass(frozen=True)
 class TwoBoxesParams:
     """Parameters of `boxes-two`.
 

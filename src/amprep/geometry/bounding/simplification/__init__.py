@@ -1,0 +1,1 @@
+"""Simplification of closed meshes outwards, so that the result contains them."""

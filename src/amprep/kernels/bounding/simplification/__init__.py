@@ -1,0 +1,1 @@
+"""Kernels that simplify closed surfaces outwards."""

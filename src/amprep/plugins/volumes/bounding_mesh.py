@@ -1,0 +1,60 @@
+"""Bounding mesh: the mesh of the part with fewer triangles, which contains the part (thesis 2.5)."""
+
+import numpy as np
+
+from amprep.arrays import MeshArrays
+from amprep.checks.volumes import check_volume
+from amprep.errors import MeshError
+from amprep.geometry.bounding.simplification.simplify_outwards import Cost, simplify_outwards
+from amprep.geometry.bounding.simplification.solids import hull, united, without_overlaps
+from amprep.model.bounding_volume import Solid
+from amprep.model.control import Stop
+from amprep.model.mesh import Mesh
+from amprep.model.part import Part
+from amprep.plugins.volumes.params import BoundingMeshParams
+
+
+def bounding_mesh(
+    part: Part,
+    *,
+    params: BoundingMeshParams,
+    rng: np.random.Generator,  # noqa: ARG001
+    stop: Stop,
+) -> Solid:
+    """Return a closed mesh of fewer triangles that contains the part.
+
+    The exact judge of bounding volumes confirms it. Should it find a remainder outside, the mesh is united with that of
+    the part; should it still object, the mesh of the part is the result.
+
+    Raises
+    ------
+    MeshError
+        If the part is not a solid.
+    """
+    if not part.is_solid:
+        raise MeshError(
+            f"part {part.name!r}: the volume maker 'bounding-mesh' needs a solid, but the mesh is open; repair it or "
+            "choose the volume maker 'box' for it"
+        )
+    vertices, triangles = _simplified(part.mesh.arrays, params, stop)
+    volume = Solid(Mesh(vertices, triangles))
+    if not check_volume(part, volume):
+        return volume
+    volume = Solid(Mesh(*united((vertices, triangles), part.mesh.arrays)))
+    return Solid(part.mesh) if check_volume(part, volume) else volume
+
+
+def _simplified(mesh: MeshArrays, params: BoundingMeshParams, stop: Stop) -> MeshArrays:
+    """Return the simplified mesh, or the simplified convex hull where that is smaller and within the distance."""
+    wanted = params.fraction * len(mesh[1]) if params.triangles is None else params.triangles
+    target = max(4, int(wanted))
+    limit = np.inf if params.max_error_mm is None else params.max_error_mm
+    cost: Cost = "distance" if params.cost == "distance" else "volume"
+    vertices, triangles, reason = simplify_outwards(
+        without_overlaps(mesh), target, max_error=limit, cost=cost, stop=stop
+    )
+    if not reason or np.isfinite(limit):
+        return vertices, triangles
+    convex = simplify_outwards(hull(mesh), target, cost=cost, stop=stop)
+    smaller = Mesh(convex.vertices, convex.triangles).signed_volume < Mesh(vertices, triangles).signed_volume
+    return (convex.vertices, convex.triangles) if smaller else (vertices, triangles)
