@@ -1,6 +1,6 @@
 """Describe a part: contents, problems, overhangs, and the printers that it fits."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -8,12 +8,16 @@ from amprep.job import Job, list_printers
 from amprep.measures.contents import MeshContents, measure_contents
 from amprep.measures.overhangs import measure_overhangs
 from amprep.measures.printer_fit import poses_of
+from amprep.measures.thin_walls import ThinWall, measure_thin_walls
 from amprep.model import Part, PlacedPart
 from amprep.report.counting import counted
 from amprep.report.inspection.record import InspectedPart, PrinterFit
 
 SMALL_MM, LARGE_MM = 1.0, 2000.0
 """Longest sides below and above which the unit of a file is doubtful."""
+
+_NOTICED = 0.01
+"""Fraction of the surface from which thin walls are a finding."""
 
 
 def describe_part(part: Part, problem: str, job: Job) -> InspectedPart:
@@ -31,14 +35,16 @@ def describe_part(part: Part, problem: str, job: Job) -> InspectedPart:
     if problem:
         return InspectedPart(part, problems=(problem,), findings=part.notes)
     contents, fits = measure_contents(part), _fits(part, job)
+    walls = measure_thin_walls(part.mesh) if part.is_solid else ()
     problems = (*_problems(part, contents), *_misfits(fits, job))
     notes = (note for note in part.notes if not note.startswith("not a solid: "))
     return InspectedPart(
         part,
         contents,
         problems,
-        (*notes, *_findings(contents)),
+        (*notes, *_findings(contents), *_thin(walls, contents)),
         measure_overhangs(_on_plate(part, job.packing.lift_mm), job.supports),
+        walls,
         fits,
     )
 
@@ -83,6 +89,13 @@ def _findings(contents: MeshContents) -> Iterator[str]:
     longest = max(contents.size_mm)
     if not SMALL_MM <= longest <= LARGE_MM:
         yield f"its longest side is {longest:.4g} mm; check the unit of the file"
+
+
+def _thin(walls: Sequence[ThinWall], contents: MeshContents) -> Iterator[str]:
+    """Yield a sentence if more than a little of the surface has a wall of the smallest thickness that is measured."""
+    if walls and walls[0].area_mm2 > _NOTICED * contents.area_mm2:
+        percent = 100 * walls[0].area_mm2 / contents.area_mm2
+        yield f"walls are thinner than {walls[0].below_mm:g} mm below {percent:.0f} % of the surface"
 
 
 def _fits(part: Part, job: Job) -> tuple[PrinterFit, ...]:

@@ -23,9 +23,10 @@ ALL = "all"
 
 @dataclass(frozen=True, eq=False)
 class MakerChain:
-    """Volume makers, each of which bounds the solid of the one before."""
+    """Volume makers, each of which bounds the solid of the one before; `asked` if the user named them."""
 
     makers: tuple[Chosen[VolumeMaker], ...]
+    asked: bool
 
     @property
     def name(self) -> str:
@@ -41,14 +42,20 @@ def makers_named(resolved: ResolvedJob, words: Sequence[str]) -> tuple[MakerChai
     PluginError, JobError
         When a maker does not exist, or cannot be in its place.
     """
+    named = {tuple(_names(word)) for word in words if word != ALL}
     chains = [
-        (name,) if word == ALL else tuple(part.strip() for part in word.split(","))
+        (name,) if word == ALL else tuple(_names(word))
         for word in words
         for name in (resolved.host.offers("volume") if word == ALL else [word])
     ]
     return tuple(
-        MakerChain(choose_volumes(resolved.host, resolved.job, chain)) for chain in dict.fromkeys(chains)
+        MakerChain(choose_volumes(resolved.host, resolved.job, chain), chain in named)
+        for chain in dict.fromkeys(chains)
     )
+
+
+def _names(word: str) -> list[str]:
+    return [part.strip() for part in word.split(",")]
 
 
 def warm_up(chains: Sequence[MakerChain], seed: int) -> None:
@@ -91,8 +98,8 @@ def measure_volumes(
 
 
 def _is_needless(chain: MakerChain, part: Part) -> bool:
-    """Tell whether a chain asks for boxes of the job, and the job gives none."""
-    return chain.name == "boxes" and part.boxes is None
+    """Tell whether a chain takes boxes from the job, the job gives none, and the user did not ask for it."""
+    return chain.name == "boxes" and part.boxes is None and not chain.asked
 
 
 def _measured(part: Part, chain: MakerChain, seed: int, stop: Stop) -> InspectedVolume:

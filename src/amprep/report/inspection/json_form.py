@@ -44,6 +44,7 @@ def _part(each: InspectedPart) -> dict[str, Any]:
         "problems": list(each.problems),
         "findings": list(each.findings),
         "overhangs": None if each.overhangs is None else asdict(each.overhangs),
+        "thin_walls": [asdict(wall) for wall in each.walls],
         "printers": [asdict(fit) for fit in each.printers],
         "volumes": [_volume(volume) for volume in each.volumes],
     }

@@ -19,6 +19,7 @@ from amprep.report.inspection.words import (
     printer_words,
     ratio_words,
     volume_words,
+    wall_words,
 )
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.page.html import VIEWER, page_text
@@ -102,7 +103,8 @@ def _part(each: InspectedPart) -> str:
     )
     sections = [f"<section><h2>{escape(each.name)}</h2>{listed}"]
     if each.contents is not None:
-        sections.append(table(("Figure", "Value"), contents_words(each.part, each.contents)))
+        figures = [*contents_words(each.part, each.contents), *wall_words(each.walls)]
+        sections.append(table(("Figure", "Value"), figures))
     if each.overhangs is not None:
         sections.append(f"<h2>Overhangs at {each.overhangs.angle_deg:g}°</h2>")
         sections.append(table(("Verdict", "Amount"), overhang_words(each.overhangs)))

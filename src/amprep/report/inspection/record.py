@@ -7,6 +7,7 @@ from amprep.measures.bounding_volume import count_pieces
 from amprep.measures.contents import MeshContents
 from amprep.measures.overhangs import OverhangFigures
 from amprep.measures.printer_fit import Fit
+from amprep.measures.thin_walls import ThinWall
 from amprep.model import Boxes, ConvexPieces, Part, TurnedVolume
 from amprep.report.counting import counted
 from amprep.report.record import StageTime
@@ -126,6 +127,8 @@ class InspectedPart:
         Repairs and remarks, one sentence each; they are no faults.
     overhangs
         What needs support if the part is built as it lies.
+    walls
+        Area of thin walls, for each thickness; empty for a surface.
     printers
         Whether it fits each printer.
     volumes
@@ -137,6 +140,7 @@ class InspectedPart:
     problems: tuple[str, ...] = ()
     findings: tuple[str, ...] = ()
     overhangs: OverhangFigures | None = None
+    walls: tuple[ThinWall, ...] = ()
     printers: tuple[PrinterFit, ...] = ()
     volumes: tuple[InspectedVolume, ...] = ()
 

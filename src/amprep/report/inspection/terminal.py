@@ -15,6 +15,7 @@ from amprep.report.inspection.words import (
     printer_words,
     ratio_words,
     shape_words,
+    wall_words,
 )
 from amprep.report.terminal import printable
 
@@ -93,6 +94,7 @@ def _figures(each: InspectedPart, record: InspectionRecord) -> "Table":
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
     rows = [] if each.contents is None else list(contents_words(each.part, each.contents))
+    rows += wall_words(each.walls)
     if each.overhangs is not None:
         rows += [(f"{name}", words) for name, words in overhang_words(each.overhangs)]
         rows.append(("overhang angle", f"{each.overhangs.angle_deg:g}°, the part as it lies"))

@@ -1,9 +1,10 @@
 """Say figures of an inspection in words, for the terminal, the page and pictures."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from amprep.measures.contents import MeshContents
 from amprep.measures.overhangs import OverhangFigures
+from amprep.measures.thin_walls import ThinWall
 from amprep.model import Part
 from amprep.report.counting import counted
 from amprep.report.inspection.record import InspectedFile, InspectedPart, InspectedVolume
@@ -58,6 +59,13 @@ def overhang_words(found: OverhangFigures) -> Iterator[tuple[str, str]]:
         yield "enforced", f"{found.enforced_mm2:.1f} mm²"
     if found.blocked_mm2:
         yield "blocked", f"{found.blocked_mm2:.1f} mm²"
+
+
+def wall_words(walls: Sequence[ThinWall]) -> Iterator[tuple[str, str]]:
+    """Yield the area of thin walls; nothing for a surface."""
+    if walls:
+        areas = (f"{wall.area_mm2:.1f} mm² below {wall.below_mm:g} mm" for wall in walls)
+        yield "thin walls", ", ".join(areas)
 
 
 def printer_words(part: InspectedPart, most: int | None = None) -> Iterator[tuple[str, str]]:

@@ -96,6 +96,11 @@ def test_all_stands_for_every_offer_each_once_but_boxes_that_the_job_does_not_gi
     assert found["shell,bounded"].ratio == pytest.approx(14**3 / 1000)
 
 
+def test_boxes_of_the_job_fail_with_the_reason_if_the_user_asks_for_them(resolved):
+    found = measured(resolved, ["all", "boxes"])
+    assert "needs boxes" in found["boxes"].failure
+
+
 def test_unknown_makers_and_wrong_chains_are_refused_at_once(resolved):
     with pytest.raises(PluginError, match="bonded"):
         makers_named(resolved, ["bonded"])
