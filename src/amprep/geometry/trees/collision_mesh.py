@@ -72,17 +72,51 @@ def collision_mesh(vertices: Floats, triangles: Ints) -> CollisionMesh:
 
 
 def _samples(vertices: Floats, triangles: Ints) -> Floats:
-    """Return a vertex of each component, ``(k, 3)``; vertices at one position belong together."""
+    """Return for each component a point on the surface and one in the solid below it, ``(k, 6)``.
+
+    The point on the surface is the centroid of the largest triangle; the other one is half-way from there to the next
+    point of the surface inwards.
+    """
+    corners = vertices[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    by_area = np.argsort(-areas, kind="stable")
+    _, first = np.unique(_components(vertices, triangles)[by_area], return_index=True)
+    samples = np.empty((len(first), 6))
+    for sample, t in zip(samples, by_area[first], strict=True):
+        inwards = -normals[t] / areas[t] if areas[t] > 0 else np.zeros(3)
+        sample[:3] = corners[t].mean(axis=0)
+        sample[3:] = sample[:3] + 0.5 * _free_length(sample[:3], inwards, corners, t) * inwards
+    return samples
+
+
+def _components(vertices: Floats, triangles: Ints) -> Ints:
+    """Return the component of each triangle, ``(n,)``; vertices at one position belong together."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     _, welded = np.unique(vertices, axis=0, return_inverse=True)
-    corners = welded.reshape(-1)[triangles]
-    ends = corners[:, [0, 1]].T.ravel(), corners[:, [1, 2]].T.ravel()
-    graph = coo_array((np.ones(2 * len(corners), np.int8), ends), shape=(len(vertices), len(vertices)))
+    ends = welded.reshape(-1)[triangles]
+    links = ends[:, [0, 1]].T.ravel(), ends[:, [1, 2]].T.ravel()
+    graph = coo_array((np.ones(2 * len(ends), np.int8), links), shape=(len(vertices), len(vertices)))
     _, labels = connected_components(graph, directed=False)
-    _, first = np.unique(labels[corners[:, 0]], return_index=True)
-    return np.asarray(vertices[triangles[first, 0]])
+    return np.asarray(labels[ends[:, 0]])
+
+
+def _free_length(origin: Floats, direction: Floats, corners: Floats, own: int) -> float:
+    """Return the length of a ray until it meets a triangle other than its own, mm; 0 if it meets none."""
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    across = np.cross(direction, v)
+    scale = np.einsum("ij,ij->i", across, u)
+    out = origin - corners[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = np.einsum("ij,ij->i", across, out) / scale
+        around = np.cross(out, u)
+        second = around @ direction / scale
+        length = np.einsum("ij,ij->i", around, v) / scale
+        met = (first >= 0) & (second >= 0) & (first + second <= 1) & (length > 0)
+    met[own] = False
+    return float(length[met].min(initial=np.inf)) if met.any() else 0.0
 
 
 def _hull(points: Floats) -> Floats:

@@ -16,6 +16,9 @@ Queries
 ``surfaces_collide(a, pose_a, b, pose_b, margin, stack) -> bool`` (`collide`)
 ``directional_distance(a, pose_a, b, pose_b, direction, margin, limit, stack) -> mm`` (`directional`)
 ``rotational_distance(a, pose_a, b, pose_b, point, axis, margin, limit, stack) -> rad`` (`rotational`)
+``solids_collide(a, pose_a, b, pose_b, margin, stack) -> bool`` (`containment`): also if one contains the other
+``is_inside(a, pose_a, b, pose_b, stack) -> bool`` (`containment`)
+``contains_point(a, point, stack) -> bool`` (`containment`): in part coordinates
 ``surface_distance(a, pose_a, b, pose_b, limit, stack) -> mm`` (`distance`)
 ``travel_inside(a.hull, pose, direction, walls, margin) -> (first, last) mm`` (`walls`)
 ``turn_inside(a.hull, pose, point, axis, walls, margin, limit) -> rad`` (`walls`)

@@ -42,7 +42,7 @@ class ObbTree(NamedTuple):
     order
         ``(n,)`` int64, their numbers in the mesh.
     samples
-        ``(k, 3)``, a vertex of each component of the mesh.
+        ``(k, 6)``: for each component of the surface a point on it, and one inside the solid below that.
     hull
         ``(h, 3)``, the vertices of the convex hull.
     depth

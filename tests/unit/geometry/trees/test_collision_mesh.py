@@ -8,6 +8,7 @@ from manifold3d import Manifold
 from tests.shared.examples import examples
 from tests.shared.triangles import KINDS, arrays, some_solid
 
+from amprep.geometry.meshes.containment import inside
 from amprep.geometry.trees.collision_mesh import collision_mesh
 
 
@@ -78,10 +79,13 @@ def test_triangles_without_area_have_boxes_too():
     assert np.isfinite(tree.nodes).all()
 
 
-def test_each_component_has_a_sample():
-    two = Manifold.cube((1, 1, 1)) + Manifold.cube((1, 1, 1)).translate((3, 0, 0))
+def test_each_component_has_a_sample_on_it_and_one_in_the_solid():
+    hollow = Manifold.cube((4, 4, 4)) - Manifold.cube((2, 2, 2)).translate((1, 1, 1))
+    two = hollow + Manifold.cube((1, 1, 1)).translate((9, 0, 0))
     samples = collision_mesh(*arrays(two)).tree.samples
-    assert sorted(samples[:, 0] > 2) == [False, True]
+    assert len(samples) == 3
+    assert inside(samples[:, 3:], *arrays(two)).all()
+    assert sorted(samples[:, 0] > 5) == [False, False, True]
 
 
 def test_the_arrays_of_a_tree_are_read_only():
