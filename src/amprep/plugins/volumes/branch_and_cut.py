@@ -21,5 +21,5 @@ def branch_and_cut_boxes(
 ) -> TurnedVolume:
     """Return boxes that contain the part, with bound and gap; the best so far if `stop` becomes true."""
     cover = cover_part(part, params, rng, stop)
-    boxes = seal(cover.boxes, np.concatenate(part.mesh.bounds))
+    boxes = seal(cover.boxes)
     return TurnedVolume(Boxes(boxes[:, :3], boxes[:, 3:]), np.eye(3), cover.bound, cover.gap)

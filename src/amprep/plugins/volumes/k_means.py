@@ -28,7 +28,7 @@ def k_means_boxes(
     rotation, boxes = _clustered(part, params, rng)
     turned = part.mesh.vertices @ rotation.T
     polygons = polygons_of(turned, part.mesh.triangles)
-    boxes = seal(shrink(polygons, boxes), polygons.bounds)
+    boxes = seal(shrink(polygons, boxes))
     volume = Boxes(boxes[:, :3], boxes[:, 3:])
     return volume if (rotation == np.eye(3)).all() else TurnedVolume(volume, rotation)
 

@@ -62,4 +62,4 @@ def _fitted(mesh: Mesh, rotation: Floats, objective: Objective, stop: Stop) -> t
         boxes = np.column_stack((rectangles[:, :2], low, rectangles[:, 2:], high))
         if objective == "union":  # the lower box then ends at the higher one
             boxes = enlarged(boxes, range(len(boxes)))
-    return seal(shrink(polygons, boxes), bounds), rotation
+    return seal(shrink(polygons, boxes)), rotation

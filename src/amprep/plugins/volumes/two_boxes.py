@@ -28,5 +28,5 @@ def cover_with_two(
     )
     flat = flat_coordinates(part.mesh.vertices, part.mesh.triangles)
     boxes, _ = two_boxes(polygons, search, preferred=flat)
-    sealed = seal(shrink(polygons, boxes), polygons.bounds)
+    sealed = seal(shrink(polygons, boxes))
     return Boxes(sealed[:, :3], sealed[:, 3:])

@@ -1,21 +1,26 @@
 """The packer `auto` beats its own start, ends with the bound, and keeps what stands where it is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.shared.boxes import boxes_problem as problem
 from tests.shared.boxes import cut
 from tests.shared.grids import Late
+from tests.shared.optional import present
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.errors import JobError
 from amprep.kernels.boxes.records import Arrangement
-from amprep.model import BuildVolume, Orientations, PackingProblem, Placement, Stop, silent
+from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers import extreme_points
 from amprep.plugins.packers.auto import fill, pack_auto
+from amprep.plugins.packers.auto.enclosing_boxes import enclosing_instance, with_own_boxes
 from amprep.plugins.packers.auto.ruin_and_recreate import no_builds
 from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.instance.arrangement import PackerResult
+from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import AutoParams, ExtremePointsParams
 
 
@@ -162,3 +167,48 @@ def test_a_value_that_is_no_amount_is_refused(packer, value):
     params = AutoParams() if packer is pack_auto else ExtremePointsParams()
     with pytest.raises(JobError, match="part 2: the value must be between 0 and 1e"):
         packer(task, params=params, rng=np.random.default_rng(0), stop=Stop(), progress=silent)
+
+
+def forks(count, seed):
+    """Items like a U, of three boxes each, with little room between the arms."""
+    rng = np.random.default_rng(seed)
+    items = []
+    for number in range(count):
+        x, y, arm = rng.integers(12, 20), rng.integers(12, 20), rng.integers(4, 6)
+        lo = np.array([[0, 0, 0], [0, 0, 0], [x - arm, 0, 0]], float)
+        hi = np.array([[x, arm, 5], [arm, y, 5], [x, y, 5]], float)
+        items.append(Item(number, 0, Boxes(lo, hi), float(x * arm + 2 * y * arm), Orientations()))
+    return PackingProblem(tuple(items), BuildVolume(np.array([50.0, 50, 10])), "fill")
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_items_of_several_boxes_are_filled_in_as_well_as_their_enclosing_boxes(seed):
+    task = forks(24, seed)
+    enclosed = replace(
+        task,
+        items=tuple(replace(i, volume=Boxes(*(c[None] for c in i.volume.enclosing()))) for i in task.items),
+    )
+    values = [
+        sum(t.items[placed.item].value for placed in run(t, work=5.0).builds[0]) for t in (task, enclosed)
+    ]
+    assert values[0] >= 0.99 * values[1]  # the enclosing boxes alone get twice the work
+
+
+def test_the_arrangement_of_enclosing_boxes_keeps_positions_and_rotations():
+    lo, hi = np.zeros((2, 3)), np.array([[9.0, 2, 3], [2, 5, 3]])
+    turns = Orientations("list", axis_rotations())
+    item = Item(0, 0, Boxes(lo, hi), 1.0, turns)
+    instance = prepare(PackingProblem((item,), BuildVolume(np.full(3, 20.0)), "fill"))
+    enclosed = present(enclosing_instance(instance))
+    for number, orientation in enumerate(enclosed.orientations):
+        packed = Arrangement(np.zeros(1, np.int64), np.array([number]), np.ones((1, 3)))
+        found = with_own_boxes(instance, enclosed, packed)
+        own = instance.orientations[found.orientation[0]]
+        assert own.rotation.tolist() == orientation.rotation.tolist()
+        assert own.size.tolist() == orientation.size.tolist()
+    assert len(enclosed.orientations) < len(instance.orientations)
+
+
+def test_items_of_several_boxes_are_not_enclosed_around_fixed_ones():
+    task = replace(forks(2, 1), fixed=(Placement(0, np.eye(3), np.zeros(3)),))
+    assert enclosing_instance(prepare(task)) is None

@@ -8,8 +8,8 @@ from amprep.arrays import Floats
 from amprep.geometry.bounding.boxes.polygons import ConvexPolygons, outside
 from amprep.geometry.bounding.boxes.union import union_volume, volumes
 
-MARGIN = 1e-6
-"""Length (mm) by which the faces between boxes are moved outwards at the end."""
+MARGIN = 2e-7
+"""Length (mm) by which faces of boxes are moved outwards at the end; two of them are less than packers call contact."""
 
 
 def shrink(polygons: ConvexPolygons, boxes: Floats) -> Floats:
@@ -42,14 +42,9 @@ def _shrunk_in(polygons: ConvexPolygons, boxes: Floats, order: list[int]) -> Flo
     return np.asarray(boxes[kept])
 
 
-def seal(boxes: Floats, bounds: Floats) -> Floats:
-    """Return the boxes enlarged by `MARGIN`, but not beyond the enclosing box of the part, ``(6,)``.
-
-    Boxes that share a face then overlap, so that rounding leaves no gap between them.
-    """
-    return np.hstack(
-        (np.maximum(boxes[:, :3] - MARGIN, bounds[:3]), np.minimum(boxes[:, 3:] + MARGIN, bounds[3:]))
-    )
+def seal(boxes: Floats) -> Floats:
+    """Return boxes ``(k, 6)`` enlarged by `MARGIN`, so that rounding leaves nothing outside and no gap between them."""
+    return np.hstack((boxes[:, :3] - MARGIN, boxes[:, 3:] + MARGIN))
 
 
 def all_covered(polygons: ConvexPolygons, boxes: Floats) -> bool:
