@@ -176,7 +176,7 @@ def _original(surface: HalfEdgeSurface, max_error: float) -> OriginalSurface:
     kept = surface.start if limited else surface.start[:3]
     copy = HalfEdgeSurface(surface.points.copy(), kept.copy(), kept, kept)
     limit, bound = max_error if limited else _UNBOUNDED, np.zeros(len(kept) // 3)
-    return OriginalSurface(copy, make_tree(copy), limit, bound, np.empty((200, 9)))
+    return OriginalSurface(copy, make_tree(copy), limit, bound, np.empty((200, 9)), np.empty((2, 8, 3)))
 
 
 def _remaining(surface: HalfEdgeSurface) -> MeshArrays:

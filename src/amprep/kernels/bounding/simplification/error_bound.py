@@ -13,10 +13,11 @@ from typing import NamedTuple
 from amprep.arrays import Floats
 from amprep.kernels.bounding.simplification.box_tree import MovingBoxTree
 from amprep.kernels.bounding.simplification.half_edges import HalfEdgeSurface, following, start_of
+from amprep.kernels.bounding.simplification.height_bound import direction_of, height_bound
 from amprep.kernels.bounding.simplification.patches import EdgePatch
-from amprep.kernels.bounding.simplification.points import Point, along, cross, dot, minus, normal_of, part
+from amprep.kernels.bounding.simplification.points import Point, along, cross, dot, minus, part
 
-_MOST_PIECES = 1000
+_MOST_PIECES = 190
 """Greatest number of pieces of a triangle that are examined."""
 
 _NEAR_LIMIT = 0.95
@@ -38,8 +39,8 @@ class OriginalSurface(NamedTuple):
         Greatest distance from it, mm; infinity for none.
     bound
         ``(m,)`` bound on the distance of each triangle that is left, mm.
-    pieces
-        ``(k, 9)`` work array.
+    pieces, polygon
+        ``(k, 9)`` and ``(2, 8, 3)`` work arrays.
     """
 
     surface: HalfEdgeSurface
@@ -47,6 +48,7 @@ class OriginalSurface(NamedTuple):
     limit: float
     bound: Floats
     pieces: Floats
+    polygon: Floats
 
 
 @part
@@ -111,32 +113,28 @@ def _nearest(original: OriginalSurface, p: Point) -> tuple[int, float]:
 
 
 @part
-def _is_near(original: OriginalSurface, a: Point, b: Point, c: Point) -> int:
-    """Return 1 if a triangle is within the limit, -1 if it is not, 0 if it must be halved."""
-    square = original.limit * original.limit
+def _farthest(original: OriginalSurface, a: Point, b: Point, c: Point) -> float:
+    """Return a bound on the distance of a triangle within the limit, -1 if it is beyond, `_UNKNOWN` if undecided."""
     m = (a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0
-    triangle, distance = _nearest(original, m)
-    if triangle < 0 or distance > _NEAR_LIMIT * _NEAR_LIMIT * square:
-        return -1
-    radius = 0.0
-    for i in range(3):
-        p = a if i == 0 else b if i == 1 else c
-        radius = max(radius, dot(minus(p, m), minus(p, m)))
-    if distance**0.5 + radius**0.5 <= original.limit:
-        return 1
+    middle, least = _UNKNOWN, _UNKNOWN
     for i in range(4):
-        if i > 0:
-            triangle = _nearest(original, a if i == 1 else b if i == 2 else c)[0]
-        if triangle < 0:
-            return -1
+        p = m if i == 0 else a if i == 1 else b if i == 2 else c
+        triangle, distance = _nearest(original, p)
+        if triangle < 0 or (i == 0 and distance > (_NEAR_LIMIT * original.limit) ** 2):
+            return -1.0
+        if i == 0:
+            middle = distance**0.5
         farthest = max(
             _triangle_distance(original.surface, triangle, a),
             _triangle_distance(original.surface, triangle, b),
             _triangle_distance(original.surface, triangle, c),
         )
-        if farthest <= square:
-            return 1
-    return 0
+        least = min(least, farthest**0.5)
+        if least <= original.limit:
+            return least
+    u, v, w = minus(a, m), minus(b, m), minus(c, m)
+    radius = max(dot(u, u), dot(v, v), dot(w, w)) ** 0.5
+    return middle + radius if middle + radius <= original.limit else _UNKNOWN
 
 
 @part
@@ -155,9 +153,9 @@ def _halve(pieces: Floats, top: int, a: Point, b: Point, c: Point) -> None:
 
 
 @part
-def _within(original: OriginalSurface, a: Point, b: Point, c: Point) -> bool:
-    """Tell whether every point of a triangle is certainly within the limit of the original surface."""
-    pieces = original.pieces
+def _distance_bound(original: OriginalSurface, a: Point, b: Point, c: Point) -> float:
+    """Return a bound on the distance of all points of a triangle, `_UNKNOWN` if it may exceed the limit."""
+    pieces, greatest = original.pieces, 0.0
     for axis in range(3):
         pieces[0, axis], pieces[0, 3 + axis], pieces[0, 6 + axis] = a[axis], b[axis], c[axis]
     top, seen = 1, 0
@@ -167,77 +165,52 @@ def _within(original: OriginalSurface, a: Point, b: Point, c: Point) -> bool:
         p = pieces[top, 0], pieces[top, 1], pieces[top, 2]
         q = pieces[top, 3], pieces[top, 4], pieces[top, 5]
         r = pieces[top, 6], pieces[top, 7], pieces[top, 8]
-        answer = _is_near(original, p, q, r)
-        if answer < 0 or seen > _MOST_PIECES:
-            return False
-        if answer == 0:
-            if top + 2 > pieces.shape[0]:
-                return False
+        farthest = _farthest(original, p, q, r)
+        if farthest < 0.0 or seen > _MOST_PIECES:
+            return _UNKNOWN
+        if farthest < _UNKNOWN:
+            greatest = max(greatest, farthest)
+        else:
             _halve(pieces, top, p, q, r)
             top += 2
-    return True
+    return greatest
 
 
 @part
-def _height_bound(original: OriginalSurface, surface: HalfEdgeSurface, patch: EdgePatch, count: int) -> float:
-    """Return a bound on the distance of the new fan, from the bounds of the old triangles and heights above them.
-
-    If all normals, old and new, have a positive component along one direction, the line in this direction through
-    a point of the fan meets an old triangle. The height above the plane of a triangle is linear on the fan, so it
-    is greatest at a corner.
-    """
-    up, worst = (0.0, 0.0, 0.0), 0.0
-    for i in range(count):
-        first = 3 * patch.triangles[i]
-        n = normal_of(start_of(surface, first), start_of(surface, first + 1), start_of(surface, first + 2))
-        up, worst = along(up, n, 1.0), max(worst, original.bound[patch.triangles[i]])
-    w, size, highest = (patch.place[0], patch.place[1], patch.place[2]), dot(up, up) ** 0.5, 0.0
-    for i in range(count):
-        first = 3 * patch.triangles[i]
-        a = start_of(surface, first)
-        n = normal_of(a, start_of(surface, first + 1), start_of(surface, first + 2))
-        slope = dot(n, up)
-        if slope <= 0.0:
-            return _UNKNOWN
-        highest = max(highest, abs(dot(n, minus(w, a))) * size / slope)
-        for j in range(count - 2):
-            b, c = start_of(surface, patch.ring[j]), start_of(surface, following(patch.ring[j]))
-            if i == 0 and dot(normal_of(w, b, c), up) <= 0.0:
-                return _UNKNOWN
-            highest = max(highest, abs(dot(n, minus(b, a))) * size / slope)
-    return worst + highest
-
-
-@part
-def _fan_within(original: OriginalSurface, surface: HalfEdgeSurface, patch: EdgePatch, ring: int) -> bool:
-    """Tell whether every point of the fan is within the limit; points come first, as one refuses most fans."""
+def _has_far_point(original: OriginalSurface, surface: HalfEdgeSurface, patch: EdgePatch, ring: int) -> bool:
+    """Tell whether the new vertex or the middle of an edge to it is beyond the limit, which refuses most fans."""
     w = patch.place[0], patch.place[1], patch.place[2]
     if _nearest(original, w)[0] < 0:
-        return False
+        return True
     for i in range(ring):
         middle = along(w, minus(start_of(surface, patch.ring[i]), w), 0.5)
         if _nearest(original, middle)[0] < 0:
-            return False
-    for i in range(ring):
-        h = patch.ring[i]
-        if not _within(original, w, start_of(surface, h), start_of(surface, following(h))):
-            return False
-    return True
+            return True
+    return False
 
 
 @part
 def exceeds(original: OriginalSurface, surface: HalfEdgeSurface, patch: EdgePatch, count: int) -> bool:
     """Tell whether a point of the fan of ``patch.place`` may be farther from the original surface than the limit.
 
-    The bounds of the triangles that will carry the fan are updated.
+    The bounds of the triangles that will carry the fan are updated if it is not.
     """
     if original.limit >= _UNKNOWN:
         return False
-    bound = _height_bound(original, surface, patch, count)
-    if bound > original.limit:
-        if not _fan_within(original, surface, patch, count - 2):
-            return True
-        bound = original.limit
-    for i in range(count):
-        original.bound[patch.triangles[i]] = bound
+    w, bounds, looked = (patch.place[0], patch.place[1], patch.place[2]), patch.sides, False
+    upright, up = direction_of(surface, patch, count)
+    for i in range(count - 2):
+        h = patch.ring[i]
+        bounds[i] = _UNKNOWN
+        if upright:
+            bounds[i] = height_bound(surface, patch, count, i, up, original.bound, original.polygon)
+        if bounds[i] > original.limit:
+            if not looked and _has_far_point(original, surface, patch, count - 2):
+                return True
+            looked = True
+            bounds[i] = _distance_bound(original, w, start_of(surface, h), start_of(surface, following(h)))
+            if bounds[i] > original.limit:
+                return True
+    for i in range(count - 2):
+        original.bound[patch.triangles[i]] = bounds[i]
     return False
