@@ -103,7 +103,7 @@ class InfillRecord(Summarised):
     def __str__(self) -> str:
         """Job, cell and counts in one line."""
         filled = f"{len(self.parts)} filled, {len(self.unchanged_parts)} unchanged"
-        return f"{self.job}, {self.cell}: {filled}, {self.faults} faults"
+        return f"{self.job}, {self.cell}: {filled}, {counted(self.faults, 'fault')}"
 
     @property
     def faults(self) -> int:

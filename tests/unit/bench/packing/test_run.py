@@ -8,9 +8,11 @@ from tests.shared.builds import box_mesh
 from typer.testing import CliRunner
 
 from amprep.bench.packing.container_loading import read_instances
-from amprep.bench.packing.run import fill_ratio
+from amprep.bench.packing.run import PackerRun, fill_ratio
+from amprep.bench.packing.thesis_tables import FILL_ROWS, repeated_boxes, table_cell
 from amprep.cli.app import app
 from amprep.errors import InputError
+from amprep.host import Host
 from amprep.model import (
     Boxes,
     BuildVolume,
@@ -95,3 +97,22 @@ def test_filling_counts_every_kind_of_bounding_volume():
     problem = PackingProblem(items, BuildVolume([100, 10, 10]), "fill")
     places = tuple(Placement(item, np.eye(3), [20.0 * item, 0, 0]) for item in range(3))
     assert fill_ratio(problem, Packing((places,))) == pytest.approx((1500 + 1000 + 1000) / 10000)
+
+
+def test_a_result_names_who_found_it_and_whether_the_solver_ran():
+    host = Host.load(plugins_enabled=False)
+    for params, finder in (
+        ({"directions": 0}, "the solver did not run"),
+        ({"start": "none"}, "the solver HiGHS"),
+    ):
+        run = PackerRun(host, host.choose("packer", "ip"), {"effort": 0.01, **params}, 20.0, 0)
+        result = run.run(repeated_boxes(20, "fill"))
+        assert result.found_by.endswith(finder)
+        for shown in (result.line, table_cell(result)):
+            assert finder in shown
+        assert result.record["found_by"] == result.found_by
+        assert result.processor_seconds > 0.0
+
+
+def test_the_fill_table_also_shows_the_solver_without_a_start():
+    assert {"ip", "ip, no start"} <= {row.label for row in FILL_ROWS}

@@ -241,7 +241,7 @@ def make_program(
     problem = pulp.LpProblem("packing", sense)
     variables = make_variables(problem, data, stop)
     problem.setObjective(_value(data, variables) if data.filling else pulp.lpSum(variables.opened))
-    program = Program(data, variables, params)
+    program = Program(data, variables, params, problem)
     for family in (*FAMILIES, *further):
         if stop():
             break

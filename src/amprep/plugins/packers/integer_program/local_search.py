@@ -1,5 +1,6 @@
 """The packer `ip-local-search`: steps to the best arrangement near the last one, by the integer program."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -64,25 +65,33 @@ class Neighbourhood:
         yield pulp.lpSum(terms) <= self.used_distance
 
     def directions_near(self, program: Program) -> Iterator[Constraint]:
-        """Let at most `direction_distance` directions differ, over pairs of which both are used in the old one.
+        """Let at most `direction_distance` directions differ, over pairs of which both are used before and after.
 
         The thesis writes ``front_new - used_old`` and ``used_new - used_old`` for the last two of the six terms; front
         and back are meant: each of the six is compared with its own old value. It counts only objects that are used.
-        Here that means used in the old arrangement, because the constraint is linear then, and an item that enters
-        costs nothing. An old direction is 0 when it holds in space, else 1.
+        An item that enters therefore costs nothing, and neither does one that leaves: the number of changes of a pair
+        is a variable, which may be 0 when one of its boxes is not used any more. An old direction is 0 when it holds
+        in space, else 1.
         """
-        terms = []
-        for pair, held, new in zip(
-            program.data.pairs, self.holding, program.variables.direction, strict=True
+        data, variables = program.data, program.variables
+        changes = []
+        for number, (pair, held, new) in enumerate(
+            zip(data.pairs, self.holding, variables.direction, strict=True)
         ):
-            there = pair.other.copy < 0 or self.used[pair.other.copy]
-            if self.used[pair.one.copy] and there:
-                terms += [
+            both = pair.other.copy < 0 or self.used[pair.other.copy]
+            if self.used[pair.one.copy] and both:
+                terms = [
                     variable if old else 1 - variable
                     for variable, old in zip(new, held.tolist(), strict=True)
                     if variable is not None
                 ]
-        yield pulp.lpSum(terms) <= self.direction_distance
+                left = 1 - variables.used(pair.one.copy)
+                if pair.other.copy >= 0:
+                    left += 1 - variables.used(pair.other.copy)
+                changed = program.problem.add_variable(f"changed_{number}", 0, len(terms))
+                changes.append(changed)
+                yield pulp.lpSum(terms) - len(terms) * left <= changed
+        yield pulp.lpSum(changes) <= self.direction_distance
 
     def covers(self, data: ModelData) -> bool:
         """Return whether every arrangement is in the neighbourhood."""
@@ -128,8 +137,8 @@ def search_near(
     """Return the last arrangement of the local search, which starts from that of a heuristic.
 
     Each step solves the program of `ip` restricted to the neighbourhood of the last arrangement; where that has
-    nothing better, the neighbourhood grows. The steps share the `effort`. The bound of the program counts only if a
-    neighbourhood has grown to hold every arrangement.
+    nothing better, the neighbourhood grows. Each step gets an equal part of the effort and time that are left. The
+    bound of the program counts only if a neighbourhood has grown to hold every arrangement.
     """
     known = heuristic_packing(instance, params, rng, stop, progress)
     if is_final(instance, known, stop):
@@ -149,7 +158,9 @@ def search_near(
         near = neighbourhood(data, best, used_distance, direction_distance)
         program, variables = make_program(data, params, stop, (near.used_near, near.directions_near))
         start = start_values(data, variables, best, stop)
-        outcome = solve(program, params, nodes=budget, stop=stop, progress=silent, start=start)
+        left = params.steps - step
+        nodes, in_time = math.ceil(budget / left), stop.within(_part(stop.remaining(), left))
+        outcome = solve(program, params, nodes=nodes, stop=in_time, progress=silent, start=start)
         budget -= max(outcome.nodes, 1)
         found = read_arrangement(data, variables) if outcome.solved else None
         improved = found is not None and value_of(instance, found) > value_of(instance, best)
@@ -169,3 +180,8 @@ def search_near(
     else:
         reason = "work used up"
     return PackerResult(best, closed_bound(instance, best, bound), reason, found_by=found_by)
+
+
+def _part(seconds: float, steps: int) -> float | None:
+    """Return the seconds for one of the steps; None without a limit."""
+    return seconds / steps if math.isfinite(seconds) else None

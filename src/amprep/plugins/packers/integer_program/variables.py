@@ -52,11 +52,12 @@ class Variables:
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Data, variables and parameters, from which constraints are made."""
+    """Data, variables and parameters, from which constraints are made; `problem` takes further variables."""
 
     data: ModelData
     variables: Variables
     params: IpParams
+    problem: pulp.LpProblem
 
 
 def make_variables(problem: pulp.LpProblem, data: ModelData, stop: Stop) -> Variables:

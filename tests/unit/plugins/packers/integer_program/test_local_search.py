@@ -64,7 +64,8 @@ def test_one_step_changes_no_more_than_the_distances_allow(sizes, used_distance,
     assert sum(new != was for new, was in zip(used, near.used, strict=True)) <= used_distance
     moved = 0
     for pair, held, directions in zip(data.pairs, near.holding, variables.direction, strict=True):
-        if near.used[pair.one.copy] and near.used[pair.other.copy]:
+        one, other = pair.one.copy, pair.other.copy
+        if near.used[one] and near.used[other] and used[one] and used[other]:
             old_values = [1 - int(h) for h in held]
             new_values = [1 if v is None else round(v.varValue) for v in directions]
             moved += sum(new != was for new, was in zip(new_values, old_values, strict=True))
