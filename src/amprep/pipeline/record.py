@@ -82,6 +82,7 @@ def run_record(
         ),
         status=packing.status,
         stop_reason=packing.stop_reason,
+        found_by=packing.found_by,
         reached=objective_reached(packed.problem, packing) if packed.problem.items else None,
         bound=packing.bound,
         warnings=(*loaded.resolved.host.warnings, *left, *advice),

@@ -38,6 +38,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "objective": record.objective,
         "status": record.status,
         "stop_reason": record.stop_reason,
+        "found_by": record.found_by or None,
         "reached": record.reached,
         "bound": record.bound,
         "gap": gap_of(record),

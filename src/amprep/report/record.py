@@ -189,6 +189,8 @@ class RunRecord(Summarised):
         Version of amprep.
     status, stop_reason
         Status of the packing, and why it ended.
+    found_by
+        The method that found the packing, where the packer has several; else empty.
     reached
         Value of the objective: number of builds, value of the placed parts, or height of the packing (mm); None if
         nothing was packed.
@@ -220,6 +222,7 @@ class RunRecord(Summarised):
     settings: Mapping[str, Any] = field(default_factory=dict)
     objective: Objective = "builds"
     reached: float | None = None
+    found_by: str = ""
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

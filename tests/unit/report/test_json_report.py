@@ -55,6 +55,7 @@ def test_the_json_report_contains_the_results_of_the_run(record):
     assert {"file", "parts", "density", "height_mm", "supports"} <= build.keys()
     assert {"volume_mm3", "demand_squares", "unconnected_squares"} <= build["supports"].keys()
     assert {"builds", "unplaced", "stages", "seed", "status", "stop_reason", "bound"} <= report.keys()
+    assert report["found_by"] is None
     assert report["stages"] == [{"name": "read", "seconds": 0.25}, {"name": "pack", "seconds": 1.5}]
     assert report["unplaced"] == [{"name": "crane", "copy": 2, "reason": "too large", "value": None}]
     assert build["supports"]["unconnected_squares"][0]["reason"] == "enclosed"
