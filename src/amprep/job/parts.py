@@ -11,6 +11,7 @@ from amprep.errors import JobError, nearest_hint
 from amprep.job.settings.job import Job
 from amprep.job.settings.packing import as_names
 from amprep.job.settings.parts import PartSettings
+from amprep.model.counting import counted
 from amprep.model.part import Part
 
 
@@ -62,7 +63,7 @@ def _fixed(part: Part, entry: PartSettings) -> Floats | None:
     quantity = entry.quantity or part.quantity
     if len(entry.fixed) > quantity:
         raise JobError(
-            f"part {part.name!r}: fixed has {len(entry.fixed)} positions, but the quantity is {quantity}; "
+            f"part {part.name!r}: fixed has {counted(len(entry.fixed), 'position')}, but the quantity is {quantity}; "
             "raise quantity"
         )
     return frozen(entry.fixed, np.float64, 3) if entry.fixed else part.fixed

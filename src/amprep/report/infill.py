@@ -9,8 +9,8 @@ from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
 from amprep.infill.fill_region import FilledPart
 from amprep.model import Part
+from amprep.model.counting import counted
 from amprep.model.summary import Summarised
-from amprep.report.counting import counted
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.record import StageTime
 

@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from amprep.measures.objective import relative_gap
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.record import RunRecord
 
 

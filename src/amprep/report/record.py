@@ -9,9 +9,9 @@ from amprep.checks.violation import Violation
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
+from amprep.model.counting import counted
 from amprep.model.packing import Objective
 from amprep.model.summary import Summarised
-from amprep.report.counting import counted
 
 
 @dataclass(frozen=True)

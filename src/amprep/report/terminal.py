@@ -4,7 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.objective import amount, objective_words, part_values
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
 

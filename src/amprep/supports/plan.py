@@ -10,6 +10,7 @@ from amprep.arrays import Bools, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
+from amprep.model.counting import counted
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
@@ -98,7 +99,7 @@ def _ground(laid: SupportGrid, routed: Routed, rules: PlanningRules) -> _Support
     left = ~connected & (rules.grounding == "anywhere")
     grounded = stand_on_parts(laid, left, routed.edges)
     edges = SupportEdges.concatenate([routed.edges, grounded.edges]).merged()
-    notes = (f"{len(grounded.feet)} columns stand on parts, as supports.grounding allows",)
+    notes = (f"{counted(len(grounded.feet), 'column')} on parts, as supports.grounding allows",)
     return _Supports(
         edges, grounded.feet, connected | grounded.connected, notes if len(grounded.feet) else ()
     )
@@ -109,7 +110,7 @@ def _brace(laid: SupportGrid, supports: _Supports, rules: PlanningRules) -> _Sup
     if not rules.cross_bracing:
         return supports
     bracing = add_cross_bracing(laid.grid, laid.voxels, supports.edges, rules.slenderness_ratio)
-    note = f"{bracing.braced} slender columns are braced by struts, {bracing.alone} are too far from others"
+    note = f"struts brace {counted(bracing.braced, 'slender column')}; too far from others: {bracing.alone}"
     edges = SupportEdges.concatenate([supports.edges, bracing.edges]).merged()
     return supports._replace(edges=edges, notes=(*supports.notes, note))
 

@@ -16,6 +16,7 @@ from amprep.geometry.boxes.build_space import Space, find_feasible_position, rot
 from amprep.geometry.meshes.distance import box_distance, box_solids, convex_solid, near_pairs, solid_distance
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.bounding_volume import Boxes, ConvexPieces
+from amprep.model.counting import counted
 from amprep.model.packing import Packing, PackingProblem, Placement
 
 if TYPE_CHECKING:
@@ -290,8 +291,10 @@ def _claims(problem: PackingProblem, packing: Packing) -> list[Violation]:
     if packing.status == "optimal":
         proved = packing.bound is not None and sign * (reached - packing.bound) <= slack
         if incomplete or not proved:
-            left = len(packing.unplaced)
-            message = f"is reported as optimal, but reaches {reached:g}, bound {packing.bound}, {left} items unplaced"
+            left = counted(len(packing.unplaced), "item")
+            message = (
+                f"is reported as optimal, but reaches {reached:g}, bound {packing.bound}, {left} unplaced"
+            )
             faults.append(Violation("status", "packing", message))
     if packing.status == "infeasible" and not packing.unplaced:
         faults.append(Violation("status", "packing", "is reported as infeasible, but every item is placed"))

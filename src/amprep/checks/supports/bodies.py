@@ -18,6 +18,7 @@ from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Stop
+from amprep.model.counting import counted
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -158,7 +159,7 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
         return []
     first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
     place = np.round(first, 2).tolist()
-    message = f"{floating} of {count} components do not reach the plate, one of them at {place} mm"
+    message = f"floats: {floating} of {counted(count, 'component')} not on the plate, one at {place} mm"
     return [Violation(STANDING, body.name, message)]
 
 
@@ -173,7 +174,7 @@ def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Vi
         return np.asarray(on_plate)
 
     floating = beams.count_floating(lattice, rests)
-    message = f"{floating} components of beams and solids do not reach the plate"
+    message = f"floats: {counted(floating, 'component')} of beams and solids not on the plate"
     return [Violation(STANDING, body.name, message)] if floating else []
 
 

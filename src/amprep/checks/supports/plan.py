@@ -4,6 +4,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.checks.violation import Violation
+from amprep.model.counting import counted
 from amprep.model.supports import (
     CAPACITY,
     ENCLOSED,
@@ -161,7 +162,9 @@ def check_raises(problem: SupportProblem, plan: SupportPlan) -> list[Violation]:
     left = sum(each.reason == CAPACITY for each in plan.unconnected)
     if left and problem.escalation != "none" and plan.stop_reason == "finished":
         return [
-            _violation("plan", f"leaves {left} red squares unconnected, although capacities may be raised")
+            _violation(
+                "plan", f"leaves {counted(left, 'red square')} unconnected, although capacities may be raised"
+            )
         ]
     if not plan.raised:
         return []

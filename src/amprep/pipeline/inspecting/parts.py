@@ -10,7 +10,7 @@ from amprep.measures.overhangs import measure_overhangs
 from amprep.measures.printer_fit import poses_of
 from amprep.measures.thin_walls import ThinWall, measure_thin_walls
 from amprep.model import Part, PlacedPart
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.inspection.record import InspectedPart, PrinterFit
 
 SMALL_MM, LARGE_MM = 1.0, 2000.0

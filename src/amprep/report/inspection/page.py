@@ -9,7 +9,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.files import replacing
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
 from amprep.report.inspection.words import (
     contents_words,

@@ -9,7 +9,7 @@ from amprep.measures.overhangs import OverhangFigures
 from amprep.measures.printer_fit import Fit
 from amprep.measures.thin_walls import ThinWall
 from amprep.model import Boxes, ConvexPieces, Part, TurnedVolume
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.record import StageTime
 
 

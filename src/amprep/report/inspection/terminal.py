@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.inspection.compare import compare_makers
 from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
 from amprep.report.inspection.words import (

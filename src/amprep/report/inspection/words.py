@@ -6,7 +6,7 @@ from amprep.measures.contents import MeshContents
 from amprep.measures.overhangs import OverhangFigures
 from amprep.measures.thin_walls import ThinWall
 from amprep.model import Part
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.inspection.record import InspectedFile, InspectedPart, InspectedVolume
 
 

@@ -8,7 +8,7 @@ from textwrap import dedent
 
 from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.json_values import plain
 from amprep.report.objective import amount, gap_of, objective_words, part_values, total_value
 from amprep.report.picture.colours import part_colours

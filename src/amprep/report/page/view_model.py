@@ -17,8 +17,8 @@ from amprep.model import (
     SupportBody,
     Unsupported,
 )
+from amprep.model.counting import counted
 from amprep.model.mesh import join_meshes
-from amprep.report.counting import counted
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.picture.colours import PALETTE, SUPPORT, VOLUME, part_colours
 from amprep.report.picture.marks import mark_radius, thinned

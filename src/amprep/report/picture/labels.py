@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.measures.density import build_height
 from amprep.model import Build
-from amprep.report.counting import counted
+from amprep.model.counting import counted
 from amprep.report.picture.camera import Camera
 
 if TYPE_CHECKING:

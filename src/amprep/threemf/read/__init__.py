@@ -10,6 +10,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.errors import InputError
+from amprep.model.counting import counted
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region
 from amprep.threemf.package.open import Package, open_package
@@ -82,7 +83,7 @@ def _parts(loaded: LoadedModel, package: Package, path: Path) -> list[Part]:
     if scale != 1.0:
         notes.append(f"scaled from {unit} to millimetres")
     if package.unprintable:
-        notes.append(f"left out {len(package.unprintable)} items that the file marks as not printable")
+        notes.append(f"left out {counted(len(package.unprintable), 'item')}: the file says not to print")
     prusaslicer = parse_prusaslicer_config(package.prusaslicer_config, str(path))
     roles = parse_bambu_config(package.bambu_config, str(path))
     flattener = Flattener(loaded.model, prusaslicer, roles, package.painted, str(path))

@@ -10,6 +10,7 @@ first.
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
+from amprep.model.counting import counted
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
 from amprep.threemf.package.painted_supports import PaintedSupports
@@ -127,5 +128,7 @@ def painted_regions(
             regions.append(
                 Region(STATES[state], "painted", np.concatenate(owners[state]).astype(np.int32), mesh)
             )
-    note = f"painted supports of {damaged} triangles are dropped: damaged or too fine" if damaged else ""
+    note = (
+        f"dropped painted supports of {counted(damaged, 'triangle')}: damaged or too fine" if damaged else ""
+    )
     return regions, note

@@ -60,5 +60,5 @@ def test_a_damaged_code_is_noted_and_the_rest_is_kept():
     corners = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 4]])
     regions, note = painted_regions(painted, np.zeros((5, 3)), corners, np.array([False, True, True]), 10)
     assert [(region.kind, present(region.triangles).tolist()) for region in regions] == [("enforcer", [10])]
-    assert note == "painted supports of 1 triangles are dropped: damaged or too fine"
+    assert note == "dropped painted supports of 1 triangle: damaged or too fine"
     assert painted_regions(painted, np.zeros((5, 3)), corners[:2], np.ones(2, bool), 0)[1]

@@ -302,7 +302,7 @@ def test_items_marked_as_not_printable_are_left_out_with_a_note(tmp_path):
     build = '<item objectid="1" printable="0"/><item objectid="1"/><item objectid="1" printable="0"/>'
     (part,) = read_parts(pack(tmp_path / "a.3mf", box_object(), build))
     assert part.quantity == 1
-    assert part.notes == ("left out 2 items that the file marks as not printable",)
+    assert part.notes == ("left out 2 items: the file says not to print",)
 
 
 THUMBNAIL = (
