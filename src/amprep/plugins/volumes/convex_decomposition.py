@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.bounding.convex.decompose import PieceGoal, decompose_by_cuts
+from amprep.geometry.bounding.convex.decompose import PieceGoal, decompose_by_cuts, decompose_by_patches
 from amprep.geometry.bounding.convex.hulls import containing_hull
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.bounding_volume import ConvexPieces
@@ -22,14 +22,16 @@ def convex_pieces(
 ) -> ConvexPieces:
     """Return convex pieces whose union contains the part with its interior.
 
-    Closed cavities of the part are filled. A part that is not a solid gets the hull of its vertices.
+    Closed cavities of the part are filled. A part that is not a solid is decomposed by patches of its surface.
     """
     return ConvexPieces(tuple(Mesh(*containing_hull(points)) for points in _points(part, params, stop)))
 
 
 def _points(part: Part, params: ConvexPiecesParams, stop: Stop) -> list[Floats]:
+    goal = PieceGoal(params.pieces, params.excess, params.concavity_mm)
     solid = as_manifold(part.mesh.vertices, part.mesh.triangles)
     if not part.is_solid or solid.volume() <= 0.0:
-        return [part.mesh.vertices]
-    goal = PieceGoal(params.pieces, params.excess, params.concavity_mm)
+        return decompose_by_patches(part.mesh.arrays, None, goal, stop)
+    if params.method == "surface":
+        return decompose_by_patches(part.mesh.arrays, solid, goal, stop)
     return decompose_by_cuts(solid, goal, stop)

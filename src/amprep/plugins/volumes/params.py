@@ -116,20 +116,27 @@ class ConvexPiecesParams:
 
     Attributes
     ----------
+    method
+        ``cuts``: planes cut the solid into cells, and cells are merged. ``surface``: nearly convex patches of the
+        surface (Mamou, Ghorbel), and cells where their hulls leave the interior uncovered; slower.
     pieces
         Greatest number of pieces.
     excess
         Excess of the total volume of the pieces over the volume of the part, as a fraction of it, up to which
         fewer pieces are preferred.
     concavity_mm
-        Parts of the solid that are no deeper below their hull than this are not cut further; 0 for no limit.
+        Parts of the solid that are no deeper below their hull than this are not cut further; 0 for no limit. For
+        ``surface`` the largest concavity of a patch; 0 for 2 % of the diagonal of the part.
     """
 
+    method: str = "cuts"
     pieces: int = 32
     excess: float = 0.02
     concavity_mm: float = 0.0
 
     def __post_init__(self) -> None:
+        known = self.method in {"cuts", "surface"}
+        require(known, "method must be cuts or surface", repr(self.method))
         require_bounds(self, "pieces", at_least=1, at_most=1000)
         require_bounds(self, "excess", "concavity_mm", at_least=0)
 

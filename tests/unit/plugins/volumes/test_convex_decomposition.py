@@ -26,7 +26,7 @@ def union(volume):
     return Manifold.batch_boolean(solids(volume), OpType.Add)
 
 
-@pytest.mark.parametrize("params", [{}, {"pieces": 1}, {"pieces": 3, "excess": 0.0}, {"concavity_mm": 2.0}])
+@pytest.mark.parametrize("params", [{}, {"pieces": 1}, {"pieces": 3, "excess": 0.0}, {"method": "surface"}])
 @pytest.mark.parametrize("name", SOLIDS)
 def test_the_union_of_the_pieces_contains_the_solid_with_its_interior(name, params):
     solid = SOLIDS[name]()
@@ -94,15 +94,22 @@ def test_the_same_part_gives_the_same_pieces():
     assert [p.digest for p in one.pieces] == [p.digest for p in two.pieces]
 
 
-def test_a_part_that_is_no_solid_gets_the_hull_of_its_vertices():
-    mesh = part_of(SOLIDS["open box"]()).mesh
-    surface = Part("surface", Mesh(mesh.vertices, mesh.triangles[5:]), 1.0, is_solid=False)
-    volume = made(surface)
-    assert len(volume.pieces) == 1
+@pytest.mark.parametrize("ended", [False, True])
+def test_the_pieces_of_a_part_that_is_no_solid_contain_its_triangles(ended):
+    mesh = part_of(SOLIDS["apart"]()).mesh
+    surface = Part("surface", Mesh(mesh.vertices, mesh.triangles[:-3]), 1.0, is_solid=False)
+    volume = made(surface, stop=Stop.after(0.0) if ended else None)
+    assert (len(volume.pieces) > 1) != ended
     assert check_volume(surface, volume) == []
 
 
-@pytest.mark.parametrize("wrong", [{"pieces": 0}, {"excess": -1.0}, {"concavity_mm": float("nan")}])
+def test_a_stopped_decomposition_by_patches_gives_the_hulls_of_the_components():
+    assert len(made(part_of(SOLIDS["apart"]()), stop=Stop.after(0.0), method="surface").pieces) == 2
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"pieces": 0}, {"method": "x"}, {"excess": -1.0}, {"concavity_mm": float("nan")}]
+)
 def test_parameters_outside_their_bounds_are_refused(wrong):
     with pytest.raises(ValueError, match="must be"):
         ConvexPiecesParams(**wrong)

@@ -10,6 +10,9 @@ from amprep.arrays import Floats, Int64s
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+SLIVER = 1e-7
+"""Triangles smaller than this fraction of the largest have no reliable normal."""
+
 
 @dataclass(frozen=True, eq=False)
 class CutCell:
@@ -59,6 +62,19 @@ def hull_volume(points: Floats) -> float:
     from manifold3d import Manifold
 
     return float(Manifold.hull_points(points).volume())
+
+
+def hull_planes(points: Floats) -> Floats:
+    """Return the planes ``(k, 4)`` of the convex hull of points ``(n, 3)``; none if they are in one plane."""
+    from manifold3d import Manifold
+
+    mesh = Manifold.hull_points(points).to_mesh64()
+    corners = mesh.vert_properties[:, :3][mesh.tri_verts]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normals, axis=1)
+    wide = length > SLIVER * length.max(initial=0.0)
+    normals = normals[wide] / length[wide, None]
+    return np.column_stack((normals, np.einsum("ij,ij->i", normals, corners[wide, 0])))
 
 
 def hull_corners(points: Floats) -> Floats:
