@@ -2,6 +2,7 @@
 
 import typer
 
+from amprep.cli.bench.collision import collision
 from amprep.cli.bench.merging import merging
 from amprep.cli.bench.packing import container_loading, mpv, packing
 from amprep.cli.bench.routing import supports
@@ -16,3 +17,4 @@ app.command("packing")(packing)
 app.command("supports")(supports)
 app.command("support-volume")(support_volume)
 app.command("merging")(merging)
+app.command("collision")(collision)

@@ -1,0 +1,1 @@
+"""Benchmark of collision queries on two parts: OBB trees, convex pieces, and other packages."""
