@@ -5,7 +5,7 @@ import numpy as np
 from amprep.arrays import MeshArrays
 from amprep.checks.volumes import check_volume
 from amprep.errors import MeshError
-from amprep.geometry.bounding.simplification.simplify_outwards import Cost, simplify_outwards
+from amprep.geometry.bounding.simplification.simplify_outwards import Cost, SimplifiedMesh, simplify_outwards
 from amprep.geometry.bounding.simplification.solids import hull, united, without_overlaps
 from amprep.model.bounding_volume import Solid
 from amprep.model.control import Stop
@@ -45,16 +45,19 @@ def bounding_mesh(
 
 
 def _simplified(mesh: MeshArrays, params: BoundingMeshParams, stop: Stop) -> MeshArrays:
-    """Return the simplified mesh, or the simplified convex hull where that is smaller and within the distance."""
+    """Return the simplified mesh, or the simplified convex hull where that is smaller and no distance is given."""
     wanted = params.fraction * len(mesh[1]) if params.triangles is None else params.triangles
     target = max(4, int(wanted))
     limit = np.inf if params.max_error_mm is None else params.max_error_mm
     cost: Cost = "distance" if params.cost == "distance" else "volume"
-    vertices, triangles, reason = simplify_outwards(
-        without_overlaps(mesh), target, max_error=limit, cost=cost, stop=stop
-    )
-    if not reason or np.isfinite(limit):
-        return vertices, triangles
-    convex = simplify_outwards(hull(mesh), target, cost=cost, stop=stop)
-    smaller = Mesh(convex.vertices, convex.triangles).signed_volume < Mesh(vertices, triangles).signed_volume
-    return (convex.vertices, convex.triangles) if smaller else (vertices, triangles)
+    found = simplify_outwards(without_overlaps(mesh), target, max_error=limit, cost=cost, stop=stop)
+    convex = hull(mesh)
+    if np.isfinite(limit) or _volume(found) <= _volume(convex):
+        return found.vertices, found.triangles
+    coarse = simplify_outwards(convex, target, cost=cost, stop=stop)
+    best = coarse if _volume(coarse) < _volume(found) else found
+    return best.vertices, best.triangles
+
+
+def _volume(mesh: MeshArrays | SimplifiedMesh) -> float:
+    return Mesh(mesh[0], mesh[1]).signed_volume
