@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.geometry.bounding.boxes.cells import cells_of
-from amprep.geometry.bounding.boxes.fit import seal, shrink
+from amprep.geometry.bounding.boxes.fit import merged, seal, shrink
 from amprep.geometry.bounding.boxes.k_means import cluster_boxes
 from amprep.geometry.bounding.boxes.polygons import polygons_of
 from amprep.geometry.bounding.boxes.turned_k_means import turned_clusters
@@ -28,7 +28,7 @@ def k_means_boxes(
     rotation, boxes = _clustered(part, params, rng)
     turned = part.mesh.vertices @ rotation.T
     polygons = polygons_of(turned, part.mesh.triangles)
-    boxes = seal(shrink(polygons, boxes))
+    boxes = seal(merged(polygons, shrink(polygons, boxes)))
     volume = Boxes(boxes[:, :3], boxes[:, 3:])
     return volume if (rotation == np.eye(3)).all() else TurnedVolume(volume, rotation)
 

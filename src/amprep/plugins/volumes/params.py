@@ -74,7 +74,7 @@ class BranchAndCutParams:
 
     boxes: int = 3
     cells: int = 16
-    work: float = 1.0
+    work: float = 0.6
 
     def __post_init__(self) -> None:
         require_bounds(self, "boxes", at_least=2, at_most=4)

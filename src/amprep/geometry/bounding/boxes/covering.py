@@ -8,21 +8,21 @@ import numpy as np
 from amprep.arrays import Floats, Ints
 from amprep.geometry.bounding.boxes.branch_and_cut import CellCover, cover_cells
 from amprep.geometry.bounding.boxes.cells import CellGrid, cells_of, in_mm, required_cells, snapped
-from amprep.geometry.bounding.boxes.fit import shrink
+from amprep.geometry.bounding.boxes.fit import merged, shrink
 from amprep.geometry.bounding.boxes.improve import improve
 from amprep.geometry.bounding.boxes.k_means import cluster_boxes
 from amprep.geometry.bounding.boxes.polygons import ConvexPolygons, boxes_as_polygons, polygons_of
 from amprep.geometry.bounding.boxes.two_boxes import TwoBoxSearch, flat_coordinates
 from amprep.geometry.bounding.boxes.union import union_volume
 
-_FINE = 40
+_FINE = 32
 """Cells along the longest side in which the surface is enclosed for k-means and for the improvement."""
 
-_RESTARTS = 20
+_RESTARTS = 16
 
-_SEARCH = TwoBoxSearch(planes=24, rounds=3, starts=1)
+_SEARCH = TwoBoxSearch(planes=20, rounds=2, starts=1)
 
-_EXACT = 120_000
+_EXACT = 60_000
 """Triangles times passes of the improvement on triangles."""
 
 
@@ -41,7 +41,7 @@ class CoverSearch(NamedTuple):
 
     boxes: int = 3
     cells: int = 16
-    work: float = 1.0
+    work: float = 0.6
 
 
 class BoxCover(NamedTuple):
@@ -89,12 +89,12 @@ def cover_mesh(
     items = cells_of(vertices, triangles, _FINE).items
     rough = boxes_as_polygons(items)
     _, start = cluster_boxes(items, search.boxes, _RESTARTS, rng)
-    coverings = [improve(rough, start, search.boxes, _SEARCH, preferred=flat, passes=3, stop=stop)]
+    coverings = [improve(rough, start, search.boxes, _SEARCH, preferred=flat, passes=2, stop=stop)]
     grid = cells_of(vertices, triangles, search.cells)
     found = _on_cells(grid, coverings[0], search, stop)
     if len(found.blocks):
         blocks = in_mm(grid, found.blocks)
-        coverings.append(improve(rough, blocks, search.boxes, _SEARCH, preferred=flat, passes=3, stop=stop))
+        coverings.append(improve(rough, blocks, search.boxes, _SEARCH, preferred=flat, passes=2, stop=stop))
     best = min(coverings, key=union_volume)
     best = _on_triangles(polygons, best, search.boxes, flat, stop)
     cell = float(np.prod(grid.size))
@@ -115,5 +115,6 @@ def _on_triangles(
 ) -> Floats:
     passes = min(_EXACT // len(polygons.first), 4)
     if not passes:
-        return shrink(polygons, boxes)
-    return improve(polygons, boxes, count, _SEARCH, preferred=flat, passes=passes, stop=stop)
+        return merged(polygons, shrink(polygons, boxes))
+    better = improve(polygons, boxes, count, _SEARCH, preferred=flat, passes=passes, stop=stop)
+    return merged(polygons, better)

@@ -68,6 +68,21 @@ def enlarged(boxes: Floats, numbers: Sequence[int]) -> Floats:
     return np.asarray(grown)
 
 
+def merged(polygons: ConvexPolygons, boxes: Floats) -> Floats:
+    """Return fewer boxes with the same union, shrunk; the boxes as they are if there are none.
+
+    Each box is enlarged as far as the union reaches. A box that the others contain then is dropped, small ones first:
+    the two halves of a bar that a third box crosses become one bar.
+    """
+    larger = enlarged(boxes, range(len(boxes)))
+    kept = list(np.argsort(volumes(larger), kind="stable"))
+    for number in tuple(kept):
+        others = [other for other in kept if other != number]
+        if others and _contains(larger[others], larger[number]):
+            kept = others
+    return shrink(polygons, larger[kept]) if len(kept) < len(boxes) else boxes
+
+
 def _contains(boxes: Floats, box: Floats) -> bool:
     """Tell whether the union of boxes contains a box, but for rounding."""
     inner = np.hstack((np.maximum(boxes[:, :3], box[:3]), np.minimum(boxes[:, 3:], box[3:])))

@@ -1,7 +1,7 @@
 import numpy as np
 from tests.shared.coverings import boxes_volume, dense_points, in_some_box, polygons_of_part, solid_of
 
-from amprep.geometry.bounding.boxes.fit import MARGIN, all_covered, enlarged, seal, shrink
+from amprep.geometry.bounding.boxes.fit import MARGIN, all_covered, enlarged, merged, seal, shrink
 from amprep.kernels.boxes.records import PAIR_SLACK
 
 L_SHAPE = [[0, 0, 0, 30, 10, 10], [0, 0, 0, 10, 10, 40]]
@@ -43,3 +43,17 @@ def test_boxes_are_enlarged_only_inside_their_union():
     larger = enlarged(boxes, range(3))
     assert larger[1].tolist() == [0, 0, 0, 10, 10, 40]
     assert larger[[0, 2]].tolist() == boxes[[0, 2]].tolist()
+
+
+def test_two_halves_of_a_bar_that_a_third_box_crosses_are_merged():
+    halves = np.array([[0.0, 0, 20, 20, 10, 30], [20, 0, 0, 30, 10, 30], [30, 0, 20, 50, 10, 30]])
+    polygons = polygons_of_part(solid_of(halves))
+    boxes = merged(polygons, halves)
+    assert len(boxes) == 2
+    assert boxes_volume(boxes) == 7000
+    assert all_covered(polygons, boxes)
+
+
+def test_boxes_that_are_all_needed_are_not_merged():
+    boxes = np.array(L_SHAPE, float)
+    assert merged(polygons_of_part(solid_of(L_SHAPE)), boxes) is boxes
