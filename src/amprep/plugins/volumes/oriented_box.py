@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.bounding.boxes.fit import seal
 from amprep.geometry.bounding.boxes.orientation import hull_of, smallest_box_about_z, smallest_box_rotation
 from amprep.model.bounding_volume import Boxes, TurnedVolume
 from amprep.model.control import Stop
@@ -49,8 +48,7 @@ def _best_rotation(vertices: Floats, part: Part) -> Floats:
 
 def _enclosing(vertices: Floats, rotation: Floats) -> tuple[Floats, Floats]:
     turned = vertices @ rotation.T
-    box = seal(np.concatenate((turned.min(axis=0), turned.max(axis=0)))[None])[0]
-    return box[:3], box[3:]
+    return turned.min(axis=0), turned.max(axis=0)
 
 
 def _volume(box: tuple[Floats, Floats]) -> float:

@@ -43,8 +43,11 @@ def _shrunk_in(polygons: ConvexPolygons, boxes: Floats, order: list[int]) -> Flo
 
 
 def seal(boxes: Floats) -> Floats:
-    """Return boxes ``(k, 6)`` enlarged by `MARGIN`, so that rounding leaves nothing outside and no gap between them."""
-    return np.hstack((boxes[:, :3] - MARGIN, boxes[:, 3:] + MARGIN))
+    """Return boxes ``(k, 6)`` enlarged by `MARGIN`, so that rounding leaves nothing outside and no gap between them.
+
+    A single box has no gaps and is returned as it is.
+    """
+    return boxes if len(boxes) == 1 else np.hstack((boxes[:, :3] - MARGIN, boxes[:, 3:] + MARGIN))
 
 
 def all_covered(polygons: ConvexPolygons, boxes: Floats) -> bool:

@@ -8,18 +8,22 @@ from amprep.kernels.boxes.records import Arrangement
 from amprep.model.bounding_volume import Boxes
 from amprep.plugins.packers.instance.prepare import PreparedInstance, boxes_of, prepare
 
+DECIMALS = 6
+"""Decimals of sizes in mm, as many as the resolution of block building has."""
+
 
 def enclosing_instance(instance: PreparedInstance) -> PreparedInstance | None:
     """Return the instance with each item in its enclosing box; None if the build is round or has fixed items.
 
-    A packing of the enclosing boxes is a packing of the items.
+    A packing of the enclosing boxes is a packing of the items. Sizes are rounded to the resolution of block building:
+    volume makers enlarge boxes by less than counts as contact, and such sizes have no common unit.
     """
     problem = instance.problem
     if problem.fixed or instance.space.radius:
         return None
     boxes = (boxes_of(item.volume).enclosing() for item in problem.items)
     items = (
-        replace(item, volume=Boxes(lo[None], hi[None]))
+        replace(item, volume=Boxes(lo[None], (lo + np.round(hi - lo, DECIMALS))[None]))
         for item, (lo, hi) in zip(problem.items, boxes, strict=True)
     )
     return prepare(replace(problem, items=tuple(items)))
