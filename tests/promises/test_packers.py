@@ -19,8 +19,9 @@ BUDGETS: dict[str, dict[str, Any]] = {
     "ip": {"effort": 0.005},
     "ip-local-search": {"effort": 0.002, "steps": 4},
     "column-generation": {"effort": 0.001, "proof": 20.0},
+    "separation": {"work": 5.0},
 }
-"""Smaller budgets of work for packers that solve integer programs: their promise does not depend on it."""
+"""Smaller budgets of work for packers that solve programs or search long: their promise does not depend on it."""
 
 TURN = {axis: np.roll(np.roll([[1, 0, 0], [0, 0, -1], [0, 1, 0]], axis, 0), axis, 1) for axis in range(3)}
 AXIS_TURNS = np.array([np.eye(3), TURN[2], TURN[0], TURN[1], TURN[2] @ TURN[0], TURN[0] @ TURN[2]], float)

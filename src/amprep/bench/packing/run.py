@@ -19,7 +19,13 @@ if TYPE_CHECKING:
     from amprep.hookspecs import Packer
     from amprep.host import Listed
 
-UNLIMITED: dict[str, float] = {"work": 1e12, "patience": 10**9, "effort": 1e12, "proof": 1e12}
+UNLIMITED: dict[str, float] = {
+    "work": 1e12,
+    "patience": 10**9,
+    "effort": 1e12,
+    "proof": 1e12,
+    "failures": 10**9,
+}
 """Parameters that would end a packer before the time limit, and values that never do."""
 
 _MEASURES = {"builds": "builds", "fill": "value", "height": "height_mm"}

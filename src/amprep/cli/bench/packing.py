@@ -1,6 +1,7 @@
-"""The packing benchmarks: ``amprep bench mpv``, ``container-loading`` and ``packing``."""
+"""The packing benchmarks: ``amprep bench mpv``, ``container-loading``, ``esicup`` and ``packing``."""
 
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -69,6 +70,33 @@ def container_loading(
         "time_limit_s": time_limit,
     }
     _print(record, results, as_json=as_json)
+
+
+def esicup(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="JSON file of an instance: base, meshes, demands.")
+    ],
+    packer: PackerName = "separation",
+    time_limit: TimeLimit = 60.0,
+    seeds: Annotated[
+        int, typer.Option("--seeds", metavar="N", min=1, help="Number of runs, with seeds 1 to N.")
+    ] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Pack the meshes of an ESICUP instance on its base, as low as possible, and check every layout on the meshes."""
+    from amprep.bench.packing.esicup import read_esicup, run_esicup, summary
+
+    instance = read_esicup(file)
+    progress = (lambda _: None) if as_json else (lambda result: typer.echo(result.line))
+    results = run_esicup(instance, packer, seconds=time_limit, seeds=range(1, seeds + 1), progress=progress)
+    mean = summary(results)
+    if as_json:
+        record = {"benchmark": "esicup", "file": file.name, "packer": packer, "time_limit_s": time_limit}
+        runs = [asdict(result) | {"validated": result.validated} for result in results]
+        print_json(record | {"record_height_mm": instance.record, "mean": mean, "runs": runs})
+    else:
+        typer.echo(f"mean: height {mean['height_mm']:.4f}, density {mean['density']:.1%}")
+    finish(valid=all(result.validated for result in results))
 
 
 def packing(

@@ -16,6 +16,7 @@ from amprep.kernels.boxes.extreme_points import pack
 from amprep.kernels.boxes.positions import LEFT, WORK, PassState
 from amprep.kernels.boxes.records import Arrangement, BoxInstance
 from amprep.kernels.helper import helper
+from amprep.kernels.random_numbers import uniform
 
 SOLVED, PAUSED = 0, 1
 """Results of `search`: every item is in a build; the work is used up, call again."""
@@ -104,17 +105,6 @@ class SearchState(NamedTuple):
     order: Int64s
 
 
-@njit(cache=True)
-def _random(state: NDArray[np.uint64]) -> float:
-    """Return a number from 0 to 1 and step the state (xorshift64*, Vigna 2016, doi:10.1145/2845077)."""
-    x = state[0]
-    x ^= x >> np.uint64(12)
-    x ^= x << np.uint64(25)
-    x ^= x >> np.uint64(27)
-    state[0] = x
-    return np.float64((x * np.uint64(2685821657736338717)) >> np.uint64(11)) / 9007199254740992.0
-
-
 @helper
 def _remember_build(build: int, items: Int64s, arrangement: Arrangement, met: MetBuilds) -> None:
     """Add the items that a build of an arrangement holds to the met builds, unless they are known."""
@@ -154,7 +144,7 @@ def _choose_builds(count: int, builds: int, random: NDArray[np.uint64], chosen: 
     for i in range(count):
         again = True
         while again:
-            chosen[i] = int(_random(random) * builds)
+            chosen[i] = int(uniform(random) * builds)
             again = False
             for j in range(i):
                 again = again or chosen[j] == chosen[i]
@@ -200,11 +190,11 @@ def search(
     key = np.empty(order.size)
     fixed = instance.obstacles.shape[0] > instance.zones
     while spent[SPENT] < last:
-        ruined = min(builds, 1 + int(_random(random) * ruin_size))
+        ruined = min(builds, 1 + int(uniform(random) * ruin_size))
         _choose_builds(ruined, builds, random, chosen)
-        row = int(_random(random) * keys.shape[0])
-        noise = 1.2 * _random(random)
-        unassigned_first = _random(random) < 0.3
+        row = int(uniform(random) * keys.shape[0])
+        noise = 1.2 * uniform(random)
+        unassigned_first = uniform(random) < 0.3
         count, before = 0, 0.0
         for item in items:
             build = arrangement.build[item]
@@ -212,7 +202,7 @@ def search(
             for i in range(ruined):
                 taken = taken or chosen[i] == build
             if taken:
-                key[count] = np.log(keys[row, item]) + noise * (_random(random) - 0.5)
+                key[count] = np.log(keys[row, item]) + noise * (uniform(random) - 0.5)
                 if build < 0:
                     before += weight[item]
                     key[count] += 100.0 if unassigned_first else 0.0
@@ -226,7 +216,7 @@ def search(
         pass_state.cursor[:] = 0
         pass_state.cursor[LEFT] = count
         pass_state.failed[:] = -1
-        rule = rules[int(_random(random) * rules.shape[0])]
+        rule = rules[int(uniform(random) * rules.shape[0])]
         first_obstacles = instance.obstacles.shape[0] if chosen[0] == 0 else instance.zones
         pack(sorted_order, instance, first_obstacles, rule, ruined, MOST_A_STEP, repacked, pass_state)
         spent[SPENT] += pass_state.cursor[WORK] + items.size + 20 * count
@@ -237,7 +227,7 @@ def search(
         for item in sorted_order:
             if repacked.build[item] < 0:
                 after += weight[item]
-        if after <= before - temperature * np.log(1.0 - _random(random)):
+        if after <= before - temperature * np.log(1.0 - uniform(random)):
             for item in sorted_order:
                 new = repacked.build[item]
                 arrangement.build[item] = -1 if new < 0 else chosen[new]

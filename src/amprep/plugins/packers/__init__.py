@@ -11,6 +11,7 @@ from amprep.plugins.packers.params import (
     ExtremePointsParams,
     IpLocalSearchParams,
     IpParams,
+    SeparationParams,
     SweepParams,
     TabuParams,
 )
@@ -84,4 +85,20 @@ def amprep_packers() -> Iterable[Packer]:
         run=later("amprep.plugins.packers.column_generation:pack_column_generation"),
         accepts=replace(_BOXES, zones=True),
         params=ColumnGenerationParams,
+    )
+    yield Packer(
+        name="separation",
+        summary="True shapes: overlapping layouts are separated by guided local search on no-fit solids.",
+        run=later("amprep.plugins.packers.separation:pack_separation"),
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes", "convex", "solid"}),
+            objectives=frozenset({"height", "builds", "fill"}),
+            orientations=_ANY_LIST,
+            cylinder=True,
+            zones=True,
+            fixed=True,
+            stacking=frozenset({True}),
+        ),
+        params=SeparationParams,
+        volumes="mesh",
     )

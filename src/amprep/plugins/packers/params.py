@@ -239,3 +239,40 @@ class ColumnGenerationParams(IpParams):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_bounds(self, "rounds", "restarts", "roundings", "proof", at_least=0)
+
+
+@dataclass(frozen=True)
+class SeparationParams:
+    """Parameters of `separation`; the budget counts work, so that the same job gives the same packing.
+
+    Attributes
+    ----------
+    step
+        Distance of the samples of the fields, as a fraction of the mean size of the items.
+    memory
+        Greatest size of the fields in MB; the step grows where they would need more.
+    scan_chance
+        Probability that a move scans the whole build volume when a descent leaves an overlap.
+    shrink
+        Fraction by which the height is reduced after a success; after failures less.
+    persistence
+        Spans of ten rounds without progress after which a layout is given up and disturbed.
+    failures
+        Layouts given up one after another at which the search ends.
+    work
+        Millions of field values read after which the search ends; some 300 per second.
+    """
+
+    step: float = 0.06
+    memory: float = 400.0
+    scan_chance: float = 0.4
+    shrink: float = 0.01
+    persistence: int = 40
+    failures: int = 20
+    work: float = 3000.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "step", above=0, at_most=0.5)
+        require_bounds(self, "scan_chance", "work", "failures", at_least=0)
+        require_bounds(self, "shrink", above=0, at_most=0.5)
+        require_bounds(self, "memory", "persistence", at_least=1)

@@ -1,0 +1,166 @@
+"""Records of the separation search: shapes, fields, walls, layouts and the search state."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from amprep.arrays import Float32s, Floats, Int64s
+
+EVERYWHERE = -1
+"""Build of an obstacle that is in every build."""
+
+READ, MOVES, SCANS, ROUNDS = range(4)
+"""Columns of `SeparationState.spent`: field values read, moves, scans, rounds."""
+
+
+class NoFitPieces(NamedTuple):
+    """No-fit solids of pairs of shapes as unions of convex polyhedra.
+
+    Attributes
+    ----------
+    planes
+        ``(k, 4)`` outward unit normals and offsets (mm) of all polyhedra, one after another.
+    first_plane
+        ``(p + 1,)`` index of the first plane of each polyhedron, and k.
+    box
+        ``(p, 6)`` mm, least and greatest corner of each polyhedron.
+    first, end
+        ``(m, m)`` range of the polyhedra of the offsets of shape a from shape b. Only one of (a, b) and (b, a) has
+        polyhedra; the other is its mirror image in the origin.
+    """
+
+    planes: Floats
+    first_plane: Int64s
+    box: Floats
+    first: Int64s
+    end: Int64s
+
+
+class NoFitFields(NamedTuple):
+    """Depth of no-fit solids, sampled on grids of one step.
+
+    A depth is positive inside and negative outside near the boundary. Samples are stored in eight phases, the
+    parities of their indices, so that every other sample along each axis is contiguous.
+
+    Attributes
+    ----------
+    values
+        All samples, mm.
+    first
+        ``(m, m)`` index of the first sample of a pair; -1 for a pair without a field.
+    origin
+        ``(m, m, 3)`` mm, offset of the first sample.
+    cells
+        ``(m, m, 3)`` number of samples along each axis in one phase.
+    step
+        Distance of samples, mm.
+    """
+
+    values: Float32s
+    first: Int64s
+    origin: Floats
+    cells: Int64s
+    step: float
+
+
+class PositionRange(NamedTuple):
+    """Positions at which shapes are inside the build volume.
+
+    Attributes
+    ----------
+    lo, hi
+        ``(m, 3)`` mm, least and greatest position of each shape.
+    radius
+        Radius (mm) of the circle that contains the outlines; 0 for a box-shaped build volume.
+    centre
+        ``(2,)`` mm, its centre.
+    outline
+        ``(k, 2)`` mm, corners of the outlines of all shapes, one after another.
+    first
+        ``(m + 1,)`` index of the first corner of each outline, and k.
+    """
+
+    lo: Floats
+    hi: Floats
+    radius: float
+    centre: Floats
+    outline: Floats
+    first: Int64s
+
+
+class ShapeLayout(NamedTuple):
+    """Shape, build and position of each item; obstacles follow the items.
+
+    Attributes
+    ----------
+    shape
+        ``(n,)`` int64.
+    build
+        ``(n,)`` int64; `EVERYWHERE` for an obstacle in every build.
+    position
+        ``(n, 3)`` mm.
+    """
+
+    shape: Int64s
+    build: Int64s
+    position: Floats
+
+
+class SeparationState(NamedTuple):
+    """Overlaps and weights of the guided search, and work arrays; all are modified.
+
+    Attributes
+    ----------
+    overlap, weight
+        ``(items, n)`` depth (mm) of the overlap of each item with the others and the obstacles, and its weight.
+    outside, outside_weight
+        ``(items,)`` length (mm) by which an item is outside the circle, and its weight.
+    random
+        ``(1,)`` uint64 state of the random numbers, not 0.
+    spent
+        ``(4,)`` see `READ`.
+    sums
+        ``(g,)`` float32 weighted overlap at the cells of a scan.
+    near, order
+        ``(n,)`` items near the one that is moved, and the order of a round.
+    cell, value
+        ``(c,)`` candidate cells of a scan and their values.
+    """
+
+    overlap: Floats
+    weight: Floats
+    outside: Floats
+    outside_weight: Floats
+    random: NDArray[np.uint64]
+    spent: Int64s
+    sums: Float32s
+    near: Int64s
+    order: Int64s
+    cell: Int64s
+    value: Floats
+
+
+class MoveRules(NamedTuple):
+    """Rules of the guided search.
+
+    Attributes
+    ----------
+    first, end
+        ``(n,)`` range of the shapes that an item may have.
+    builds
+        Number of builds.
+    scan_chance
+        Probability that a move scans the build volume when descent alone leaves an overlap.
+    finest
+        Step (mm) at which a descent ends.
+    enough
+        Total overlap (mm) at which the search ends.
+    """
+
+    first: Int64s
+    end: Int64s
+    builds: int
+    scan_chance: float
+    finest: float
+    enough: float

@@ -1,0 +1,153 @@
+"""Scan of the build volume: the weighted overlap of one item at all cells of a grid, as a sum of shifted fields."""
+
+import numpy as np
+from numba import njit
+
+from amprep.arrays import Float32s, Floats, Int64s
+from amprep.kernels.helper import helper
+from amprep.kernels.no_fit.depth import outside_circle
+from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, PositionRange, ShapeLayout
+
+BLOCK = 4
+"""Side of the blocks of cells of which a scan proposes the best cell."""
+
+
+@helper
+def add_overlaps(fields, within, layout, weight, outside_weight, item, build, start, grid, sums):
+    """Write the weighted overlap of an item with all others of a build at the cells of a grid; return values read.
+
+    Parameters
+    ----------
+    weight
+        ``(n, n)`` weights of the overlaps.
+    outside_weight
+        Weight of the length outside the circle.
+    start
+        Three floats, mm: position at the first cell. Cells are two steps of the fields apart.
+    grid
+        Three ints, number of cells along each axis.
+    sums
+        ``(g,)``, modified.
+    """
+    gx, gy, gz = grid
+    shape, step = layout.shape[item], fields.step
+    sums[: gx * gy * gz] = np.float32(0.0)
+    read = 0
+    for other in range(layout.shape.size):
+        if other == item or (layout.build[other] != build and layout.build[other] != EVERYWHERE):
+            continue
+        b = layout.shape[other]
+        if fields.first[shape, b] < 0:
+            continue
+        nx, ny, nz = fields.cells[shape, b, 0], fields.cells[shape, b, 1], fields.cells[shape, b, 2]
+        origin, position = fields.origin[shape, b], layout.position[other]
+        kx = int(np.floor((start[0] - position[0] - origin[0]) / step + 0.5))
+        ky = int(np.floor((start[1] - position[1] - origin[1]) / step + 0.5))
+        kz = int(np.floor((start[2] - position[2] - origin[2]) / step + 0.5))
+        base = fields.first[shape, b] + ((kx & 1) * 4 + (ky & 1) * 2 + (kz & 1)) * nx * ny * nz
+        sx, sy, sz = kx >> 1, ky >> 1, kz >> 1
+        x0, x1 = max(0, -sx), min(gx, nx - sx)
+        y0, y1 = max(0, -sy), min(gy, ny - sy)
+        z0, z1 = max(0, -sz), min(gz, nz - sz)
+        if x0 >= x1 or y0 >= y1 or z0 >= z1:
+            continue
+        length, factor = z1 - z0, np.float32(weight[item, other])
+        read += (x1 - x0) * (y1 - y0) * length
+        for x in range(x0, x1):
+            for y in range(y0, y1):
+                to = (x * gy + y) * gz + z0
+                at = base + ((x + sx) * ny + y + sy) * nz + z0 + sz
+                _add_line(sums[to : to + length], fields.values[at : at + length], factor)
+    if within.radius > 0.0:
+        _add_outside(within, shape, outside_weight, start, grid, 2.0 * step, sums)
+    return read
+
+
+@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz"})
+def _add_line(sums, values, factor):
+    for k in range(sums.size):
+        value = values[k]
+        sums[k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
+
+
+@helper
+def _add_outside(within, shape, weight, start, grid, spacing, sums):
+    gx, gy, gz = grid
+    for x in range(gx):
+        for y in range(gy):
+            beyond = outside_circle(within, shape, start[0] + x * spacing, start[1] + y * spacing)
+            if beyond > 0.0:
+                row = (x * gy + y) * gz
+                for z in range(gz):
+                    sums[row + z] += np.float32(weight * beyond)
+
+
+@helper
+def best_cells(sums, grid, cell, value):
+    """Write the best cell of each block of cells, for the best blocks, best first; return their number."""
+    gx, gy, gz = grid
+    count = 0
+    for bx in range(0, gx, BLOCK):
+        for by in range(0, gy, BLOCK):
+            for bz in range(0, gz, BLOCK):
+                least, where = np.inf, -1
+                for x in range(bx, min(bx + BLOCK, gx)):
+                    for y in range(by, min(by + BLOCK, gy)):
+                        row = (x * gy + y) * gz
+                        for z in range(bz, min(bz + BLOCK, gz)):
+                            if sums[row + z] < least:
+                                least, where = sums[row + z], row + z
+                if count < cell.size:
+                    k = count
+                    count += 1
+                elif least < value[count - 1]:
+                    k = count - 1
+                else:
+                    continue
+                while k > 0 and value[k - 1] > least:
+                    value[k], cell[k] = value[k - 1], cell[k - 1]
+                    k -= 1
+                value[k], cell[k] = least, where
+    return count
+
+
+@njit(cache=True, nogil=True, _nrt=False)
+def lowest_free(
+    fields: NoFitFields,
+    within: PositionRange,
+    layout: ShapeLayout,
+    weight: Floats,
+    item: int,
+    grid: Int64s,
+    free: float,
+    sums: Float32s,
+) -> int:
+    """Return the lowest cell of the item's build at which it overlaps nothing, then the one of least x + y; or -1.
+
+    Positions are multiples of the step from the least position of the item's shape, so that samples are exact.
+
+    Parameters
+    ----------
+    weight
+        ``(n, n)`` ones.
+    grid
+        ``(3,)`` number of cells, two steps apart.
+    free
+        Overlap (mm) that counts as none.
+    sums
+        Work array.
+    """
+    shape = layout.shape[item]
+    size = (grid[0], grid[1], grid[2])
+    start = (within.lo[shape, 0], within.lo[shape, 1], within.lo[shape, 2])
+    add_overlaps(fields, within, layout, weight, 1.0, item, layout.build[item], start, size, sums)
+    best, height, beside = -1, grid[2], 0
+    for x in range(grid[0]):
+        for y in range(grid[1]):
+            row = (x * grid[1] + y) * grid[2]
+            for z in range(min(grid[2], height + 1)):
+                if sums[row + z] <= free:
+                    if z < height or x + y < beside:
+                        best, height, beside = row + z, z, x + y
+                    break
+    return best

@@ -1,0 +1,321 @@
+"""Guided separation: overlapping items move, one at a time, to the position of least weighted overlap."""
+
+import numpy as np
+from numba import njit
+
+from amprep.kernels.helper import helper
+from amprep.kernels.no_fit.depth import depth_at, outside_circle
+from amprep.kernels.no_fit.records import (
+    EVERYWHERE,
+    MOVES,
+    READ,
+    ROUNDS,
+    SCANS,
+    MoveRules,
+    NoFitFields,
+    PositionRange,
+    SeparationState,
+    ShapeLayout,
+)
+from amprep.kernels.no_fit.scan import add_overlaps, best_cells
+from amprep.kernels.random_numbers import uniform
+
+# Strategy. Overlaps are allowed and weighted. A round visits the overlapping items in random order. An item first
+# descends from its position; where an overlap remains, it may also scan the whole build volume, on a grid of two
+# steps, with its present shape, another of its shapes, or in another build, and descends from the best cells. After
+# each round the weights of pairs that still overlap grow by 20 to 50 %, in proportion to their depth, and the others
+# decay towards 1. So the search leaves local minima (guided local search: Voudouris, Tsang 1999,
+# doi:10.1016/S0377-2217(98)00099-X; Umetani et al. 2009, doi:10.1111/j.1475-3995.2009.00707.x). A scan adds the
+# samples of each near field line by line, some 1e9 a second; a descent reads a few hundred values.
+
+NEGLIGIBLE = 1e-9
+"""Weighted overlap that counts as none."""
+
+GROWTH_LEAST, GROWTH_MOST, DECAY = 1.2, 1.5, 0.95
+"""Factors of the weight of the least and the deepest overlap, and of the weights of pairs that do not overlap."""
+
+LONGER, SHORTER, TRIES = 1.3, 0.55, 2
+"""Factors of the step of a descent after a success, and after so many failures."""
+
+VALUES_A_DEPTH = 8
+"""Field values read for one depth between samples."""
+
+
+@helper
+def _together(layout, i, j):
+    """Tell whether an item and another or an obstacle are in the same build."""
+    return layout.build[i] == layout.build[j] or layout.build[j] == EVERYWHERE
+
+
+@helper
+def _depth_of(fields, layout, i, j, x, y, z):
+    position = layout.position[j]
+    return depth_at(
+        fields, layout.shape[i], layout.shape[j], x - position[0], y - position[1], z - position[2]
+    )
+
+
+@helper
+def _update_overlaps(fields, within, layout, items, state, i):
+    """Compute the overlaps of item i with all others anew."""
+    x, y, z = layout.position[i]
+    for j in range(layout.shape.size):
+        depth = 0.0
+        if j != i and _together(layout, i, j):
+            depth = _depth_of(fields, layout, i, j, x, y, z)
+        state.overlap[i, j] = depth
+        if j < items:
+            state.overlap[j, i] = depth
+    state.outside[i] = outside_circle(within, layout.shape[i], x, y)
+    state.spent[READ] += VALUES_A_DEPTH * layout.shape.size
+
+
+@helper
+def _find_near(fields, layout, i, x, y, z, reach, near):
+    """Write the items and obstacles that item i may overlap within a reach of a position; return their number."""
+    count, a = 0, layout.shape[i]
+    for j in range(layout.shape.size):
+        b = layout.shape[j]
+        if j == i or fields.first[a, b] < 0 or not _together(layout, i, j):
+            continue
+        origin, position, cells = fields.origin[a, b], layout.position[j], fields.cells[a, b]
+        u, v, w = x - position[0] - origin[0], y - position[1] - origin[1], z - position[2] - origin[2]
+        width = 2.0 * fields.step
+        if (
+            -reach <= u <= width * cells[0] + reach
+            and -reach <= v <= width * cells[1] + reach
+            and -reach <= w <= width * cells[2] + reach
+        ):
+            near[count] = j
+            count += 1
+    return count
+
+
+@helper
+def _cost(fields, within, layout, state, i, count, x, y, z, limit):
+    """Return the weighted overlap of item i at a position with the items near it, or any value above the limit."""
+    total = 0.0
+    if within.radius > 0.0:
+        total = state.outside_weight[i] * outside_circle(within, layout.shape[i], x, y)
+    for k in range(count):
+        if total >= limit:
+            break
+        j = state.near[k]
+        total += state.weight[i, j] * _depth_of(fields, layout, i, j, x, y, z)
+        state.spent[READ] += VALUES_A_DEPTH
+    return total
+
+
+@helper
+def _normal(random):
+    return np.sqrt(-2.0 * np.log(1.0 - uniform(random))) * np.cos(2.0 * np.pi * uniform(random))
+
+
+@helper
+def _clamped(value, start, reach, lo, hi):
+    return min(max(value, lo, start - reach), hi, start + reach)
+
+
+@helper
+def _descend(fields, within, layout, rules, state, i, x, y, z, step):
+    """Return a position near (x, y, z) of less weighted overlap, and that overlap.
+
+    The descent goes along random directions, three of four parallel to an axis, with a step that adapts.
+    """
+    a, reach = layout.shape[i], 4.0 * step
+    lo, hi = within.lo[a], within.hi[a]
+    x0, y0, z0 = x, y, z
+    count = _find_near(fields, layout, i, x, y, z, reach, state.near)
+    cost = _cost(fields, within, layout, state, i, count, x, y, z, np.inf)
+    failures = 0
+    while step > rules.finest and cost > NEGLIGIBLE:
+        axis = int(uniform(state.random) * 4.0)
+        dx, dy, dz = 1.0 * (axis == 0), 1.0 * (axis == 1), 1.0 * (axis == 2)
+        if axis == 3:
+            dx, dy, dz = _normal(state.random), _normal(state.random), _normal(state.random)
+            length = np.sqrt(dx * dx + dy * dy + dz * dz) + 1e-12
+            dx, dy, dz = dx / length, dy / length, dz / length
+        sign = step if uniform(state.random) < 0.5 else -step
+        failures += 1
+        for _ in range(2):
+            u = _clamped(x + sign * dx, x0, reach, lo[0], hi[0])
+            v = _clamped(y + sign * dy, y0, reach, lo[1], hi[1])
+            w = _clamped(z + sign * dz, z0, reach, lo[2], hi[2])
+            sign = -sign
+            if u != x or v != y or w != z:
+                found = _cost(fields, within, layout, state, i, count, u, v, w, cost)
+                if found < cost:
+                    cost, x, y, z = found, u, v, w
+                    step *= LONGER
+                    failures = 0
+                    break
+        if failures >= TRIES:
+            step *= SHORTER
+            failures = 0
+    return x, y, z, cost
+
+
+@helper
+def _scan(fields, within, layout, rules, state, i, best):
+    """Return the best of a position, as (x, y, z, cost), and of those that a scan with the present shape finds."""
+    a, spacing = layout.shape[i], 2.0 * fields.step
+    lo, hi = within.lo[a], within.hi[a]
+    if hi[0] < lo[0] or hi[1] < lo[1] or hi[2] < lo[2]:
+        return best
+    gx, gy, gz = (
+        int((hi[0] - lo[0]) / spacing) + 1,
+        int((hi[1] - lo[1]) / spacing) + 1,
+        int((hi[2] - lo[2]) / spacing) + 1,
+    )
+    x = lo[0] + uniform(state.random) * (hi[0] - lo[0] - (gx - 1) * spacing)
+    y = lo[1] + uniform(state.random) * (hi[1] - lo[1] - (gy - 1) * spacing)
+    z = lo[2] + uniform(state.random) * (hi[2] - lo[2] - (gz - 1) * spacing)
+    grid, start = (gx, gy, gz), (x, y, z)
+    if gx * gy * gz > state.sums.size:
+        return best
+    read = add_overlaps(
+        fields,
+        within,
+        layout,
+        state.weight,
+        state.outside_weight[i],
+        i,
+        layout.build[i],
+        start,
+        grid,
+        state.sums,
+    )
+    state.spent[READ] += read + gx * gy * gz
+    state.spent[SCANS] += 1
+    for k in range(best_cells(state.sums, grid, state.cell, state.value)):
+        if best[3] <= NEGLIGIBLE or state.value[k] > 4.0 * best[3] + 1.0:
+            break
+        cell = state.cell[k]
+        u, v, w = x + cell // (gy * gz) * spacing, y + cell // gz % gy * spacing, z + cell % gz * spacing
+        found = _descend(fields, within, layout, rules, state, i, u, v, w, spacing)
+        if found[3] < best[3]:
+            best = found
+    return best
+
+
+@helper
+def _move(fields, within, layout, rules, state, i):
+    """Move an item to the position, among shapes and builds as well, of least weighted overlap that is found."""
+    state.spent[MOVES] += 1
+    x, y, z = layout.position[i]
+    best = _descend(fields, within, layout, rules, state, i, x, y, z, fields.step)
+    shape, build = layout.shape[i], layout.build[i]
+    best_shape, best_build = shape, build
+    if best[3] > NEGLIGIBLE and uniform(state.random) < rules.scan_chance:
+        best = _scan(fields, within, layout, rules, state, i, best)
+        for attempt in range(2):
+            if best[3] <= NEGLIGIBLE:
+                break
+            layout.shape[i] = rules.first[i] + int(uniform(state.random) * (rules.end[i] - rules.first[i]))
+            layout.build[i] = build
+            if attempt == 1:
+                layout.build[i] = int(uniform(state.random) * rules.builds)
+            if layout.shape[i] == shape and layout.build[i] == build:
+                continue
+            found = _scan(fields, within, layout, rules, state, i, best)
+            if found[3] < best[3]:
+                best, best_shape, best_build = found, layout.shape[i], layout.build[i]
+    layout.shape[i], layout.build[i] = best_shape, best_build
+    layout.position[i, 0], layout.position[i, 1], layout.position[i, 2] = best[0], best[1], best[2]
+
+
+@helper
+def _weighted(state, i):
+    """Return the weighted overlap of an item."""
+    total = state.outside[i] * state.outside_weight[i]
+    for j in range(state.overlap.shape[1]):
+        total += state.overlap[i, j] * state.weight[i, j]
+    return total
+
+
+@helper
+def _totals(rules, state):
+    """Return the total overlap and the deepest one, in which lengths outside the circle count."""
+    total, deepest = 0.0, 0.0
+    for i in range(rules.first.size):
+        total += state.outside[i]
+        deepest = max(deepest, state.outside[i])
+        for j in range(state.overlap.shape[1]):
+            if j < i or j >= rules.first.size:
+                total += state.overlap[i, j]
+                deepest = max(deepest, state.overlap[i, j])
+    return total, deepest
+
+
+@helper
+def _new_weight(weight, depth, deepest):
+    if depth > 1e-6:
+        return weight * (GROWTH_LEAST + (GROWTH_MOST - GROWTH_LEAST) * depth / deepest)
+    return max(1.0, weight * DECAY)
+
+
+@helper
+def _raise_weights(rules, state, deepest):
+    """Raise the weights of pairs that overlap and lower the others."""
+    for i in range(rules.first.size):
+        state.outside_weight[i] = _new_weight(state.outside_weight[i], state.outside[i], deepest)
+        for j in range(state.overlap.shape[1]):
+            if j < i or j >= rules.first.size:
+                state.weight[i, j] = _new_weight(state.weight[i, j], state.overlap[i, j], deepest)
+                if j < i:
+                    state.weight[j, i] = state.weight[i, j]
+
+
+@helper
+def _copy(source, target):
+    for i in range(source.shape.size):
+        target.shape[i], target.build[i] = source.shape[i], source.build[i]
+        for axis in range(3):
+            target.position[i, axis] = source.position[i, axis]
+
+
+@njit(cache=True, nogil=True, _nrt=False)
+def separate(
+    fields: NoFitFields,
+    within: PositionRange,
+    rules: MoveRules,
+    layout: ShapeLayout,
+    best: ShapeLayout,
+    state: SeparationState,
+    rounds: int,
+) -> float:
+    """Move items for some rounds; return the total overlap (mm) of the best layout.
+
+    Parameters
+    ----------
+    layout
+        Items, then obstacles, which stay; modified.
+    best
+        The layout of least total overlap, written.
+    state
+        Weights, kept from call to call; modified.
+    """
+    items = rules.first.size
+    for i in range(items):
+        _update_overlaps(fields, within, layout, items, state, i)
+        state.order[i] = i
+    least, deepest = _totals(rules, state)
+    _copy(layout, best)
+    for _ in range(rounds):
+        if least <= rules.enough:
+            break
+        for k in range(items - 1, 0, -1):
+            other = int(uniform(state.random) * (k + 1))
+            state.order[k], state.order[other] = state.order[other], state.order[k]
+        for k in range(items):
+            i = state.order[k]
+            if _weighted(state, i) > rules.enough / items:
+                _move(fields, within, layout, rules, state, i)
+                _update_overlaps(fields, within, layout, items, state, i)
+        total, deepest = _totals(rules, state)
+        state.spent[ROUNDS] += 1
+        if total < least:
+            least = total
+            _copy(layout, best)
+        _raise_weights(rules, state, max(deepest, 1e-12))
+    return least

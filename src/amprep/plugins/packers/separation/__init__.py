@@ -1,0 +1,92 @@
+"""The packer `separation`: overlaps are allowed, and removed by guided local search on no-fit solids.
+
+After Umetani, Yagiura, Imahori, Imamichi, Nonobe, Ibaraki 2009 (doi:10.1111/j.1475-3995.2009.00707.x) and Egeblad,
+Nielsen, Brazil 2009 (doi:10.1016/j.comgeo.2008.03.004): the builds are fixed, items may overlap, and one overlapping
+item at a time moves to the position of least weighted overlap.
+"""
+
+import numpy as np
+
+from amprep.model.control import Progress, Stop
+from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
+from amprep.plugins.packers.params import SeparationParams
+from amprep.plugins.packers.separation.bounds import builds_bound, fill_bound, height_bound
+from amprep.plugins.packers.separation.builds import pack_builds
+from amprep.plugins.packers.separation.fill import pack_most
+from amprep.plugins.packers.separation.height import pack_lowest
+from amprep.plugins.packers.separation.shapes import ShapeInstance, prepare_no_fit, prepare_shapes
+from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget, nothing_placed, only
+
+TOP_TOLERANCE = 1e-6
+"""Length (mm) by which an item may be higher than the build volume."""
+
+
+def pack_separation(
+    problem: PackingProblem,
+    *,
+    params: SeparationParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> Packing:
+    """Pack true shapes, as convex pieces, for any objective."""
+    instance = prepare_shapes(problem, stop)
+    budget = WorkBudget(stop, params.work * 1e6)
+    no_fit = prepare_no_fit(instance, params, stop) if instance.free.any() else None
+    if no_fit is None:
+        return _as_packing(instance, nothing_placed(), stop)
+    scene = Scene(instance, no_fit, params, rng, budget)
+    pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
+    return _as_packing(instance, _below_top(instance, pack(scene, progress)), stop)
+
+
+def _below_top(instance: ShapeInstance, placed: Placed) -> Placed:
+    """Return the items that are not higher than the build volume."""
+    problem = instance.problem
+    tops = placed.position[:, 2] + instance.size[placed.shape, 2]
+    limit = instance.positions(float(problem.space.size[2]) - problem.clearance).hi[:, 2]
+    fits = placed.position[:, 2] <= limit[placed.shape] + TOP_TOLERANCE
+    return placed if fits.all() or not len(tops) else only(placed, np.flatnonzero(fits))
+
+
+def _as_packing(instance: ShapeInstance, placed: Placed, stop: Stop) -> Packing:
+    """Return a layout as a packing, with a reason for every item that is left out."""
+    problem, builds = instance.problem, _builds(instance, placed)
+    left = np.setdiff1d(np.flatnonzero(instance.free | instance.too_large), placed.items)
+    reason = "out of time" if stop() else "no room left"
+    bound = {"height": height_bound, "builds": builds_bound, "fill": fill_bound}[problem.objective](instance)
+    return Packing(
+        builds=builds,
+        unplaced=tuple(Unplaced(int(i), "too large" if instance.too_large[i] else reason) for i in left),
+        bound=float(bound),
+        status=_status(instance, placed, len(builds), float(bound)),
+        stop_reason=stop.reason if stop() else "finished",
+    )
+
+
+def _builds(instance: ShapeInstance, placed: Placed) -> tuple[tuple[Placement, ...], ...]:
+    """Return the placements of each build that has any: the fixed ones first, then by item."""
+    builds: list[list[Placement]] = [[] for _ in range(max(placed.builds, 1))]
+    builds[0] += instance.problem.fixed
+    for row in np.argsort(placed.items, kind="stable").tolist():
+        shape = instance.shapes[placed.shape[row]]
+        position = placed.position[row] + shape.shift
+        builds[int(placed.build[row])].append(Placement(int(placed.items[row]), shape.rotation, position))
+    return tuple(tuple(build) for build in builds if build)
+
+
+def _status(instance: ShapeInstance, placed: Placed, builds: int, bound: float) -> Status:
+    """Return ``optimal`` when the bound is met, ``infeasible`` when an item that is to be built fits no build."""
+    problem = instance.problem
+    if problem.objective == "fill":
+        fixed = [placement.item for placement in problem.fixed]
+        reached = float(sum(problem.items[i].value for i in [*placed.items.tolist(), *fixed]))
+        return "optimal" if reached >= bound - 1e-9 * max(1.0, abs(bound)) else "feasible"
+    if instance.too_large.any():
+        return "infeasible"
+    if len(placed.items) < int(instance.free.sum()):
+        return "feasible"
+    if problem.objective == "builds":
+        return "optimal" if builds <= bound else "feasible"
+    tops = placed.position[:, 2] + instance.size[placed.shape, 2]
+    return "optimal" if float(tops.max(initial=0.0)) <= bound + 1e-10 else "feasible"

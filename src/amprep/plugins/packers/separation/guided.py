@@ -1,0 +1,86 @@
+"""Guided separation within fixed builds, and the disturbance of layouts from which it starts again."""
+
+import numpy as np
+
+from amprep.kernels.no_fit.records import PositionRange
+from amprep.plugins.packers.separation.programs import make_exact
+from amprep.plugins.packers.separation.state import Placed, Scene, placed_from
+
+PROGRESS = 0.98
+"""The total overlap must fall below this fraction of the least one to count as progress."""
+
+RESIDUE = 0.1
+"""Total overlap, in mean sizes of the shapes, at which the linear program is tried."""
+
+SMALL = 1e-4
+"""Total overlap (mm) at which the linear program is tried in any case."""
+
+
+class Attempt:
+    """Result of a separation: the layout of least overlap, and the one without any if it was found."""
+
+    def __init__(self, overlap: float, nearest: Placed, exact: Placed | None) -> None:
+        self.overlap, self.nearest, self.exact = overlap, nearest, exact
+
+
+def separated(scene: Scene, start: Placed, within: PositionRange, builds: int) -> Attempt:
+    """Move overlapping items until nothing overlaps, or until there is no progress for a while."""
+    layout = scene.layout(_clipped(start, within))
+    best = scene.layout(start)
+    items = start.items
+    state, rules = scene.work_arrays(len(items), within), scene.rules(items, builds)
+    least, nearest, idle = np.inf, start, 0
+    residue = RESIDUE * scene.instance.mean_size
+    while not scene.budget.over() and idle < scene.params.persistence:
+        overlap = scene.run(layout, best, rules, within, state)
+        idle = 0 if overlap < PROGRESS * least else idle + 1
+        if overlap < least:
+            least, nearest = overlap, placed_from(best, items)
+        if overlap < residue and (overlap < SMALL or overlap <= least):
+            exact = make_exact(scene, placed_from(best, items), within)
+            if exact is not None:
+                return Attempt(0.0, nearest, exact)
+    return Attempt(least, nearest, None)
+
+
+def _clipped(placed: Placed, within: PositionRange) -> Placed:
+    """Return a layout with all items inside the build volume, as far as its sides are planes."""
+    lo, hi = within.lo[placed.shape], within.hi[placed.shape]
+    return placed._replace(position=np.maximum(np.minimum(placed.position, hi), lo))
+
+
+def disturbed(scene: Scene, placed: Placed) -> Placed:
+    """Exchange the places of two items, large ones more often; of two pairs in half of all cases."""
+    changed, size, rng = placed.copy(), scene.instance.size, scene.rng
+    n = len(placed.items)
+    if n < 2:
+        return changed
+    for _ in range(int(rng.integers(1, 3))):
+        chance = size[changed.shape].prod(axis=1) ** (2.0 / 3.0)
+        i, j = rng.choice(n, 2, replace=False, p=chance / chance.sum()).tolist()
+        middle = changed.position + size[changed.shape] / 2.0
+        changed.position[[i, j]] = middle[[j, i]] - size[changed.shape[[i, j]]] / 2.0
+        changed.build[[i, j]] = changed.build[[j, i]]
+    return changed
+
+
+class AttemptPool:
+    """The attempts with the least overlap, from which the search starts again."""
+
+    SIZE = 8
+
+    def __init__(self) -> None:
+        self.attempts: list[Attempt] = []
+
+    def add(self, attempt: Attempt) -> None:
+        """Add a failed attempt; the worst one leaves a full pool."""
+        self.attempts.append(attempt)
+        self.attempts.sort(key=lambda each: each.overlap)
+        del self.attempts[self.SIZE :]
+
+    def choose(self, scene: Scene, best: Placed) -> Placed:
+        """Return the best layout so far or, as often, one of the attempts, those of little overlap more often."""
+        if scene.rng.random() < 0.5 or not self.attempts:
+            return best
+        number = min(int(scene.rng.exponential(1.5)), len(self.attempts) - 1)
+        return self.attempts[number].nearest

@@ -1,0 +1,271 @@
+"""Prepare a packing problem for the separation search: shapes, their positions, no-fit solids and fields."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
+from amprep.geometry.boxes.build_space import find_feasible_position
+from amprep.geometry.no_fit.circle import Circle, circle_sides, find_inside_circle, outline_of
+from amprep.geometry.no_fit.fields import sample_fields
+from amprep.geometry.no_fit.pieces import no_fit_pieces
+from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, NoFitPieces, PositionRange
+from amprep.measures.bounding_volume import volume_of
+from amprep.model.control import Stop
+from amprep.model.packing import Item, PackingProblem, require_values
+from amprep.plugins.packers.instance.prepare import empty_space
+from amprep.plugins.packers.params import SeparationParams
+from amprep.plugins.packers.separation.pieces import convex_pieces_of
+
+SAME = 1e-6
+"""Difference (mm) of points up to which two rotations of a volume are the same shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A bounding volume in one orientation, as convex pieces relative to the least corner.
+
+    Attributes
+    ----------
+    rotation
+        ``(3, 3)``.
+    pieces
+        For each convex piece its points ``(k, 3)`` mm.
+    shift
+        ``(3,)`` mm from the least corner to the origin of the turned volume.
+    feasible_position
+        ``(3,)`` mm a position of the least corner in an empty build; NaN when none was found.
+    """
+
+    rotation: Floats
+    pieces: tuple[Floats, ...]
+    shift: Floats
+    feasible_position: Floats
+
+    @cached_property
+    def size(self) -> Floats:
+        """The enclosing box, ``(3,)`` mm."""
+        return np.asarray(np.concatenate(self.pieces).max(axis=0))
+
+    @cached_property
+    def outline(self) -> Floats:
+        """Corners ``(k, 2)`` mm of the convex hull of the projection to the plate."""
+        return outline_of(np.concatenate(self.pieces)[:, :2])
+
+    @property
+    def fits(self) -> bool:
+        """Whether a position in an empty build is known."""
+        return bool(np.isfinite(self.feasible_position[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeObstacle:
+    """A forbidden zone, or a fixed item of the first build.
+
+    Attributes
+    ----------
+    pieces
+        For each convex piece its points ``(k, 3)`` mm, relative to `position`.
+    position
+        ``(3,)`` mm, a grid point of the constructive pass.
+    build
+        0, or `EVERYWHERE`.
+    clearance
+        Least distance of items, mm.
+    """
+
+    pieces: tuple[Floats, ...]
+    position: Floats
+    build: int
+    clearance: float
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeInstance:
+    """A packing problem prepared for the separation search.
+
+    Attributes
+    ----------
+    shapes
+        The shapes of all item types, those of a type one after another.
+    first, end
+        ``(n,)`` range of the shapes of each item.
+    free
+        ``(n,)`` items to be placed, which are neither fixed nor too large.
+    too_large
+        ``(n,)`` items without a known position in an empty build.
+    volumes
+        ``(n,)`` mm3.
+    """
+
+    problem: PackingProblem
+    shapes: tuple[Shape, ...]
+    first: Int64s
+    end: Int64s
+    free: Bools
+    too_large: Bools
+    volumes: Floats
+
+    @cached_property
+    def size(self) -> Floats:
+        """Enclosing boxes of all shapes, ``(m, 3)`` mm."""
+        return np.array([shape.size for shape in self.shapes]).reshape(-1, 3)
+
+    @cached_property
+    def low(self) -> Floats:
+        """Least corner of the positions, ``(3,)`` mm."""
+        return empty_space(self.problem).lo
+
+    @cached_property
+    def circle(self) -> Circle | None:
+        """The circle that contains all outlines; None for a box-shaped build volume."""
+        space = empty_space(self.problem)
+        return Circle(space.axis, space.radius) if space.radius else None
+
+    @cached_property
+    def sides(self) -> Floats:
+        """Sides ``(k, 3)`` of a polygon that contains the circle and is at most half the `CONTACT_TOLERANCE` larger."""
+        return circle_sides(self.circle, CONTACT_TOLERANCE / 2.0) if self.circle else np.empty((0, 3))
+
+    @cached_property
+    def side_reach(self) -> Floats:
+        """Greatest extent of each shape along the normal of each side, ``(m, k)`` mm."""
+        normals = self.sides[:, :2]
+        return np.array([(shape.outline @ normals.T).max(axis=0) for shape in self.shapes])
+
+    @cached_property
+    def mean_size(self) -> float:
+        """Mean edge (mm) of cubes with the volumes of the enclosing boxes of the shapes."""
+        return float(np.cbrt(self.size.prod(axis=1)).mean())
+
+    def positions(self, height: float) -> PositionRange:
+        """Return the positions of all shapes in a build of some height, mm."""
+        space = empty_space(self.problem)
+        lo = np.repeat(space.lo[None], len(self.shapes), axis=0)
+        hi = np.array([*space.hi[:2], height]) - self.size
+        hi = np.where((hi < lo) & (hi > lo - 2.0 * CONTACT_TOLERANCE), lo, hi)  # as large as the build volume
+        outlines = [shape.outline for shape in self.shapes] if space.radius else []
+        first = np.cumsum([0] + [len(outline) for outline in outlines]).astype(np.int64)
+        corners = np.concatenate(outlines) if outlines else np.empty((0, 2))
+        return PositionRange(lo, hi, float(space.radius), np.array(space.axis), corners, first)
+
+
+@dataclass(frozen=True, eq=False)
+class NoFit:
+    """The no-fit solids of the shapes of an instance, as polyhedra and as fields, and the obstacles of its builds."""
+
+    pieces: NoFitPieces
+    fields: NoFitFields
+    obstacles: tuple[ShapeObstacle, ...]
+
+
+def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
+    """Return the shapes of a problem; copies share theirs."""
+    require_values(problem)
+    known: dict[tuple[int, bytes], tuple[int, int, float]] = {}
+    shapes: list[Shape] = []
+    rows = []
+    for item in problem.items:
+        key = (id(item.volume), item.orientations.matrices.tobytes())
+        if key not in known:
+            found = _shapes_of(problem, item, stop)
+            known[key] = (len(shapes), len(shapes) + len(found), volume_of(item.volume))
+            shapes += found
+        rows.append(known[key])
+    first, end = np.array([row[:2] for row in rows], np.int64).reshape(-1, 2).T
+    fits = np.array([any(shape.fits for shape in shapes[a:b]) for a, b, _ in rows], bool)
+    free = np.ones(len(rows), bool)
+    free[[placement.item for placement in problem.fixed]] = False
+    volumes = np.array([row[2] for row in rows], np.float64)
+    return ShapeInstance(problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes)
+
+
+def prepare_no_fit(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> NoFit | None:
+    """Compute no-fit solids and fields; None after a stop."""
+    step = _step(instance, params, stop)
+    obstacles = _obstacles(instance, step, stop)
+    clearances = [instance.problem.clearance, *(obstacle.clearance for obstacle in obstacles)]
+    shapes = [shape.pieces for shape in instance.shapes]
+    pieces = no_fit_pieces(shapes, [obstacle.pieces for obstacle in obstacles], clearances, stop)
+    if pieces is None:
+        return None
+    fields = sample_fields(pieces, step, stop)
+    return None if fields is None else NoFit(pieces, fields, obstacles)
+
+
+def _step(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> float:
+    """Return the step of the fields: a fraction of the mean size, or greater so that they need less memory."""
+    step, size = params.step * instance.mean_size, instance.size
+    resting = np.concatenate([size, *(_extent(obstacle) for obstacle in _obstacles(instance, step, stop))])
+    together = size[:, None] + resting[None] + 2.0 * instance.problem.clearance
+    while 4.0 * np.prod(together / step + 4.0, axis=2).sum() > params.memory * 1e6:
+        step *= 1.1
+    return step
+
+
+def _extent(obstacle: ShapeObstacle) -> Floats:
+    return np.asarray(np.ptp(np.concatenate(obstacle.pieces), axis=0))[None]
+
+
+def _shapes_of(problem: PackingProblem, item: Item, stop: Stop) -> list[Shape]:
+    """Return one shape for each rotation of an item that gives a different one and fits an empty build."""
+    pieces = convex_pieces_of(item.volume, stop)
+    matrices = item.orientations.matrices if item.orientations.freedom == "list" else np.eye(3)[None]
+    found: dict[bytes, Shape] = {}
+    for rotation in matrices:
+        turned = [piece @ rotation.T for piece in pieces]
+        least = np.concatenate(turned).min(axis=0)
+        turned = [piece - least for piece in turned]
+        key = _digest(turned)
+        if key not in found:
+            found[key] = Shape(rotation, tuple(turned), -least, _feasible_position(problem, turned))
+    fitting = [shape for shape in found.values() if shape.fits]
+    return fitting or list(found.values())[:1]
+
+
+def _digest(pieces: list[Floats]) -> bytes:
+    """Return a key that is equal for equal sets of points."""
+    rounded = [np.round(piece / SAME).astype(np.int64) for piece in pieces]
+    return b"|".join(sorted(points[np.lexsort(points.T)].tobytes() for points in rounded))
+
+
+def _feasible_position(problem: PackingProblem, pieces: list[Floats]) -> Floats:
+    """Return a position of the least corner in an empty build; NaN if none is found.
+
+    The search is exact for boxes. For other shapes it is on the boxes around their pieces, and exact in a round build
+    volume without zones.
+    """
+    space = empty_space(problem)
+    lo, hi = np.array([p.min(axis=0) for p in pieces]), np.array([p.max(axis=0) for p in pieces])
+    found = find_feasible_position(lo, hi, space)
+    if found is None and space.radius and not len(space.zone_lo):
+        points = np.concatenate(pieces)
+        inside = find_inside_circle(outline_of(points[:, :2]), Circle(space.axis, space.radius), space.slack)
+        if inside is not None and points[:, 2].max() <= space.hi[2] - space.lo[2] + space.slack:
+            found = np.array([*inside, space.lo[2]])
+    return np.full(3, np.nan) if found is None else found
+
+
+def _obstacles(instance: ShapeInstance, step: float, stop: Stop) -> tuple[ShapeObstacle, ...]:
+    """Return the forbidden zones and the fixed items; positions are multiples of two steps from the least position."""
+    problem, found = instance.problem, []
+    for lo, hi in zip(problem.space.zone_lo, problem.space.zone_hi, strict=True):
+        if (hi > lo).all():
+            found.append(([_corners(lo, hi)], EVERYWHERE, 0.0))
+    for fixed in problem.fixed:
+        pieces = convex_pieces_of(problem.items[fixed.item].volume, stop)
+        moved = [piece @ fixed.rotation.T + fixed.translation for piece in pieces]
+        found.append((moved, 0, problem.clearance))
+    obstacles = []
+    for pieces, build, clearance in found:
+        least = np.concatenate(pieces).min(axis=0)
+        position = instance.low + 2.0 * step * np.floor((least - instance.low) / (2.0 * step))
+        obstacles.append(
+            ShapeObstacle(tuple(piece - position for piece in pieces), position, build, clearance)
+        )
+    return tuple(obstacles)
+
+
+def _corners(lo: Floats, hi: Floats) -> Floats:
+    return np.array([[x, y, z] for x in (lo[0], hi[0]) for y in (lo[1], hi[1]) for z in (lo[2], hi[2])])

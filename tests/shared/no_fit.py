@@ -1,0 +1,55 @@
+"""Boxes as shapes for tests of the separation search."""
+
+import numpy as np
+
+from amprep.geometry.no_fit.fields import sample_fields
+from amprep.geometry.no_fit.pieces import no_fit_pieces
+from amprep.kernels.no_fit.records import MoveRules, PositionRange, SeparationState, ShapeLayout
+
+
+def corners_of(size):
+    return np.array([[x, y, z] for x in (0, size[0]) for y in (0, size[1]) for z in (0, size[2])], float)
+
+
+def box_shapes(sizes, step, clearance=0.0):
+    """No-fit polyhedra and fields of boxes with their least corners at the origin."""
+    pieces = no_fit_pieces([[corners_of(size)] for size in sizes], [], [clearance], lambda: False)
+    return pieces, sample_fields(pieces, step, lambda: False)
+
+
+def in_box(sizes, room):
+    """Positions of boxes in a room."""
+    hi = np.array(room) - np.array(sizes, float)
+    return PositionRange(np.zeros_like(hi), hi, 0.0, np.zeros(2), np.empty((0, 2)), np.zeros(1, np.int64))
+
+
+def layout_of(shapes, positions):
+    """All items in the build 0."""
+    return ShapeLayout(np.array(shapes), np.zeros(len(shapes), np.int64), np.array(positions, float))
+
+
+def boxes_overlap(sizes, layout, i, j):
+    one, other = layout.position[i], layout.position[j]
+    far, other_far = one + sizes[layout.shape[i]], other + sizes[layout.shape[j]]
+    return bool((np.minimum(far, other_far) - np.maximum(one, other) > 1e-3).all())
+
+
+def state_for(items, cells, seed=7):
+    return SeparationState(
+        np.zeros((items, items)),
+        np.ones((items, items)),
+        np.zeros(items),
+        np.ones(items),
+        np.array([seed], np.uint64),
+        np.zeros(4, np.int64),
+        np.empty(cells, np.float32),
+        np.empty(items, np.int64),
+        np.empty(items, np.int64),
+        np.empty(4, np.int64),
+        np.empty(4),
+    )
+
+
+def rules_for(shapes, builds=1, ends=None):
+    first = np.array(shapes)
+    return MoveRules(first, first + 1 if ends is None else np.array(ends), builds, 0.5, 0.01, 1e-6)

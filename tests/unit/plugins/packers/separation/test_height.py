@@ -1,0 +1,129 @@
+"""Lowest layouts of small instances whose least height is known, judged on the exact shapes."""
+
+import numpy as np
+import pytest
+from manifold3d import Manifold, OpType
+
+from amprep.checks.packing.volumes_placed import check_packing
+from amprep.measures.objective import objective_reached
+from amprep.model import (
+    Boxes,
+    BuildVolume,
+    Item,
+    Mesh,
+    Orientations,
+    PackingProblem,
+    Placement,
+    Solid,
+    Stop,
+    silent,
+)
+from amprep.model.rotations import axis_rotations
+from amprep.plugins.packers.params import SeparationParams
+from amprep.plugins.packers.separation import pack_separation
+
+
+def solid(manifold):
+    mesh = manifold.to_mesh64()
+    return Solid(Mesh(mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)))
+
+
+def wedge():
+    """Half of a cube of side 4, cut along a diagonal plane."""
+    points = np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0], [0, 0, 4], [0, 4, 4]])
+    return solid(Manifold.hull_points(points))
+
+
+def channel():
+    """A block of 6 x 4 x 4 with a channel 2 wide and 3 deep along y, open at the top."""
+    return solid(Manifold.cube([6, 4, 4]) - Manifold.cube([2, 4, 3]).translate([2, 0, 1]))
+
+
+def bar():
+    return Boxes(np.zeros(3), np.array([1.8, 4, 2.8]))
+
+
+HALF_TURN = Orientations(matrices=np.array([np.eye(3), np.diag([-1.0, 1, -1])]))
+
+
+def items_of(*volumes, orientations=None):
+    allowed = orientations or Orientations()
+    return tuple(Item(k, 0, volume, 1.0, allowed) for k, volume in enumerate(volumes))
+
+
+def pack(items, size, work=60.0, seed=1, stop=None, **rules):
+    problem = PackingProblem(items, BuildVolume(np.array(size, float)), "height", **rules)
+    packing = pack_separation(
+        problem,
+        params=SeparationParams(work=work),
+        rng=np.random.default_rng(seed),
+        stop=stop or Stop(),
+        progress=silent,
+    )
+    assert check_packing(problem, packing) == []
+    return problem, packing, objective_reached(problem, packing)
+
+
+def test_two_wedges_make_a_cube():
+    _, packing, height = pack(items_of(wedge(), wedge(), orientations=HALF_TURN), (4, 4, 50))
+    assert not packing.unplaced
+    assert height == pytest.approx(4.0, abs=1e-3)
+
+
+def test_a_bar_goes_into_the_channel_of_a_block():
+    _, packing, height = pack(items_of(channel(), bar()), (6, 4, 50))
+    assert height == pytest.approx(4.0, abs=1e-3)
+    assert packing.bound == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.5, 3.0])
+def test_curved_and_concave_parts_keep_the_clearance(clearance):
+    ball = solid(Manifold.sphere(3.0, 12))
+    cross = solid(
+        Manifold.batch_boolean([Manifold.cube([8, 2, 2], True), Manifold.cube([2, 8, 2], True)], OpType.Add)
+    )
+    size = np.array([16.0, 16, 200]) + 2 * clearance
+    items = items_of(ball, ball, cross, cross, wedge(), channel(), orientations=HALF_TURN)
+    _, packing, _ = pack(items, size, work=10.0, clearance=clearance, lift=clearance)
+    assert not packing.unplaced
+
+
+def test_fixed_parts_and_zones_are_avoided_and_the_bound_counts_them():
+    fixed = (Placement(0, np.eye(3), np.array([0.0, 0, 5])),)
+    space = BuildVolume(np.array([6.0, 6, 50]), "box", np.array([[4.0, 4, 0]]), np.array([[6.0, 6, 50]]))
+    problem = PackingProblem(items_of(channel(), bar(), bar()), space, "height", fixed)
+    packing = pack_separation(
+        problem,
+        params=SeparationParams(work=20.0),
+        rng=np.random.default_rng(0),
+        stop=Stop(),
+        progress=silent,
+    )
+    assert check_packing(problem, packing) == []
+    assert packing.bound == pytest.approx(9.0)
+    assert packing.status == "optimal"
+
+
+def test_the_height_of_the_lowest_shape_is_a_bound():
+    plank = Boxes(np.zeros(3), np.array([1.0, 5, 9]))
+    _, packing, height = pack(
+        items_of(plank, orientations=Orientations(matrices=axis_rotations())), (9, 9, 20)
+    )
+    assert height == packing.bound == 1.0
+    assert packing.status == "optimal"
+
+
+def test_what_is_higher_than_the_build_volume_is_left_out():
+    cube = Boxes(np.zeros(3), np.full(3, 4.0))
+    _, packing, height = pack(items_of(cube, cube, cube), (4, 4, 9), work=5.0)
+    assert len(packing.unplaced) == 1
+    assert packing.unplaced[0].reason == "no room left"
+    assert height == pytest.approx(8.0, abs=1e-3)
+
+
+def test_the_same_seed_gives_the_same_layout_and_the_time_limit_is_kept():
+    items = items_of(*[wedge()] * 4, *[channel()] * 2)
+    one, other = (pack(items, (9, 9, 50), work=5.0)[1] for _ in range(2))
+    assert [p.matrix.tolist() for p in one.builds[0]] == [p.matrix.tolist() for p in other.builds[0]]
+    _, packing, _ = pack(items, (9, 9, 50), stop=Stop.after(0.0))
+    assert {unplaced.reason for unplaced in packing.unplaced} == {"out of time"}
