@@ -78,6 +78,15 @@ def test_a_file_that_cannot_be_read_is_wrong_input(tmp_path, name):
         amprep.inspect(tmp_path / name)
 
 
+def test_one_unreadable_file_of_several_is_listed_with_exit_code_1(bracket, tmp_path):
+    (tmp_path / "noise.stl").write_bytes(bytes(range(200)))
+    result = run(tmp_path, "--json", "-q")
+    assert result.exit_code == 1, result.output
+    record = json.loads(result.stdout)
+    assert [bool(file["problem"]) for file in record["files"]] == [False, True]
+    assert [part["name"] for part in record["parts"]] == ["bracket"]
+
+
 def test_a_mesh_that_cannot_be_used_hinders_no_other(bracket, tmp_path):
     flat = tmp_path / "flat.off"
     flat.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0 1\n")

@@ -58,7 +58,7 @@ def inspect_job(
     job, clock, limit = resolved.job, Clock(watcher), stop.within(options.time_limit)
     chains = makers_named(resolved, options.volumes)
     with clock.stage("read") as progress:
-        files, read, notes = read_for_inspection(resolved, progress)
+        files, read = read_for_inspection(resolved, progress)
     with clock.stage("inspect") as progress:
         found: list[InspectedPart] = []
         for number, (part, problem) in enumerate(read):
@@ -75,7 +75,7 @@ def inspect_job(
         parts=tuple(found),
         clearance_mm=job.packing.clearance_mm,
         lift_mm=job.packing.lift_mm,
-        warnings=(*resolved.host.warnings, *notes),
+        warnings=tuple(resolved.host.warnings),
     )
     if options.folder is not None:
         with clock.stage("report") as progress:

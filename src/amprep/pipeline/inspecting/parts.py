@@ -36,7 +36,7 @@ def describe_part(part: Part, problem: str, job: Job) -> InspectedPart:
         return InspectedPart(part, problems=(problem,), findings=part.notes)
     contents, fits = measure_contents(part), _fits(part, job)
     walls = measure_thin_walls(part.mesh) if part.is_solid else ()
-    problems = (*_problems(part, contents), *_misfits(fits, job))
+    problems = (*_problems(part), *_misfits(fits, job))
     notes = (note for note in part.notes if not note.startswith("not a solid: "))
     return InspectedPart(
         part,
@@ -56,12 +56,10 @@ def _on_plate(part: Part, lift: float) -> PlacedPart:
     return PlacedPart(part.name, part, matrix, part.orientations)
 
 
-def _problems(part: Part, contents: MeshContents) -> Iterator[str]:
+def _problems(part: Part) -> Iterator[str]:
     for note in part.notes:
         if note.startswith("not a solid: "):
             yield note.removesuffix("; taken as a surface")
-    if not part.is_solid and contents.open_edges:
-        yield f"{counted(contents.open_edges, 'open edge')}"
 
 
 def _misfits(fits: tuple[PrinterFit, ...], job: Job) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from amprep.errors import MeshError
+from amprep.errors import InputError, MeshError
 from amprep.job import apply_part_settings
 from amprep.model import Part, Progress
 from amprep.pipeline.reading import expand_inputs, repair_part, with_region_files, with_unique_names
@@ -22,7 +22,7 @@ _WITH_UNIT = {
 
 def read_for_inspection(
     resolved: ResolvedJob, progress: Progress
-) -> tuple[list[InspectedFile], list[tuple[Part, str]], list[str]]:
+) -> tuple[list[InspectedFile], list[tuple[Part, str]]]:
     """Read and repair every part of a job, and apply the settings of its ``[[part]]`` entries.
 
     Returns
@@ -31,13 +31,12 @@ def read_for_inspection(
         The files.
     parts
         The parts, each with the reason why its mesh cannot be used; empty if it can.
-    notes
-        Remarks on the whole job.
 
     Raises
     ------
     InputError, JobError
-        For a file that cannot be read, or an entry that names no part.
+        For a single file that cannot be read, or an entry that names no part. One file of several that cannot be read
+        is in `files` with the reason.
     """
     job = resolved.job
     paths = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], resolved.host.suffixes)
@@ -46,14 +45,20 @@ def read_for_inspection(
     problems: list[str] = []
     for done, (path, count) in enumerate(paths):
         progress(done / len(paths), path.name)
-        read = resolved.read(path)
+        try:
+            read = resolved.read(path)
+        except InputError as error:
+            if len(paths) == 1:
+                raise
+            files.append(_unread(path, resolved, error))
+            continue
         files.append(_file(path, read, resolved))
         for part in read:
             repaired, problem = _repaired(part)
             parts.append(replace(repaired, quantity=repaired.quantity * (count or 1)))
             problems.append(problem)
     parts = apply_part_settings(with_unique_names(parts), job)
-    return files, list(zip(with_region_files(parts, job, resolved.read), problems, strict=True)), []
+    return files, list(zip(with_region_files(parts, job, resolved.read), problems, strict=True))
 
 
 def _repaired(part: Part) -> tuple[Part, str]:
@@ -61,6 +66,11 @@ def _repaired(part: Part) -> tuple[Part, str]:
         return repair_part(part, allow_surface=True), ""
     except MeshError as error:
         return part, str(error)
+
+
+def _unread(path: Path, resolved: ResolvedJob, error: InputError) -> InspectedFile:
+    reader = resolved.host.reader_for(path, resolved.job.reading.readers).offer.name
+    return InspectedFile(str(path), reader, path.stat().st_size, "none", 0, str(error))
 
 
 def _file(path: Path, parts: list[Part], resolved: ResolvedJob) -> InspectedFile:

@@ -10,6 +10,7 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.files import replacing
 from amprep.model.counting import counted
+from amprep.report.inspection.compare import compare_makers
 from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
 from amprep.report.inspection.words import (
     contents_words,
@@ -43,7 +44,8 @@ def inspection_page(record: InspectionRecord) -> str:
     pack = GeometryPack()
     shown = [_view(each, pack) for each in record.parts if each.contents is not None]
     model = {"alone": True, "builds": shown, "meshes": pack.entries}
-    body = f"{_header(record)}{VIEWER}{''.join(_part(each) for each in record.parts)}{_footer(record)}"
+    parts = "".join(_part(each) for each in record.parts)
+    body = f"{_header(record)}{VIEWER}{_makers(record)}{parts}{_footer(record)}"
     return page_text(f"{record.name} - amprep inspection", body, model, pack.base64())
 
 
@@ -91,8 +93,32 @@ def _header(record: InspectionRecord) -> str:
     faults = record.faults
     words = counted(faults, "problem") if faults else "nothing wrong"
     chip = f'<span class="chip{" bad" if faults else ""}">{words}</span>'
-    files = "".join(f'<p class="lead">{escape(file_words(file))}</p>' for file in record.files)
+    files = "".join(
+        f'<p class="lead">{"Cannot be read: " if file.problem else ""}{escape(file_words(file))}</p>'
+        for file in record.files
+    )
     return f"<header><h1>{escape(record.name)}{chip}</h1>\n{files}</header>\n"
+
+
+def _makers(record: InspectionRecord) -> str:
+    """Return a table of the volume makers over all parts; empty for a single part."""
+    figures = compare_makers(record)
+    if len(record.parts) < 2 or not figures:
+        return ""
+    headings = ("Volume maker", "Mean ratio|", "Greatest ratio|", "Mean seconds|", "Outside|", "Not made|")
+    rows = (
+        (
+            each.makers,
+            ("number", "-" if each.ratio is None else f"{each.ratio:.3f}"),
+            ("number", "-" if each.greatest_ratio is None else f"{each.greatest_ratio:.3f}"),
+            ("number", f"{each.seconds:.3f}"),
+            each.outside,
+            each.not_made,
+        )
+        for each in figures
+    )
+    title = f"Bounding volumes over {counted(len(record.parts), 'part')}"
+    return f"<section><h2>{title}</h2>{table(headings, rows)}</section>\n"
 
 
 def _part(each: InspectedPart) -> str:
@@ -106,12 +132,12 @@ def _part(each: InspectedPart) -> str:
         figures = [*contents_words(each.part, each.contents), *wall_words(each.walls)]
         sections.append(table(("Figure", "Value"), figures))
     if each.overhangs is not None:
-        sections.append(f"<h2>Overhangs at {each.overhangs.angle_deg:g}°</h2>")
+        sections.append(f"<h3>Overhangs at {each.overhangs.angle_deg:g}°</h3>")
         sections.append(table(("Verdict", "Amount"), overhang_words(each.overhangs)))
     if each.printers:
-        sections.append(f"<h2>Printers</h2>{table(('Fit', 'Printers'), printer_words(each))}")
+        sections.append(f"<h3>Printers</h3>{table(('Fit', 'Printers'), printer_words(each))}")
     if each.volumes:
-        sections.append(f"<h2>Bounding volumes</h2>{_volumes(each)}")
+        sections.append(f"<h3>Bounding volumes</h3>{_volumes(each)}")
     return "".join(sections) + "</section>\n"
 
 

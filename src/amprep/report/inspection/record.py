@@ -15,7 +15,7 @@ from amprep.report.record import StageTime
 
 @dataclass(frozen=True)
 class InspectedFile:
-    """A file that was read.
+    """A file that was read, or that cannot be read.
 
     Attributes
     ----------
@@ -25,6 +25,8 @@ class InspectedFile:
         Unit of the coordinates in the file, or ``none``: then they are taken as millimetres.
     parts
         Number of parts in it.
+    problem
+        Why it cannot be read; empty if it can.
     """
 
     path: str
@@ -32,6 +34,7 @@ class InspectedFile:
     size_bytes: int
     unit: str
     parts: int
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -178,9 +181,10 @@ class InspectionRecord:
 
     @property
     def faults(self) -> int:
-        """Number of problems and of bounding volumes that do not contain their part."""
+        """Number of files that cannot be read, of problems, and of bounding volumes that do not contain their part."""
+        unread = sum(bool(file.problem) for file in self.files)
         broken = sum(bool(volume.violations) for each in self.parts for volume in each.volumes)
-        return broken + sum(len(each.problems) for each in self.parts)
+        return unread + broken + sum(len(each.problems) for each in self.parts)
 
     def __str__(self) -> str:
         """One line for each part."""

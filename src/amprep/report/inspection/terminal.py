@@ -32,7 +32,9 @@ def summary(record: InspectionRecord, folder: Path = Path()) -> "RenderableType"
     from rich.console import Group
     from rich.text import Text
 
-    blocks: list[RenderableType] = [Text(printable(file_words(file)), style="dim") for file in record.files]
+    blocks: list[RenderableType] = [
+        Text(printable(file_words(file)), style="red" if file.problem else "dim") for file in record.files
+    ]
     for each in record.parts:
         blocks += _part(each, record)
     blocks += [Text(f"! {printable(line)}", style="yellow") for line in record.warnings]

@@ -11,7 +11,9 @@ from amprep.report.inspection.record import InspectedFile, InspectedPart, Inspec
 
 
 def file_words(file: InspectedFile) -> str:
-    """Return path, reader, size and unit of a file."""
+    """Return path, reader, size and unit of a file, or why it cannot be read."""
+    if file.problem:
+        return file.problem
     unit = "no unit in the file, taken as millimetres" if file.unit == "none" else f"unit {file.unit}"
     return f"{file.path}: {file.reader}, {_bytes(file.size_bytes)}, {unit}, {counted(file.parts, 'part')}"
 
@@ -64,8 +66,8 @@ def overhang_words(found: OverhangFigures) -> Iterator[tuple[str, str]]:
 def wall_words(walls: Sequence[ThinWall]) -> Iterator[tuple[str, str]]:
     """Yield the area of thin walls; nothing for a surface."""
     if walls:
-        areas = (f"{wall.area_mm2:.1f} mm² below {wall.below_mm:g} mm" for wall in walls)
-        yield "thin walls", ", ".join(areas)
+        areas = [f"{wall.area_mm2:.1f} mm² below {wall.below_mm:g} mm" for wall in walls if wall.area_mm2]
+        yield "thin walls", ", ".join(areas) or f"none below {walls[-1].below_mm:g} mm"
 
 
 def printer_words(part: InspectedPart, most: int | None = None) -> Iterator[tuple[str, str]]:
