@@ -6,7 +6,7 @@ from amprep.arrays import MeshArrays
 from amprep.checks.volumes import check_volume
 from amprep.errors import MeshError
 from amprep.geometry.bounding.simplification.simplify_outwards import Cost, SimplifiedMesh, simplify_outwards
-from amprep.geometry.bounding.simplification.solids import hull, united, without_overlaps
+from amprep.geometry.bounding.simplification.solids import hull, hull_volume, united, without_overlaps
 from amprep.model.bounding_volume import Solid
 from amprep.model.control import Stop
 from amprep.model.mesh import Mesh
@@ -51,10 +51,9 @@ def _simplified(mesh: MeshArrays, params: BoundingMeshParams, stop: Stop) -> Mes
     limit = np.inf if params.max_error_mm is None else params.max_error_mm
     cost: Cost = "distance" if params.cost == "distance" else "volume"
     found = simplify_outwards(without_overlaps(mesh), target, max_error=limit, cost=cost, stop=stop)
-    convex = hull(mesh)
-    if np.isfinite(limit) or _volume(found) <= _volume(convex):
+    if np.isfinite(limit) or _volume(found) <= hull_volume(mesh):
         return found.vertices, found.triangles
-    coarse = simplify_outwards(convex, target, cost=cost, stop=stop)
+    coarse = simplify_outwards(hull(mesh), target, cost=cost, stop=stop)
     best = coarse if _volume(coarse) < _volume(found) else found
     return best.vertices, best.triangles
 

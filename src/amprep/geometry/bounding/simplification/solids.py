@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import MeshArrays
+from amprep.arrays import Floats, MeshArrays
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import measure_shells, solid_volume
 
@@ -26,11 +26,39 @@ def without_overlaps(mesh: MeshArrays) -> MeshArrays:
     return arrays_of(Manifold.batch_boolean(as_manifold(*mesh).decompose(), OpType.Add))
 
 
-def hull(mesh: MeshArrays) -> MeshArrays:
-    """Return the convex hull of a mesh."""
+def hull_volume(mesh: MeshArrays) -> float:
+    """Return the volume of the convex hull of a mesh, mm3, up to rounding errors."""
     from manifold3d import Manifold
 
-    return arrays_of(Manifold.hull_points(np.array(mesh[0], np.float64, order="C")))
+    return float(Manifold.hull_points(np.array(mesh[0], np.float64, order="C")).volume())
+
+
+def hull(mesh: MeshArrays) -> MeshArrays:
+    """Return a convex solid that contains the mesh: its convex hull, moved outward by the rounding errors of hulls."""
+    from manifold3d import Manifold
+
+    points = np.array(mesh[0], np.float64, order="C")
+    convex = arrays_of(Manifold.hull_points(points))
+    reach = 1e-9 * float(np.ptp(points, axis=0).max())
+    steps = np.concatenate([np.eye(3), -np.eye(3)])
+    for _ in range(20):
+        outside = _outside(points, convex)
+        if outside <= 0.0:
+            break
+        reach = max(2.0 * reach, 4.0 * outside)
+        convex = arrays_of(Manifold.hull_points((points[:, None] + reach * steps).reshape(-1, 3)))
+    return convex
+
+
+def _outside(points: Floats, convex: MeshArrays) -> float:
+    """Return the greatest distance of points beyond the planes of a convex mesh."""
+    corners = convex[0][convex[1]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    normal, offset = normal[length > 0.0] / length[length > 0.0, None], corners[length > 0.0, 0]
+    level = np.einsum("ij,ij->i", normal, offset)
+    own = 1e-15 * float(np.abs(points).max())
+    return max(float((points @ normal[i] - level[i]).max()) for i in range(len(level))) - own
 
 
 def united(one: MeshArrays, other: MeshArrays) -> MeshArrays:
