@@ -26,7 +26,7 @@ from amprep.kernels.helper import helper
 STEPS = 64
 """Largest number of steps; in practice 5 to 20 are taken."""
 
-CLOSE = 1e-10
+CLOSE = 1e-12
 """Relative difference of the bounds at which a distance is known."""
 
 TOUCHING = 1e-11
