@@ -202,6 +202,36 @@ def test_with_clearance_the_bound_admits_boxes_that_are_apart_at_their_corners(o
     assert check_packing(given_problem, claimed) == []
 
 
+def corner_layout(seed, clearance):
+    """Boxes, each near a corner, an edge or a face of an earlier one, with the tightest room for them."""
+    rng = np.random.default_rng(seed)
+    sizes = rng.integers(1, 5, (int(rng.integers(2, 5)), 3)).astype(float)
+    at = [np.zeros(3)]
+    for number in range(1, len(sizes)):
+        near = int(rng.integers(number))
+        gap = np.abs(rng.normal(size=3)) * (rng.random(3) < 0.8)
+        gap = gap * clearance / np.linalg.norm(gap) if gap.any() else np.array([clearance, 0.0, 0.0])
+        beyond = np.where(rng.random(3) < 0.5, sizes[near] + gap, -sizes[number] - gap)
+        at.append(at[near] + np.where(gap > 0.0, beyond, rng.uniform(-0.5, 0.5, 3) * sizes[near]))
+    lo, hi = np.min(at, axis=0), np.max(at + sizes, axis=0)
+    room = tuple(hi - lo + [2 * clearance, 2 * clearance, clearance])
+    return sizes.tolist(), room, np.array(at) - lo + [clearance, clearance, 0.0]
+
+
+@pytest.mark.parametrize("objective", ["fill", "builds"])
+def test_no_layout_that_keeps_the_clearance_across_corners_beats_the_bound(objective):
+    judged = 0
+    for seed in range(60):
+        sizes, room, positions = corner_layout(seed, 1.0)
+        given_problem = problem(sizes, objective, room=room, clearance=1.0)
+        layout = tuple(Placement(i, np.eye(3), position) for i, position in enumerate(positions))
+        if not check_packing(given_problem, Packing((layout,))):
+            bound = run(given_problem).bound
+            assert check_packing(given_problem, Packing((layout,), bound=bound)) == []
+            judged += 1
+    assert judged > 30
+
+
 @examples(80)
 @given(st.lists(st.tuples(side, side, side), min_size=2, max_size=2), st.floats(0.0, 2.0), st.data())
 def test_boxes_that_the_judge_accepts_are_as_far_apart_as_the_relaxed_program_demands(sizes, gap, data):
