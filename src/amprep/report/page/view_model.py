@@ -58,10 +58,13 @@ def _packed(entry: BuildRecord, pack: GeometryPack) -> list[dict[str, Any]]:
     if not entry.volumes:
         return []
     names = [placed.label for placed in entry.build.parts]
+    distinct = {id(each.volume): each.volume for each in entry.volumes}  # copies share their volume
+    models = {
+        key: volume_model(volume, np.eye(4), pack, "", _counted(volume)) for key, volume in distinct.items()
+    }
     shown = [
-        volume_model(
-            each.volume, each.matrix, pack, f"bounding volume of {names[each.part]}", _counted(each.volume)
-        )
+        models[id(each.volume)]
+        | {"name": f"bounding volume of {names[each.part]}", "matrix": each.matrix.ravel().tolist()}
         for each in entry.volumes
     ]
     return [{"name": "bounding volumes", "shown": shown}]
