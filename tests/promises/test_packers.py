@@ -16,6 +16,7 @@ HOST = Host.load()
 PACKERS = sorted(HOST.offers("packer"))
 
 BUDGETS: dict[str, dict[str, Any]] = {
+    "annealing": {"moves": 50},
     "ip": {"effort": 0.005},
     "ip-local-search": {"effort": 0.002, "steps": 4},
     "column-generation": {"effort": 0.001, "proof": 20.0},

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from amprep.hookspecs import Packer, PackerAccepts, hookimpl, later
+from amprep.plugins.packers.annealing.params import AnnealingParams
 from amprep.plugins.packers.params import (
     AutoParams,
     BlockBuildingParams,
@@ -100,5 +101,20 @@ def amprep_packers() -> Iterable[Packer]:
             stacking=frozenset({True}),
         ),
         params=SeparationParams,
+        volumes="mesh",
+    )
+    yield Packer(
+        name="annealing",
+        summary="Simulated annealing of the meshes themselves, which never intersect (thesis 2.6).",
+        run=later("amprep.plugins.packers.annealing.pack:pack_annealing"),
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes", "convex", "solid"}),
+            objectives=_BUILDS | _FILL | {"height"},
+            orientations=_ANY_LIST | {"about-z", "free"},
+            cylinder=True,
+            zones=True,
+            fixed=True,
+        ),
+        params=AnnealingParams,
         volumes="mesh",
     )

@@ -1,0 +1,1 @@
+"""Simulated annealing of bodies that never intersect."""

@@ -1,0 +1,1 @@
+"""Simulated annealing of bounding volumes of any shape."""
