@@ -119,17 +119,14 @@ def _meets_triangle(w: Point, a: int, b: int, surface: HalfEdgeSurface, triangle
     p = start_of(surface, first + turned)
     q = start_of(surface, first + (turned + 1) % 3)
     r = start_of(surface, first + (turned + 2) % 3)
-    if shared == 1:
-        away = pb if surface.start[first + turned] == a else pa
-        return _pierces(away, w, p, q, r) or _pierces(q, r, w, pa, pb)
-    return (
-        _pierces(w, pa, p, q, r)
-        or _pierces(pa, pb, p, q, r)
-        or _pierces(pb, w, p, q, r)
-        or _pierces(p, q, w, pa, pb)
-        or _pierces(q, r, w, pa, pb)
-        or _pierces(r, p, w, pa, pb)
-    )
+    fan, other = (pa, pb, w), (p, q, r)
+    opposite = 1 if surface.start[first + turned] == a else 2
+    for k in range(3):  # edges that end in a common vertex are left out
+        if (shared == 0 or k == opposite) and _pierces(fan[k], fan[(k + 1) % 3], p, q, r):
+            return True
+        if (shared == 0 or k == 1) and _pierces(other[k], other[(k + 1) % 3], w, pa, pb):
+            return True
+    return False
 
 
 @part
