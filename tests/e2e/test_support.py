@@ -244,7 +244,7 @@ def test_what_has_no_way_is_answered_by_the_advice_of_standing_on_the_part(ampre
     assert "--set supports.grounding=anywhere" in advice
     inside = amprep(*command, "--grounding", "anywhere")
     assert not any("no path to the build plate" in words for words in inside.json["warnings"])
-    assert "columns on parts" in inside.json["builds"][0]["supports"]["notes"][0]
+    assert "on parts, as supports.grounding allows" in inside.json["builds"][0]["supports"]["notes"][0]
 
 
 def test_supports_are_planned_whatever_the_job_says_and_a_limit_of_time_is_listed(amprep, tmp_path):
