@@ -11,6 +11,8 @@ from amprep.model import Mesh, Part, Stop
 from amprep.plugins.volumes.bounding_mesh import bounding_mesh
 from amprep.plugins.volumes.params import BoundingMeshParams
 
+pytestmark = pytest.mark.compiled
+
 RNG = np.random.default_rng(1)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.bounding.simplification.box_tree import MovingBoxTree
+from amprep.kernels.bounding.simplification.box_tree import EMPTY, MovingBoxTree
 from amprep.kernels.bounding.simplification.half_edges import HalfEdgeSurface
 
 _BITS = 20
@@ -22,7 +22,7 @@ def make_tree(surface: HalfEdgeSurface) -> MovingBoxTree:
     leaf, triangle = np.empty(count, np.int32), np.full(leaves, -1, np.int32)
     leaf[order] = leaves + np.arange(count)
     triangle[:count] = order
-    lo, hi = np.full((2 * leaves, 3), 1e300), np.full((2 * leaves, 3), -1e300)
+    lo, hi = np.full((2 * leaves, 3), EMPTY), np.full((2 * leaves, 3), -EMPTY)
     tree = MovingBoxTree(lo, hi, leaf, triangle, np.empty(64, np.int32))
     fill_tree(tree, surface)
     return tree

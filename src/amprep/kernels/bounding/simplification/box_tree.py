@@ -6,6 +6,9 @@ from amprep.arrays import Floats, Int32s
 from amprep.kernels.bounding.simplification.half_edges import HalfEdgeSurface
 from amprep.kernels.bounding.simplification.points import kernel, part
 
+EMPTY = 1e150
+"""Least coordinate of an empty box, the negative of its greatest; its square is finite."""
+
 
 class MovingBoxTree(NamedTuple):
     """A complete binary tree; the children of node i are ``2 i`` and ``2 i + 1``, the root is node 1.
@@ -35,7 +38,7 @@ def _set_leaf(tree: MovingBoxTree, surface: HalfEdgeSurface, triangle: int) -> i
     node, first = tree.leaf[triangle], 3 * triangle
     for axis in range(3):
         if surface.start[first] < 0:
-            tree.lo[node, axis], tree.hi[node, axis] = 1e300, -1e300
+            tree.lo[node, axis], tree.hi[node, axis] = EMPTY, -EMPTY
             continue
         a = surface.points[surface.start[first], axis]
         b = surface.points[surface.start[first + 1], axis]

@@ -1,12 +1,15 @@
 """The tree of boxes finds the triangles that plain comparison finds, also after triangles have moved."""
 
 import numpy as np
+import pytest
 from numba import njit
 from tests.shared.solids import arrays, gear
 
 from amprep.geometry.bounding.simplification.half_edges import make_half_edges
 from amprep.geometry.bounding.simplification.moving_boxes import make_tree, morton_codes
 from amprep.kernels.bounding.simplification.box_tree import find_boxes, refit
+
+pytestmark = pytest.mark.compiled
 
 
 @njit

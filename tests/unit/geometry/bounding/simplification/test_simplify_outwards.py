@@ -11,6 +11,8 @@ from tests.shared.solids import PRINTABLE, arrays, gyroid, random_solid, screw_p
 from amprep.geometry.bounding.simplification.simplify_outwards import simplify_outwards
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 
+pytestmark = pytest.mark.compiled
+
 SEEDS = st.integers(0, 10**6)
 COSTS = ("volume", "distance")
 
