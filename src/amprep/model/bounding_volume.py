@@ -1,11 +1,16 @@
 """Bounding volumes, which packers place instead of the parts; all in part coordinates, mm."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amprep.arrays import Floats, frozen
 from amprep.model.mesh import Mesh
+
+if TYPE_CHECKING:
+    from amprep.geometry.trees.collision_mesh import CollisionMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +52,13 @@ class Solid:
     """A closed mesh that contains the part, or the mesh of the part itself."""
 
     mesh: Mesh
+
+    @cached_property
+    def collision_mesh(self) -> "CollisionMesh":
+        """The triangles with their OBB tree; built at the first use, and shared by all placements of this volume."""
+        from amprep.geometry.trees.collision_mesh import collision_mesh
+
+        return collision_mesh(*self.mesh.arrays)
 
     def enclosing(self) -> tuple[Floats, Floats]:
         """Least and greatest corner of the enclosing box, each ``(3,)``."""

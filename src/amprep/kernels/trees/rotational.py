@@ -116,6 +116,29 @@ def first_angle(
     return angle if angle < limit else np.inf
 
 
+@inlined
+def _some_advances(tree: ObbTree, i: int, origin: Vector, z: Vector, sense: float) -> bool:
+    """Return whether a triangle below a node may move along its normal in a turn; with sense -1, against it.
+
+    Parameters
+    ----------
+    origin, z
+        A point on the axis and its direction, in coordinates of the body.
+    """
+    dx, dy = tree.nodes[i, CENTRE] - origin[0], tree.nodes[i, CENTRE + 1] - origin[1]
+    dz = tree.nodes[i, CENTRE + 2] - origin[2]
+    ux, uy, uz = z[1] * dz - z[2] * dy, z[2] * dx - z[0] * dz, z[0] * dy - z[1] * dx
+    sine = tree.cones[i, 3]
+    if sine < 0.0:
+        return False
+    if sine > 1.0:
+        return True
+    along = sense * (tree.cones[i, 0] * ux + tree.cones[i, 1] * uy + tree.cones[i, 2] * uz)
+    square, cosine = ux * ux + uy * uy + uz * uz, np.sqrt(1.0 - sine * sine)
+    across = np.sqrt(max(square - along * along, 0.0))
+    return along >= cosine * np.sqrt(square) or along * cosine + across * sine + tree.nodes[i, RADIUS] > 0.0
+
+
 @kernel
 def rotational_distance(
     a: ObbTree,
@@ -153,6 +176,8 @@ def rotational_distance(
     frame = relative(pose_a, pose_b)
     z = to_part(pose_b, axis[0], axis[1], axis[2])
     origin = to_part(pose_b, point[0] - pose_b[3], point[1] - pose_b[7], point[2] - pose_b[11])
+    z_a = to_part(pose_a, axis[0], axis[1], axis[2])
+    from_a = to_part(pose_a, point[0] - pose_a[3], point[1] - pose_a[7], point[2] - pose_a[11])
     x, y = across(z)
     best, reach = limit, margin + TOUCH
     stack.pairs[0, 0], stack.pairs[0, 1] = 0, 0
@@ -177,8 +202,11 @@ def rotational_distance(
             near_a, near_b, far_a, far_b = next_a, j, next_a + 1, j
         else:
             near_a, near_b, far_a, far_b = i, next_b, i, next_b + 1
-        near = first_angle(a.nodes, near_a, b.nodes, near_b, frame, origin, z, reach, best)
-        far = first_angle(a.nodes, far_a, b.nodes, far_b, frame, origin, z, reach, best)
+        near, far = np.inf, np.inf
+        if _some_advances(a, near_a, from_a, z_a, 1.0) and _some_advances(b, near_b, origin, z, -1.0):
+            near = first_angle(a.nodes, near_a, b.nodes, near_b, frame, origin, z, reach, best)
+        if _some_advances(a, far_a, from_a, z_a, 1.0) and _some_advances(b, far_b, origin, z, -1.0):
+            far = first_angle(a.nodes, far_a, b.nodes, far_b, frame, origin, z, reach, best)
         if far < near:
             near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
         if far < best:

@@ -10,6 +10,7 @@ from tests.shared.triangles import KINDS, arrays, some_solid
 
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.trees.collision_mesh import collision_mesh
+from amprep.model import Mesh, Solid
 
 
 def triangles_below(tree, node):
@@ -91,3 +92,9 @@ def test_each_component_has_a_sample_on_it_and_one_in_the_solid():
 def test_the_arrays_of_a_tree_are_read_only():
     tree = collision_mesh(*arrays(Manifold.cube((1, 1, 1)))).tree
     assert not any(each.flags.writeable for each in tree if isinstance(each, np.ndarray))
+
+
+def test_a_solid_builds_its_tree_once():
+    solid = Solid(Mesh(*arrays(Manifold.cube((1, 1, 1)))))
+    assert solid.collision_mesh is solid.collision_mesh
+    assert len(solid.collision_mesh.tree.corners) == 12

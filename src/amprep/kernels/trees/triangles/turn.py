@@ -13,10 +13,14 @@ from amprep.kernels.trees.triangles.distance import closest_points
 # a plane that is parallel to one of them or to an edge of each, or normal to one of them through an edge. Of all that
 # separate, the one that allows most is taken. Where a corner meets a face the plane is that of the face, and one step
 # is exact; where two edges meet the steps converge quadratically. No step is too long. In contact, a plane that corners
-# leave or slide along allows a step; if there is none, the triangles would enter one another, and the angle is 0.
+# leave or slide along allows a step; if there is none, the triangles would enter one another, and the angle is 0. Until
+# the triangles are near, the plane normal to their closest points is taken, which costs least.
 
 STEPS = 100
 """Most planes that are tried."""
+
+NEAR = 1e-2
+"""mm; distance from which all planes are tried."""
 
 LEAST_STEP = 1e-12
 """rad; where no plane allows more, the triangles meet."""
@@ -121,7 +125,14 @@ def contact_turn(a: Triangle, b: Triangle, limit: float) -> float:
     """Return the angle by which a triangle may turn about z before it meets another; infinity if beyond a limit."""
     angle = 0.0
     for _ in range(STEPS):
-        step = _longest_step(turned_triangle(a, angle), b)
+        t = turned_triangle(a, angle)
+        closest = closest_points(t, b)
+        distance = np.sqrt(closest[0])
+        if distance > NEAR:
+            w = (closest[4] / distance, closest[5] / distance, closest[6] / distance)
+            step = _turn_below(t, w, distance, 1.0)
+        else:
+            step = _longest_step(t, b)
         if step <= LEAST_STEP:
             return angle
         angle += step
