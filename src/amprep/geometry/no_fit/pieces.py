@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from amprep.kernels.no_fit.records import NoFitPieces
 MOST_SUMS = 3000
 """Number of sums of corners up to which a Minkowski sum is exact."""
 
+FEW = 4000
+"""Number of polyhedra up to which sums are exact; an exact one takes a millisecond, another one a tenth of that."""
+
 AXES = np.vstack((np.eye(3), -np.eye(3)))
 
 BEVELS = np.array(
@@ -29,46 +33,68 @@ BEVELS /= np.linalg.norm(BEVELS, axis=1)[:, None]
 SAME_NORMAL = 0.15
 """Distance of unit normals below which one of them is enough for an inexact sum."""
 
+MOST_NORMALS = 24
+"""Number of normals of a piece, of the greatest faces, that an inexact sum has."""
 
-def sum_planes(resting: Floats, moving: Floats) -> Floats:
+
+class ConvexPiece(NamedTuple):
+    """A convex piece: its corners ``(k, 3)`` mm, and the unit normals ``(m, 3)`` of its greatest faces."""
+
+    corners: Floats
+    normals: Floats
+
+
+def convex_piece(corners: Floats) -> ConvexPiece:
+    """Return a piece with the normals of its faces, which are not those of `AXES`; flat pieces have none."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(corners)
+    except (QhullError, ValueError):
+        return ConvexPiece(corners, np.empty((0, 3)))
+    a, b, c = corners[hull.simplices].swapaxes(0, 1)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    normals = hull.equations[:, :3]
+    _, first, which = np.unique(
+        np.round(normals / SAME_NORMAL), axis=0, return_index=True, return_inverse=True
+    )
+    total = np.bincount(which.ravel(), area)
+    chosen = normals[first[np.argsort(-total, kind="stable")[:MOST_NORMALS]]]
+    return ConvexPiece(corners, chosen[np.abs(chosen).max(axis=1) < 1.0 - 1e-9])
+
+
+def sum_planes(resting: ConvexPiece, moving: ConvexPiece, *, exact: bool) -> Floats:
     """Return planes ``(k, 4)`` that contain the Minkowski sum of a convex piece and the mirror image of another.
 
-    The planes have outward unit normals; they are exact unless the pieces have more than `MOST_SUMS` pairs of corners.
-
-    Parameters
-    ----------
-    resting, moving
-        ``(m, 3)`` and ``(n, 3)`` mm, corners of the pieces; a difference of a point of the first and a point of the
-        second is an offset of the second at which both overlap.
+    The planes have outward unit normals. They are exact if that is asked for and the pieces have at most `MOST_SUMS`
+    pairs of corners. A difference of a point of the first piece and a point of the second is an offset of the second at
+    which both overlap.
     """
-    if len(resting) * len(moving) <= MOST_SUMS:
-        return planes_of((resting[:, None] - moving[None]).reshape(-1, 3))
-    normals = np.concatenate((AXES, planes_of(resting)[:, :3], -planes_of(moving)[:, :3]))
-    return _support_planes(resting, moving, _distinct(normals))
+    if exact and len(resting.corners) * len(moving.corners) <= MOST_SUMS:
+        return planes_of((resting.corners[:, None] - moving.corners[None]).reshape(-1, 3))
+    return _support_planes(resting, moving, np.concatenate((AXES, resting.normals, -moving.normals)))
 
 
-def _support_planes(resting: Floats, moving: Floats, normals: Floats) -> Floats:
+def _support_planes(resting: ConvexPiece, moving: ConvexPiece, normals: Floats) -> Floats:
     """Return the planes with given normals that touch the Minkowski sum."""
-    reach = (resting @ normals.T).max(axis=0) - (moving @ normals.T).min(axis=0)
+    reach = (resting.corners @ normals.T).max(axis=0) - (moving.corners @ normals.T).min(axis=0)
     return np.column_stack((normals, reach))
 
 
-def _distinct(normals: Floats) -> Floats:
-    """Return unit normals of which no two are nearly equal; the first ones stay."""
-    _, first = np.unique(np.round(normals / SAME_NORMAL), axis=0, return_index=True)
-    return np.asarray(normals[np.sort(first)])
-
-
-def no_fit_piece(resting: Floats, moving: Floats, clearance: float) -> tuple[Floats, Floats]:
+def no_fit_piece(
+    resting: ConvexPiece, moving: ConvexPiece, clearance: float, *, exact: bool = True
+) -> tuple[Floats, Floats]:
     """Return the planes ``(k, 4)`` and the box ``(6,)`` of the offsets at which two pieces are nearer than a clearance.
 
     The polyhedron contains all such offsets; see the strategy above for where it is larger.
     """
-    planes = sum_planes(resting, moving)
+    planes = sum_planes(resting, moving, exact=exact)
     if clearance > 0.0:
-        planes = np.concatenate((planes, _support_planes(resting, moving, np.concatenate((AXES, BEVELS)))))
+        further = np.concatenate((AXES, BEVELS)) if exact else BEVELS
+        planes = np.concatenate((planes, _support_planes(resting, moving, further)))
         planes[:, 3] += clearance
-    lo, hi = resting.min(axis=0) - moving.max(axis=0), resting.max(axis=0) - moving.min(axis=0)
+    one, other = resting.corners, moving.corners
+    lo, hi = one.min(axis=0) - other.max(axis=0), one.max(axis=0) - other.min(axis=0)
     return planes, np.concatenate((lo - clearance, hi + clearance))
 
 
@@ -93,7 +119,12 @@ def no_fit_pieces(
     -------
     The polyhedra, or None after a stop.
     """
-    shapes, count = [*moving, *obstacles], len(moving)
+    shapes, count = (
+        [[convex_piece(corners) for corners in shape] for shape in (*moving, *obstacles)],
+        len(moving),
+    )
+    sizes = np.array([len(shape) for shape in shapes])
+    exact = bool(sizes[:count].sum() * (sizes[:count].sum() / 2.0 + sizes[count:].sum()) <= FEW)
     planes: list[Floats] = []
     boxes: list[Floats] = []
     first, end = np.zeros((2, len(shapes), len(shapes)), np.int64)
@@ -104,7 +135,7 @@ def no_fit_pieces(
             gap = clearances[0] if b < count else clearances[1 + b - count]
             first[a, b] = len(boxes)
             for one, other in product(shapes[b], shapes[a]):
-                faces, box = no_fit_piece(one, other, gap)
+                faces, box = no_fit_piece(one, other, gap, exact=exact)
                 planes.append(faces)
                 boxes.append(box)
             end[a, b] = len(boxes)

@@ -16,7 +16,13 @@ from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation.pieces import convex_pieces_of
+from amprep.plugins.packers.separation.pieces import convex_pieces_of, most_pieces
+
+MOST_SHAPES = 150
+"""Number of shapes above which types with several orientations keep only some, those of least height."""
+
+MOST_OF_FIXED = 12
+"""Number of pieces of a fixed item."""
 
 SAME = 1e-6
 """Difference (mm) of points up to which two rotations of a volume are the same shape."""
@@ -166,10 +172,11 @@ def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
     known: dict[tuple[int, bytes], tuple[int, int, float]] = {}
     shapes: list[Shape] = []
     rows = []
+    most = most_pieces(_count_shapes(problem))
     for item in problem.items:
-        key = (id(item.volume), item.orientations.matrices.tobytes())
+        key = _type_of(item)
         if key not in known:
-            found = _shapes_of(problem, item, stop)
+            found = _shapes_of(problem, item, most, stop)
             known[key] = (len(shapes), len(shapes) + len(found), volume_of(item.volume))
             shapes += found
         rows.append(known[key])
@@ -208,9 +215,9 @@ def _extent(obstacle: ShapeObstacle) -> Floats:
     return np.asarray(np.ptp(np.concatenate(obstacle.pieces), axis=0))[None]
 
 
-def _shapes_of(problem: PackingProblem, item: Item, stop: Stop) -> list[Shape]:
+def _shapes_of(problem: PackingProblem, item: Item, most: int, stop: Stop) -> list[Shape]:
     """Return one shape for each rotation of an item that gives a different one and fits an empty build."""
-    pieces = convex_pieces_of(item.volume, stop)
+    pieces = convex_pieces_of(item.volume, most, stop)
     matrices = item.orientations.matrices if item.orientations.freedom == "list" else np.eye(3)[None]
     found: dict[bytes, Shape] = {}
     for rotation in matrices:
@@ -221,7 +228,29 @@ def _shapes_of(problem: PackingProblem, item: Item, stop: Stop) -> list[Shape]:
         if key not in found:
             found[key] = Shape(rotation, tuple(turned), -least, _feasible_position(problem, turned))
     fitting = [shape for shape in found.values() if shape.fits]
-    return fitting or list(found.values())[:1]
+    lowest = sorted(range(len(fitting)), key=lambda k: (round(float(fitting[k].size[2]), 6), k))
+    kept = sorted(lowest[: _most_orientations(problem)])
+    return [fitting[k] for k in kept] or list(found.values())[:1]
+
+
+def _type_of(item: Item) -> tuple[int, bytes]:
+    """Return a key that is equal for items of the same type."""
+    return id(item.volume), item.orientations.matrices.tobytes()
+
+
+def _most_orientations(problem: PackingProblem) -> int:
+    """Return how many orientations each type may keep, so that there are at most about `MOST_SHAPES` shapes."""
+    return max(1, MOST_SHAPES // max(len({_type_of(item) for item in problem.items}), 1))
+
+
+def _count_shapes(problem: PackingProblem) -> int:
+    """Return the greatest number of shapes that the types of a problem may have."""
+    orientations = dict(map(_orientations_of, problem.items))
+    return sum(min(count, _most_orientations(problem)) for count in orientations.values())
+
+
+def _orientations_of(item: Item) -> tuple[tuple[int, bytes], int]:
+    return _type_of(item), len(item.orientations.matrices) if item.orientations.freedom == "list" else 1
 
 
 def _digest(pieces: list[Floats]) -> bytes:
@@ -254,7 +283,7 @@ def _obstacles(instance: ShapeInstance, step: float, stop: Stop) -> tuple[ShapeO
         if (hi > lo).all():
             found.append(([_corners(lo, hi)], EVERYWHERE, 0.0))
     for fixed in problem.fixed:
-        pieces = convex_pieces_of(problem.items[fixed.item].volume, stop)
+        pieces = convex_pieces_of(problem.items[fixed.item].volume, MOST_OF_FIXED, stop)
         moved = [piece @ fixed.rotation.T + fixed.translation for piece in pieces]
         found.append((moved, 0, problem.clearance))
     obstacles = []
