@@ -46,8 +46,7 @@ def bounding_mesh(
 
 def _simplified(mesh: MeshArrays, params: BoundingMeshParams, stop: Stop) -> MeshArrays:
     """Return the simplified mesh, or the simplified convex hull where that is smaller and no distance is given."""
-    wanted = params.fraction * len(mesh[1]) if params.triangles is None else params.triangles
-    target = max(4, int(wanted))
+    target = params.target(len(mesh[1]))
     limit = np.inf if params.max_error_mm is None else params.max_error_mm
     cost: Cost = "distance" if params.cost == "distance" else "volume"
     found = simplify_outwards(without_overlaps(mesh), target, max_error=limit, cost=cost, stop=stop)

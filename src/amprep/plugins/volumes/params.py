@@ -14,7 +14,8 @@ class BoundingMeshParams:
     triangles
         Number of triangles; None takes `fraction`.
     fraction
-        Number of triangles as a fraction of those of the part.
+        Number of triangles as a fraction of those of the part; None, without `triangles`, is a tenth, but at least
+        1,000 triangles: few triangles around many holes add much volume.
     max_error_mm
         Greatest distance (mm) of any point of the new surface from the surface of the part; None for no limit. With a
         limit, more triangles may be left than asked for.
@@ -24,7 +25,7 @@ class BoundingMeshParams:
     """
 
     triangles: int | None = None
-    fraction: float = 0.1
+    fraction: float | None = None
     max_error_mm: float | None = None
     cost: str = "volume"
 
@@ -33,6 +34,13 @@ class BoundingMeshParams:
         require_bounds(self, "triangles", at_least=4)
         require_bounds(self, "fraction", at_least=0.0, at_most=1.0)
         require_bounds(self, "max_error_mm", above=0.0)
+
+    def target(self, count: int) -> int:
+        """Return the number of triangles to reach for a part of `count` triangles."""
+        if self.triangles is not None:
+            return self.triangles
+        wanted = max(0.1 * count, 1000.0) if self.fraction is None else self.fraction * count
+        return max(4, int(wanted))
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,17 @@ def make(part, stop=None, **params):
 @pytest.mark.parametrize("name", PRINTABLE)
 def test_the_judge_accepts_the_volume(name):
     part = part_of(PRINTABLE[name]())
-    volume = make(part)
+    volume = make(part, fraction=0.1)
     assert check_volume(part, volume) == []
     assert len(volume.mesh.triangles) < len(part.mesh.triangles)
+
+
+@pytest.mark.parametrize(
+    ("given", "count", "target"),
+    [({}, 20_000, 2_000), ({}, 3_000, 1_000), ({"fraction": 0.1}, 3_000, 300), ({"triangles": 7}, 3_000, 7)],
+)
+def test_small_meshes_keep_a_thousand_triangles_unless_asked(given, count, target):
+    assert BoundingMeshParams(**given).target(count) == target
 
 
 def test_triangles_and_fraction_set_the_target():
