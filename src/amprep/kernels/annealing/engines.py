@@ -18,15 +18,33 @@ from amprep.kernels.annealing.piece_shapes import (
     turn_of_pieces,
 )
 from amprep.kernels.annealing.records import Shapes, Vector
-from amprep.kernels.annealing.tree_shapes import TreeShapes, travel_of_trees, trees_collide, turn_of_trees
+from amprep.kernels.annealing.tree_shapes import (
+    ListedTreeShapes,
+    TreeShapes,
+    no_turn_of_trees,
+    travel_of_trees,
+    trees_collide,
+    turn_of_trees,
+)
 
 _TRAVEL: dict[type, Any] = {
     BoxShapes: travel_of_boxes,
     TreeShapes: travel_of_trees,
+    ListedTreeShapes: travel_of_trees,
     PieceShapes: travel_of_pieces,
 }
-_COLLIDE: dict[type, Any] = {BoxShapes: boxes_collide, TreeShapes: trees_collide, PieceShapes: pieces_collide}
-_TURN: dict[type, Any] = {BoxShapes: turn_of_boxes, TreeShapes: turn_of_trees, PieceShapes: turn_of_pieces}
+_COLLIDE: dict[type, Any] = {
+    BoxShapes: boxes_collide,
+    TreeShapes: trees_collide,
+    ListedTreeShapes: trees_collide,
+    PieceShapes: pieces_collide,
+}
+_TURN: dict[type, Any] = {
+    BoxShapes: turn_of_boxes,
+    TreeShapes: turn_of_trees,
+    ListedTreeShapes: no_turn_of_trees,
+    PieceShapes: turn_of_pieces,
+}
 
 
 def travel(

@@ -1,5 +1,7 @@
 """Shapes that are closed meshes with OBB trees (thesis 2.6)."""
 
+# ruff: noqa: ARG001 - every engine takes the same arguments
+
 from typing import NamedTuple
 
 from amprep.arrays import Floats, Int32s, Int64s
@@ -35,6 +37,10 @@ class TreeShapes(NamedTuple):
     hull: Floats
     first: Int64s
     stack: Stack
+
+
+class ListedTreeShapes(TreeShapes):
+    """Trees of shapes of which none may be turned by any angle: the kernels for rotations are not compiled."""
 
 
 @uncounted
@@ -93,3 +99,19 @@ def turn_of_trees(
     return rotational_distance(
         _tree(shapes, a), pose_a, _tree(shapes, b), pose_b, point, axis, margin, limit, shapes.stack
     )
+
+
+@uncounted
+def no_turn_of_trees(
+    shapes: ListedTreeShapes,
+    a: int,
+    pose_a: Floats,
+    b: int,
+    pose_b: Floats,
+    point: Vector,
+    axis: Vector,
+    margin: float,
+    limit: float,
+) -> float:
+    """Return 0: these shapes turn by re-insertion only."""
+    return 0.0

@@ -46,7 +46,8 @@ class PreparedVolumes:
     @cached_property
     def shapes(self) -> Any:
         """The shapes for the collision queries, made when they are first needed."""
-        return make_shapes(self.volumes, self.engine)
+        turning = any(item.orientations.freedom != "list" for item in self.problem.items)
+        return make_shapes(self.volumes, self.engine, turning=turning)
 
 
 def prepare_volumes(problem: PackingProblem, collision: str) -> PreparedVolumes:

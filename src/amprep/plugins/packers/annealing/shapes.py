@@ -75,10 +75,11 @@ def _extreme(points: Floats) -> Floats:
         return points
 
 
-def make_shapes(volumes: Sequence[BoundingVolume], engine: str) -> Any:
-    """Return the volumes as the shapes of an engine."""
-    makers = {"boxes": box_shapes, "trees": tree_shapes, "pieces": piece_shapes}
-    return makers[engine](volumes)
+def make_shapes(volumes: Sequence[BoundingVolume], engine: str, *, turning: bool = True) -> Any:
+    """Return the volumes as the shapes of an engine; `turning` tells whether any may be turned by any angle."""
+    if engine == "trees":
+        return tree_shapes(volumes, turning=turning)
+    return box_shapes(volumes) if engine == "boxes" else piece_shapes(volumes)
 
 
 def box_shapes(volumes: Sequence[BoundingVolume]) -> "BoxShapes":
@@ -91,11 +92,11 @@ def box_shapes(volumes: Sequence[BoundingVolume]) -> "BoxShapes":
     return BoxShapes((lo + hi) / 2.0, (hi - lo) / 2.0, first)
 
 
-def tree_shapes(volumes: Sequence[BoundingVolume]) -> "TreeShapes":
+def tree_shapes(volumes: Sequence[BoundingVolume], *, turning: bool = True) -> "TreeShapes":
     """Return any volumes as meshes with OBB trees; the meshes of boxes and pieces may overlap in one shape."""
     from amprep.geometry.trees.collision_mesh import collision_mesh
     from amprep.geometry.trees.stacks import new_stack
-    from amprep.kernels.annealing.tree_shapes import TreeShapes
+    from amprep.kernels.annealing.tree_shapes import ListedTreeShapes, TreeShapes
 
     trees = [collision_mesh(*mesh_of(volume).arrays).tree for volume in volumes]
     columns = [(t.nodes, t.link, t.cones, t.corners, t.normals, t.order, t.samples, t.hull) for t in trees]
@@ -107,7 +108,8 @@ def tree_shapes(volumes: Sequence[BoundingVolume]) -> "TreeShapes":
     depth = [t.depth for t in trees]
     first = frozen(np.column_stack((starts, [*depth, 0])), np.int64)
     stack = new_stack(max(depth), max(depth))
-    return TreeShapes(nodes, link, cones, corners, normals, order, samples, hull, first, stack)
+    kind = TreeShapes if turning else ListedTreeShapes
+    return kind(nodes, link, cones, corners, normals, order, samples, hull, first, stack)
 
 
 def mesh_of(volume: BoundingVolume) -> Mesh:
