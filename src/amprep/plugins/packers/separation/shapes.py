@@ -24,6 +24,9 @@ MOST_SHAPES = 150
 MOST_OF_FIXED = 12
 """Number of pieces of a fixed item."""
 
+BORDER = 6.0
+"""Samples along each axis by which a field may be longer than its no-fit solid."""
+
 SAME = 1e-6
 """Difference (mm) of points up to which two rotations of a volume are the same shape."""
 
@@ -206,7 +209,7 @@ def _step(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> floa
     step, size = params.step * instance.mean_size, instance.size
     resting = np.concatenate([size, *(_extent(obstacle) for obstacle in _obstacles(instance, step, stop))])
     together = size[:, None] + resting[None] + 2.0 * instance.problem.clearance
-    while 4.0 * np.prod(together / step + 4.0, axis=2).sum() > params.memory * 1e6:
+    while 4.0 * np.prod(together / step + BORDER, axis=2).sum() > params.memory * 1e6:
         step *= 1.1
     return step
 
