@@ -24,12 +24,12 @@ def check_volume(part: Part, volume: BoundingVolume | TurnedVolume) -> list[Viol
     """Return a violation if the part extends more than `CONTACT_TOLERANCE` beyond the bounding volume.
 
     The interior of a solid must be covered as well, and a mesh that bounds must be closed. For a part that is not a
-    solid, the triangles must be covered. The rotation of a turned volume must be one of the orientations that the
-    part allows.
+    solid, the triangles must be covered. The rotation of a turned volume must be the identity, as that of a plain
+    volume, or one of the orientations that the part allows.
     """
     if isinstance(volume, TurnedVolume):
-        fault = motion_fault(volume.rotation, part.orientations)
-        if fault:
+        turned = not np.array_equal(volume.rotation, np.eye(3))
+        if turned and (fault := motion_fault(volume.rotation, part.orientations)):
             return [Violation("allowed motion", part.name, f"the rotation of its bounding volume {fault}")]
         mesh = Mesh(part.mesh.vertices @ volume.rotation.T, part.mesh.triangles)
         return check_volume(replace(part, mesh=mesh), volume.volume)

@@ -77,11 +77,11 @@ class TurnedVolume:
     volume
         Contains the part after its rotation by `rotation` about the origin of the part.
     rotation
-        ``(3, 3)`` one of the orientations that the part allows.
+        ``(3, 3)`` the identity, or one of the orientations that the part allows.
     bound, gap
-        Proven lower bound (mm3) on the volume of every covering among which the maker chose, and the fraction by which
-        the best one that it found among them may exceed the least; None if it proves none. A maker that chooses among
-        coverings of a grid may refine the best one below that bound.
+        Proven lower bound (mm3) on the volume of every covering among which the maker chose, and how far it is below
+        the best one that it found among them, as a fraction of that one; None if it proves none. A maker that chooses
+        among coverings of a grid may refine the best one below that bound.
     """
 
     volume: BoundingVolume

@@ -1,11 +1,13 @@
 """The judge of volume makers accepts what contains a part, and nothing else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.shared.builds import box_mesh
 
 from amprep.checks.volumes import check_volume
-from amprep.model import Boxes, ConvexPieces, Mesh, Part, Solid, TurnedVolume
+from amprep.model import Boxes, ConvexPieces, Mesh, Orientations, Part, Solid, TurnedVolume
 from amprep.model.rotations import quarter_turns
 
 BAR = Part("bar", box_mesh((0, 0, 0), (20, 10, 10)), 2000.0)
@@ -43,3 +45,11 @@ def test_a_turned_volume_must_be_turned_as_the_part_allows():
     (found,) = check_volume(BAR, upright)
     assert found.promise == "allowed motion"
     assert check_volume(BAR, TurnedVolume(Boxes([[0, 0, 0]], [[20, 10, 10]]), np.eye(3))) == []
+
+
+def test_a_volume_that_its_maker_did_not_turn_passes_whatever_orientations_the_part_allows():
+    part = replace(BAR, orientations=Orientations("list", quarter_turns()[1:2]))
+    box = Boxes([[0, 0, 0]], [[20, 10, 10]])
+    assert check_volume(part, TurnedVolume(box, np.eye(3))) == check_volume(part, box) == []
+    (found,) = check_volume(part, TurnedVolume(box, quarter_turns()[2]))
+    assert found.promise == "allowed motion"

@@ -3,6 +3,7 @@
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.model.counting import counted
 from amprep.model.part import Orientations
 
 ROTATION_TOLERANCE = 5e-6
@@ -29,4 +30,4 @@ def motion_fault(rotation: Floats, orientations: Orientations) -> str:
     nearest = np.abs(orientations.matrices - rotation).max(axis=(1, 2)).min(initial=np.inf)
     if nearest <= ROTATION_TOLERANCE:
         return ""
-    return f"is none of the {len(orientations.matrices)} allowed orientations"
+    return f"is none of the {counted(len(orientations.matrices), 'allowed orientation')}"

@@ -87,7 +87,7 @@ class BranchAndCutParams:
     def __post_init__(self) -> None:
         require_bounds(self, "boxes", at_least=2, at_most=4)
         require_bounds(self, "cells", at_least=2, at_most=64)
-        require_bounds(self, "work", at_least=0)
+        require_bounds(self, "work", at_least=0, at_most=1_000_000)
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class KMeansParams:
 
     def __post_init__(self) -> None:
         require_bounds(self, "boxes", at_least=2, at_most=5)
-        require_bounds(self, "restarts", at_least=1)
+        require_bounds(self, "restarts", at_least=1, at_most=10_000)
         require_bounds(self, "cells", at_least=2, at_most=256)
 
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from amprep.measures.contents import MeshContents
 from amprep.measures.overhangs import OverhangFigures
 from amprep.measures.thin_walls import ThinWall
@@ -31,7 +33,11 @@ def contents_words(part: Part, contents: MeshContents) -> Iterator[tuple[str, st
     if part.value is not None:
         yield "value", f"{part.value:g}"
     allowed = part.orientations
-    listed = "as it lies only" if len(allowed.matrices) == 1 else f"{len(allowed.matrices)} rotations"
+    listed = (
+        "as it lies only"
+        if (allowed.matrices == np.eye(3)).all()
+        else counted(len(allowed.matrices), "rotation")
+    )
     yield "orientations", listed if allowed.freedom == "list" else allowed.freedom
     if part.part_number:
         yield "part number", part.part_number

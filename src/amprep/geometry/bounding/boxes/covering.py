@@ -66,7 +66,7 @@ class BoxCover(NamedTuple):
 
     @property
     def gap(self) -> float:
-        """Fraction by which the best covering of the cells may exceed the least one; 0 if it is proven optimal."""
+        """How far the bound is below the best covering of the cells, as a fraction of it; 0 if it is proven optimal."""
         return 1.0 - self.bound / self.cells_volume if self.cells_volume > 0 else 0.0
 
 

@@ -16,12 +16,13 @@ def shrink(polygons: ConvexPolygons, boxes: Floats) -> Floats:
     """Shrink each box to what the others leave uncovered; return the boxes that are left, ``(k, 6)``.
 
     The boxes are shrunk one after another, the largest first and the smallest first; the smaller union counts,
-    then the smaller sum of volumes. Afterwards no box can be shrunk alone.
+    then the smaller sum of volumes. Afterwards no box can be shrunk alone. The last box encloses all that the others
+    leave uncovered, so the result covers the polygons even where the given boxes do not.
 
     Parameters
     ----------
     polygons
-        What the union of the boxes covers and covers afterwards.
+        What the boxes cover afterwards.
     boxes
         ``(k, 6)``, k at least 1.
     """
@@ -72,7 +73,7 @@ def enlarged(boxes: Floats, numbers: Sequence[int]) -> Floats:
 
 
 def merged(polygons: ConvexPolygons, boxes: Floats) -> Floats:
-    """Return fewer boxes with the same union, shrunk; the boxes as they are if there are none.
+    """Return fewer boxes with the same union but for rounding, shrunk; the boxes as they are if there are none.
 
     Each box is enlarged as far as the union reaches. A box that the others contain then is dropped, small ones first:
     the two halves of a bar that a third box crosses become one bar.

@@ -35,8 +35,9 @@ def planar_items(vertices: Floats, triangles: Ints) -> Floats:
     """Return quadrilaterals ``(m, 4, 2)`` that contain the outline of the projection of a mesh along z.
 
     The projection is divided into cells, and the enclosing rectangle of what is in a cell is an item. Cells with
-    neighbours on all four sides are left out: a point that two rectangles leave uncovered sees cells that they
-    must cover in at most two of the four directions along the axes.
+    neighbours on all four sides are left out: two rectangles that cover all other cells hardly ever leave them
+    uncovered. They can where a slot is about as narrow as a cell, so what the rectangles leave uncovered must still
+    be added to them (`shrink` does).
     """
     flat = vertices * [1.0, 1.0, 0.0]
     grid = cells_of(flat, triangles, _CELLS)

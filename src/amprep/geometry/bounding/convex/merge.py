@@ -140,7 +140,7 @@ def _improve(groups: Groups, most: int, stop: Callable[[], bool]) -> None:
             if stop():
                 return
             _relocate(groups, cell, negligible)
-        _exchange(groups, most, negligible)
+        _exchange(groups, most, negligible, stop)
         if groups.total >= before - negligible:
             return
 
@@ -174,9 +174,11 @@ def _relocate(groups: Groups, cell: int, negligible: float) -> None:
         groups.replace(target, groups.members[target] + [cell], joined)
 
 
-def _exchange(groups: Groups, most: int, negligible: float) -> None:
+def _exchange(groups: Groups, most: int, negligible: float, stop: Callable[[], bool]) -> None:
     """Make a cell a group of its own, and merge the two groups that cost least, while this pays."""
     for _ in range(most):
+        if stop():
+            return
         gains = [
             (gain - groups.single[cell], cell, group, rest)
             for cell in range(len(groups.cells))

@@ -71,7 +71,7 @@ class DualGraph:
         return math.sqrt(x * x + y * y + z * z)
 
     def aspect(self, v: int, w: int) -> float:
-        """Return E_shape of two patches: at least 1, and 1 for a disk."""
+        """Return E_shape of two patches: 1 for a disk, more for other flat patches, and 0 for a closed surface."""
         perimeter = self.perimeter[v] + self.perimeter[w] - 2.0 * self.border[v][w]
         area = max(self.area[v] + self.area[w], 1e-300)
         return float(max(perimeter, 0.0) ** 2 / (DISK * area))
