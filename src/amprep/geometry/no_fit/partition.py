@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import CONTACT_TOLERANCE, Floats, Int64s
 from amprep.geometry.bounding.convex.prepared import extreme_points
 
 if TYPE_CHECKING:
@@ -21,11 +21,10 @@ MOST_FACES = 300
 """Number of triangles up to which the decomposition is quick: it takes a second or two then."""
 
 IN_PLANE = 1e-5
-"""Distance from a plane that counts as none, as a fraction of the size of the mesh."""
+"""Distance from a plane that counts as none, as a fraction of the size of the mesh; at most `CONTACT_TOLERANCE` / 2."""
 
-EMPTY = 1e-7
-"""Volume that counts as none, as a fraction of that of the hull."""
-
+EMPTY = 0.2
+"""Volume of a cell over its surface, as a fraction of the distance that counts as none, up to which it is left out."""
 
 CONVEX = 1e-6
 """Excess of the hull over the volume of a mesh, as a fraction of it, up to which the mesh is convex."""
@@ -71,7 +70,7 @@ def _cells(vertices: Floats, triangles: Int64s, stop: Callable[[], bool]) -> lis
     from manifold3d import Manifold
 
     lo, hi = vertices.min(axis=0), vertices.max(axis=0)
-    near = IN_PLANE * float((hi - lo).max())
+    near = min(IN_PLANE * float((hi - lo).max()), CONTACT_TOLERANCE / 2.0)
     box = Manifold.cube((hi - lo).tolist()).translate(lo.tolist())
     inside: list[Floats] = []
     todo: list[tuple[Manifold, list[Facet]]] = [(box, _facets(vertices[triangles], near))]
@@ -81,7 +80,7 @@ def _cells(vertices: Floats, triangles: Int64s, stop: Callable[[], bool]) -> lis
         cell, facets = todo.pop()
         if facets:
             todo += _cut(cell, facets, near)
-        elif cell.volume() > EMPTY * box.volume():
+        elif cell.volume() > EMPTY * near * cell.surface_area():
             corners = np.asarray(cell.to_mesh64().vert_properties[:, :3])
             if winding_number(vertices[triangles], corners.mean(axis=0)) > 0.5:
                 inside.append(corners)

@@ -50,6 +50,20 @@ def test_the_union_of_the_pieces_is_the_solid(make, most):
     assert len(pieces) <= most
 
 
+@pytest.mark.parametrize("edge", [0.4, 0.05])
+def test_a_small_stud_on_a_large_part_is_in_the_pieces(edge):
+    solid = Manifold.cube([100, 100, 100]) - Manifold.cube([30, 30, 30]).translate([10, 10, 80])
+    solid += Manifold.cube([edge, edge, 2 * edge]).translate([50, 50, 100 - edge])
+    union = Manifold.batch_boolean([Manifold.hull_points(p) for p in pieces_of(*arrays(solid))], OpType.Add)
+    assert (solid - union).volume() < 0.01 * edge**3
+
+
+def test_a_step_above_the_tolerance_of_contact_on_a_long_part_is_in_the_pieces():
+    solid = Manifold.cube([400, 200, 10]) + Manifold.cube([200, 200, 10.002])
+    union = Manifold.batch_boolean([Manifold.hull_points(p) for p in pieces_of(*arrays(solid))], OpType.Add)
+    assert (solid - union).volume() < 200 * 200 * 0.001
+
+
 def test_a_mesh_with_a_gap_is_decomposed_as_if_it_were_closed():
     vertices, triangles = arrays(stairs())
     pieces = pieces_of(vertices, triangles[1:])
