@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from amprep.errors import AmprepError
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Progress, Stop
-from amprep.model.packing import Packing, PackingProblem, Placement, Unplaced
+from amprep.model.packing import Packing, PackingProblem, Placement, Unplaced, require_values
 from amprep.plugins.packers.annealing.course import Annealing, Builds
 from amprep.plugins.packers.annealing.params import AnnealingParams
 from amprep.plugins.packers.annealing.scene import fits_by_size, prepare_volumes
@@ -22,29 +21,21 @@ def pack_annealing(
 ) -> Packing:
     """Pack by simulated annealing on the bounding volumes themselves (thesis 2.6).
 
-    The packing is never worse than the first layout, which a packer of boxes makes. It is made of continuous motions
-    from outside the build volume, so parts never interlock.
+    The packing is never worse than the first layout, which a packer of boxes makes. From there all motions are
+    continuous or begin outside, so no parts interlock, unless they are sets of boxes that interlock at first.
 
     Raises
     ------
     AmprepError
-        If a value is negative, or the collision engine cannot handle the volumes.
+        If a value is out of range, or the collision engine cannot handle the volumes.
     """
-    _require_values(problem)
+    require_values(problem)
     start = start_layout(problem, params.start, rng, stop)
     prepared = prepare_volumes(problem, params.collision)
     annealing = Annealing(prepared, start, params, rng)
     too_large = {entry.item for entry in start.unplaced if _is_too_large(annealing, entry)}
     builds, reason = annealing.pack(too_large, stop, progress)
     return _finish(annealing, builds, too_large, reason)
-
-
-def _require_values(problem: PackingProblem) -> None:
-    for item in problem.items:
-        if not item.value >= 0.0:
-            raise AmprepError(
-                f"part {item.part}: the value must be at least 0, got {item.value:g}; correct it in the job file"
-            )
 
 
 def _is_too_large(annealing: Annealing, entry: Unplaced) -> bool:

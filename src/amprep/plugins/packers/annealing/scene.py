@@ -53,7 +53,7 @@ class PreparedVolumes:
 def prepare_volumes(problem: PackingProblem, collision: str) -> PreparedVolumes:
     """Return the volumes of the items and of the zones as shapes; copies of a part share one."""
     engine = choose_engine(problem, collision)
-    zones = [Boxes(*c) for c in zip(problem.space.zone_lo, problem.space.zone_hi, strict=True)]
+    zones = _zones(problem)
     volumes: list[BoundingVolume] = []
     known: dict[int, int] = {}
     for volume in (*(item.volume for item in problem.items), *zones):
@@ -63,6 +63,13 @@ def prepare_volumes(problem: PackingProblem, collision: str) -> PreparedVolumes:
     shape_of = tuple(known[id(volume)] for volume in (*(item.volume for item in problem.items), *zones))
     points = tuple(points_of(volume) for volume in volumes)
     return PreparedVolumes(problem, shape_of, points, tuple(volumes), engine)
+
+
+def _zones(problem: PackingProblem) -> list[Boxes]:
+    """Return what the forbidden zones have in common with the box of the build volume; berths are outside of it."""
+    lo = np.maximum(problem.space.zone_lo, 0.0)
+    hi = np.minimum(problem.space.zone_hi, problem.space.size)
+    return [Boxes(*corners) for corners in zip(lo, hi, strict=True) if (corners[1] > corners[0]).all()]
 
 
 def fits_by_size(prepared: PreparedVolumes, item: int) -> bool:

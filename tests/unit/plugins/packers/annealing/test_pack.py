@@ -115,6 +115,15 @@ def test_a_packing_of_boxes_keeps_its_promise(sizes, objective, clearance, stack
     assert check_packing(problem, packed(problem, moves=100)) == []
 
 
+@pytest.mark.parametrize("word", ENGINES)
+def test_a_zone_that_goes_on_beside_the_build_volume_is_not_entered_from_there(word):
+    space = BuildVolume(np.full(3, 20.0), "box", [[8.0, -50, -50]], [[300.0, 300, 300]])
+    problem = shapes_problem(word, [(4, 5, 4)] * 8, space=space, objective="fill")
+    packing = packed(problem, moves=300, drops=0.1, start="outside")
+    assert check_packing(problem, packing) == []
+    assert packing.builds
+
+
 def test_a_stop_returns_the_best_layout_so_far_within_milliseconds():
     problem = boxes_problem([(3, 3, 3)] * 30, (9.5, 9.5, 60), objective="height")
     told: list[Any] = []
@@ -151,5 +160,5 @@ def test_an_engine_that_cannot_handle_the_volumes_is_refused_by_name():
 
 
 def test_a_negative_value_is_refused():
-    with pytest.raises(AmprepError, match="value must be at least 0"):
+    with pytest.raises(AmprepError, match="value must be between 0 and"):
         packed(boxes_problem([(3, 3, 3)], values=[-1.0]), start="outside")
