@@ -13,7 +13,7 @@ def surfaces_collide(
 ) -> Bools:
     """Tell for each pose whether two surfaces intersect or are closer than a margin, ``(n,)``.
 
-    Touching is no intersection: see `amprep.kernels.trees`. A body inside another is not found: see `contains`.
+    Touching is no intersection: see `amprep.kernels.trees`. For a body inside another see `solids_collide`.
 
     Parameters
     ----------

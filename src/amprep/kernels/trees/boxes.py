@@ -188,8 +188,8 @@ def first_overlap(
 def distance_bound(a: Floats, i: int, b: Floats, j: int, frame: Frame, limit: float) -> float:
     """Return a lower bound of the distance of two boxes; infinity as soon as it is at least a limit.
 
-    The bound is the greatest gap of the shadows on the 15 axes. If several face axes of one box separate, the gaps
-    along them are the sides of a right angle, and their root of the sum of squares is a bound too.
+    The six axes of the boxes are used, without the nine cross products. The axes of one box are at right angles, so the
+    root of the sum of the squared gaps along them is a bound; the greater one of both boxes is taken.
 
     Parameters
     ----------

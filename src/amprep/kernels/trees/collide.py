@@ -27,7 +27,7 @@ def surfaces_collide(
     """Return whether the surfaces of two bodies intersect or are closer than a margin (thesis 2.6).
 
     With margin 0, surfaces that only touch do not intersect: see `triangles_enter`. With a positive margin the distance
-    is compared with the margin minus `TOUCH`. A body inside another without touching it is not found: see `contains`.
+    is compared with the margin minus `TOUCH`. For a body inside another without touching it see `containment`.
 
     Parameters
     ----------
