@@ -5,7 +5,12 @@ from typing import Any
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.bounding.boxes.orientation import hull_of, smallest_box_about_z, smallest_box_rotation
+from amprep.geometry.bounding.boxes.orientation import (
+    flat_rotation,
+    hull_of,
+    smallest_box_about_z,
+    smallest_box_rotation,
+)
 from amprep.model.bounding_volume import Boxes, TurnedVolume
 from amprep.model.control import Stop
 from amprep.model.part import Part
@@ -42,7 +47,7 @@ def _best_rotation(vertices: Floats, part: Part) -> Floats:
         return smallest_box_about_z(vertices)[1]
     if allowed.freedom == "free":
         hull = hull_of(vertices)
-        return smallest_box_about_z(vertices)[1] if hull is None else smallest_box_rotation(hull)[1]
+        return flat_rotation(vertices) if hull is None else smallest_box_rotation(hull)[1]
     return min(allowed.matrices, key=lambda matrix: _volume(_enclosing(vertices, matrix)))
 
 

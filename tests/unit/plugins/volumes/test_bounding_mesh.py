@@ -32,14 +32,6 @@ def test_the_judge_accepts_the_volume(name):
     assert len(volume.mesh.triangles) < len(part.mesh.triangles)
 
 
-@pytest.mark.parametrize(
-    ("given", "count", "target"),
-    [({}, 20_000, 2_000), ({}, 3_000, 1_000), ({"fraction": 0.1}, 3_000, 300), ({"triangles": 7}, 3_000, 7)],
-)
-def test_small_meshes_keep_a_thousand_triangles_unless_asked(given, count, target):
-    assert BoundingMeshParams(**given).target(count) == target
-
-
 def test_triangles_and_fraction_set_the_target():
     part = part_of(Manifold.sphere(10, 64))
     assert len(make(part, triangles=100).mesh.triangles) == 100
@@ -71,17 +63,3 @@ def test_an_open_mesh_is_refused():
     part = Part("flap", Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), 0.0, is_solid=False)
     with pytest.raises(MeshError, match=r"'flap'.*needs a solid"):
         make(part)
-
-
-@pytest.mark.parametrize(
-    ("params", "rule"),
-    [
-        ({"triangles": 3}, "triangles must be at least 4, got 3"),
-        ({"fraction": 1.5}, "fraction must be between 0.0 and 1.0, got 1.5"),
-        ({"max_error_mm": 0.0}, "max_error_mm must be above 0.0, got 0.0"),
-        ({"cost": "area"}, "cost must be volume or distance, got 'area'"),
-    ],
-)
-def test_parameters_out_of_bounds_are_refused(params, rule):
-    with pytest.raises(ValueError, match=rule):
-        BoundingMeshParams(**params)

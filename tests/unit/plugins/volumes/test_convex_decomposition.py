@@ -105,11 +105,3 @@ def test_the_pieces_of_a_part_that_is_no_solid_contain_its_triangles(ended):
 
 def test_a_stopped_decomposition_by_patches_gives_the_hulls_of_the_components():
     assert len(made(part_of(SOLIDS["apart"]()), stop=Stop.after(0.0), method="surface").pieces) == 2
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"pieces": 0}, {"method": "x"}, {"excess": -1.0}, {"concavity_mm": float("nan")}]
-)
-def test_parameters_outside_their_bounds_are_refused(wrong):
-    with pytest.raises(ValueError, match="must be"):
-        ConvexPiecesParams(**wrong)

@@ -8,7 +8,7 @@ from tests.shared.coverings import part_of
 
 from amprep.checks.volumes import check_volume
 from amprep.hookspecs import NoParams
-from amprep.model import Boxes, Orientations, Stop
+from amprep.model import Boxes, Mesh, Orientations, Part, Stop
 from amprep.model.bounding_volume import as_turned
 from amprep.plugins.volumes.oriented_box import oriented_box
 
@@ -47,3 +47,12 @@ def test_a_part_that_is_a_box_already_is_not_turned(freedom):
     made, volume = box_around(rod(0, 0, 0), Orientations(freedom))
     assert isinstance(made, Boxes)
     assert volume == pytest.approx(720)
+
+
+def test_a_flat_part_that_may_be_rotated_freely_is_laid_level():
+    square = Manifold.cube([30, 20, 0.1]).rotate([20, 30, 40]).to_mesh64()
+    corners = square.vert_properties[:3, :3]
+    part = Part("flat", Mesh(corners, [[0, 1, 2]]), 0.0, orientations=Orientations("free"), is_solid=False)
+    made = oriented_box(part, params=NoParams(), rng=np.random.default_rng(0), stop=Stop())
+    assert check_volume(part, made) == []
+    assert np.ptp(part.mesh.vertices @ as_turned(made).rotation.T, axis=0)[2] < 1e-9

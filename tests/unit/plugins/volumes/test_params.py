@@ -27,6 +27,11 @@ from amprep.plugins.volumes import params
         (params.ConvexPiecesParams, {"pieces": 0}, "pieces must be between 1 and 1000, got 0"),
         (params.ConvexPiecesParams, {"excess": -0.1}, "excess must be at least 0, got -0.1"),
         (params.ConvexPiecesParams, {"concavity_mm": -1.0}, "concavity_mm must be at least 0, got -1.0"),
+        (
+            params.ConvexPiecesParams,
+            {"concavity_mm": float("nan")},
+            "concavity_mm must be at least 0, got nan",
+        ),
     ],
 )
 def test_a_parameter_out_of_bounds_is_refused_with_rule_and_value(record, given, message):

@@ -35,8 +35,3 @@ def test_the_objectives_differ_where_one_large_box_saves_volume():
     union, larger = two(part)[1], two(part, objective="larger")[1]
     assert union.sum() == pytest.approx(3000 + 400, rel=1e-4)
     assert larger.max() < 2000 < union.max()
-
-
-def test_an_unknown_objective_is_refused_with_the_known_ones():
-    with pytest.raises(ValueError, match="objective must be union or larger, got 'least'"):
-        TwoBoxesParams(objective="least")

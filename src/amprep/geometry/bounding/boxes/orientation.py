@@ -177,3 +177,10 @@ def smallest_box_about_z(points: Floats) -> tuple[float, Floats]:
     areas = _extent(outline, u) * _extent(outline, np.column_stack((-u[:, 1], u[:, 0])))
     best = int(areas.argmin())
     return float(areas[best] * np.ptp(points[:, 2])), about_z(float(angles[best]))
+
+
+def flat_rotation(points: Floats) -> Floats:
+    """Return the rotation ``(3, 3)`` that lays points in a plane level, in the smallest rectangle around them."""
+    spread = points - points.mean(axis=0)
+    to_z = upright_rotation(np.linalg.svd(np.vstack((spread, np.zeros((3, 3)))), full_matrices=False)[2][2])
+    return np.asarray(smallest_box_about_z(points @ to_z.T)[1] @ to_z)

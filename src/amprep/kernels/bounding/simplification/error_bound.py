@@ -13,7 +13,7 @@ from typing import NamedTuple
 from amprep.arrays import Floats
 from amprep.kernels.bounding.simplification.box_tree import MovingBoxTree
 from amprep.kernels.bounding.simplification.half_edges import HalfEdgeSurface, following, start_of
-from amprep.kernels.bounding.simplification.height_bound import direction_of, height_bound
+from amprep.kernels.bounding.simplification.height_bound import UNKNOWN, direction_of, height_bound
 from amprep.kernels.bounding.simplification.patches import EdgePatch
 from amprep.kernels.bounding.simplification.points import Point, along, cross, dot, minus, part
 
@@ -22,10 +22,6 @@ _MOST_PIECES = 190
 
 _NEAR_LIMIT = 0.95
 """Distance relative to the limit beyond which a centre is refused, because halving its piece seldom decides."""
-
-
-_UNKNOWN = 1e300
-"""No bound, or no limit."""
 
 
 class OriginalSurface(NamedTuple):
@@ -114,9 +110,9 @@ def _nearest(original: OriginalSurface, p: Point) -> tuple[int, float]:
 
 @part
 def _farthest(original: OriginalSurface, a: Point, b: Point, c: Point) -> float:
-    """Return a bound on the distance of a triangle within the limit, -1 if it is beyond, `_UNKNOWN` if undecided."""
+    """Return a bound on the distance of a triangle within the limit, -1 if it is beyond, `UNKNOWN` if undecided."""
     m = (a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0
-    middle, least = _UNKNOWN, _UNKNOWN
+    middle, least = UNKNOWN, UNKNOWN
     for i in range(4):
         p = m if i == 0 else a if i == 1 else b if i == 2 else c
         triangle, distance = _nearest(original, p)
@@ -134,7 +130,7 @@ def _farthest(original: OriginalSurface, a: Point, b: Point, c: Point) -> float:
             return least
     u, v, w = minus(a, m), minus(b, m), minus(c, m)
     radius = max(dot(u, u), dot(v, v), dot(w, w)) ** 0.5
-    return middle + radius if middle + radius <= original.limit else _UNKNOWN
+    return middle + radius if middle + radius <= original.limit else UNKNOWN
 
 
 @part
@@ -154,7 +150,7 @@ def _halve(pieces: Floats, top: int, a: Point, b: Point, c: Point) -> None:
 
 @part
 def _distance_bound(original: OriginalSurface, a: Point, b: Point, c: Point) -> float:
-    """Return a bound on the distance of all points of a triangle, `_UNKNOWN` if it may exceed the limit."""
+    """Return a bound on the distance of all points of a triangle, `UNKNOWN` if it may exceed the limit."""
     pieces, greatest = original.pieces, 0.0
     for axis in range(3):
         pieces[0, axis], pieces[0, 3 + axis], pieces[0, 6 + axis] = a[axis], b[axis], c[axis]
@@ -167,8 +163,8 @@ def _distance_bound(original: OriginalSurface, a: Point, b: Point, c: Point) -> 
         r = pieces[top, 6], pieces[top, 7], pieces[top, 8]
         farthest = _farthest(original, p, q, r)
         if farthest < 0.0 or seen > _MOST_PIECES:
-            return _UNKNOWN
-        if farthest < _UNKNOWN:
+            return UNKNOWN
+        if farthest < UNKNOWN:
             greatest = max(greatest, farthest)
         else:
             _halve(pieces, top, p, q, r)
@@ -195,13 +191,13 @@ def exceeds(original: OriginalSurface, surface: HalfEdgeSurface, patch: EdgePatc
 
     The bounds of the triangles that will carry the fan are updated if it is not.
     """
-    if original.limit >= _UNKNOWN:
+    if original.limit >= UNKNOWN:
         return False
     w, bounds, looked = (patch.place[0], patch.place[1], patch.place[2]), patch.sides, False
     upright, up = direction_of(surface, patch, count)
     for i in range(count - 2):
         h = patch.ring[i]
-        bounds[i] = _UNKNOWN
+        bounds[i] = UNKNOWN
         if upright:
             bounds[i] = height_bound(surface, patch, count, i, up, original.bound, original.polygon)
         if bounds[i] > original.limit:

@@ -19,6 +19,9 @@ from amprep.kernels.bounding.simplification.points import (
     part,
 )
 
+UNKNOWN = 1e300
+"""No bound, or no limit."""
+
 
 @part
 def direction_of(surface: HalfEdgeSurface, patch: EdgePatch, count: int) -> tuple[bool, Point]:
@@ -92,6 +95,8 @@ def height_bound(
 ) -> float:
     """Return a bound on the distance of new triangle i: over the old ones below it, their bound and its height.
 
+    If rounding finds no old triangle below it, the value is `UNKNOWN`.
+
     Parameters
     ----------
     up
@@ -108,7 +113,7 @@ def height_bound(
     two, w, h = cross(up, one), (patch.place[0], patch.place[1], patch.place[2]), patch.ring[i]
     b = _local(start_of(surface, h), w, one, two, up)
     c = _local(start_of(surface, following(h)), w, one, two, up)
-    greatest = 0.0
+    greatest = -1.0
     for j in range(count):
         for axis in range(3):
             polygon[0, 0, axis], polygon[0, 1, axis], polygon[0, 2, axis] = 0.0, b[axis], c[axis]
@@ -119,4 +124,4 @@ def height_bound(
         height = _height(polygon, p, q, r)
         if height >= 0.0:
             greatest = max(greatest, bound[patch.triangles[j]] + height)
-    return greatest
+    return greatest if greatest >= 0.0 else UNKNOWN

@@ -9,6 +9,7 @@ from tests.shared.examples import examples
 from amprep.geometry.bounding.boxes.orientation import (
     about_z,
     angles_of,
+    flat_rotation,
     hull_of,
     outline_of,
     smallest_box_about_z,
@@ -75,3 +76,19 @@ def test_the_angles_of_a_square_are_one():
 def test_the_outline_of_points_on_a_line_is_its_ends():
     line = np.array([[1.0, 1], [0, 0], [3, 3], [2, 2]])
     assert sorted(outline_of(line).tolist()) == [[0, 0], [3, 3]]
+
+
+@given(seed=st.integers(0, 10**6))
+@examples(20)
+def test_points_in_a_plane_are_laid_level_in_the_smallest_rectangle(seed):
+    rectangle = np.array([[0, 0, 0], [9, 0, 0], [9, 5, 0], [0, 5, 0], [4, 2, 0]], float)
+    turned = rectangle @ Rotation.random(rng=seed).as_matrix().T + 50
+    rotation = flat_rotation(turned)
+    assert np.linalg.det(rotation) == pytest.approx(1)
+    assert sorted(np.ptp(turned @ rotation.T, axis=0)) == pytest.approx([0, 5, 9], abs=1e-9)
+
+
+@pytest.mark.parametrize("points", [[[1, 2, 3]] * 3, [[0, 0, 0], [1, 2, 3], [2, 4, 6]]])
+def test_points_on_a_line_or_alone_have_a_rotation(points):
+    rotation = flat_rotation(np.array(points, float))
+    assert np.allclose(rotation @ rotation.T, np.eye(3))
