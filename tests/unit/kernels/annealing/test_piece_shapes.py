@@ -41,6 +41,20 @@ def test_meshes_and_pieces_travel_as_far_as_the_boxes_they_are_made_of(engine, m
         assert found <= exact + 1e-5 or margin > 0.0
 
 
+@pytest.mark.parametrize("ray", [(10.0, -3.0, 10.0), (10.0, 3.0, -10.0), (2.0, 1.0, 1.0), (1.0, 1.0, 0.0)])
+def test_edges_that_are_on_one_line_seen_along_the_ray_do_not_shorten_the_travel(ray):
+    boxes, meshes = shapes_by("boxes"), shapes_by("trees")
+    way, compared = tuple(np.array(ray) / np.linalg.norm(ray)), 0
+    for back in np.linspace(3.0, 6.0, 25) / max(np.abs(ray)):
+        pose = STILL.copy()
+        pose[3::4] = np.round(-np.multiply(ray, back), 2)
+        if not engines.collide(boxes, 0, pose, 1, STILL, 0.0):
+            exact = engines.travel(boxes, 0, pose, 1, STILL, way, 0.0, 50.0)
+            assert engines.travel(meshes, 0, pose, 1, STILL, way, 0.0, 50.0) == pytest.approx(exact, abs=1e-6)
+            compared += 1
+    assert compared > 5
+
+
 @pytest.mark.parametrize("engine", ["trees", "pieces"])
 def test_a_turn_stops_before_small_steps_collide(engine):
     shapes, rng, stopped = shapes_by(engine), np.random.default_rng(5), 0

@@ -80,6 +80,26 @@ def _height_inside(triangle: Triangle, sides: Floats, first: int, corner: int) -
 
 
 @inlined
+def _gap_at_crossing(
+    a: Triangle, i: int, i_next: int, b: Triangle, k: int, k_next: int, along: float
+) -> float:
+    """Return the difference in z where an edge of `b` crosses an edge of `a`; not a number beyond the edge of `a`.
+
+    Both heights are taken at the same point, at the fraction `along` of the edge of `b`. This matters where both
+    shadows have an edge on one line: the signs of the sides and the fraction are then rounding alone, but every common
+    point of both edges will do.
+    """
+    x = b[3 * k] + along * (b[3 * k_next] - b[3 * k]) - a[3 * i]
+    y = b[3 * k + 1] + along * (b[3 * k_next + 1] - b[3 * k + 1]) - a[3 * i + 1]
+    ex, ey = a[3 * i_next] - a[3 * i], a[3 * i_next + 1] - a[3 * i + 1]
+    at = (x * ex + y * ey) / (ex * ex + ey * ey)
+    if at < -1e-9 or at > 1.0 + 1e-9:
+        return np.nan
+    above = b[3 * k + 2] + along * (b[3 * k_next + 2] - b[3 * k + 2])
+    return above - a[3 * i + 2] - at * (a[3 * i_next + 2] - a[3 * i + 2])
+
+
+@inlined
 def shadow_travel(a: Triangle, b: Triangle, slope: float, sides: Floats) -> float:
     """Return how far a leading triangle may travel along z before it meets a facing one; infinity if it does not.
 
@@ -109,14 +129,9 @@ def shadow_travel(a: Triangle, b: Triangle, slope: float, sides: Floats) -> floa
             r, r_next = sides[3 * i + k], sides[3 * i + k_next]
             s, s_next = sides[9 + 3 * k + i], sides[9 + 3 * k + i_next]
             if r * r_next < 0.0 and s * s_next < 0.0:
-                along_a, along_b = s / (s - s_next), r / (r - r_next)
-                gap = (
-                    b[3 * k + 2]
-                    + along_b * (b[3 * k_next + 2] - b[3 * k + 2])
-                    - a[3 * i + 2]
-                    - along_a * (a[3 * i_next + 2] - a[3 * i + 2])
-                )
-                least, most = min(least, gap), max(most, gap)
+                gap = _gap_at_crossing(a, i, i_next, b, k, k_next, r / (r - r_next))
+                if not np.isnan(gap):
+                    least, most = min(least, gap), max(most, gap)
     if least + most < 0.0 and least * slope < -TOUCH:
         return np.inf
     return max(least, 0.0)
