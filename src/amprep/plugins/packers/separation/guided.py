@@ -25,7 +25,7 @@ class Attempt:
 
 def separated(scene: Scene, start: Placed, within: PositionRange, builds: int) -> Attempt:
     """Move overlapping items until nothing overlaps, or until there is no progress for a while."""
-    layout = scene.layout(_clipped(start, within))
+    layout = scene.layout(_clipped(scene, start, within))
     best = scene.layout(start)
     items = start.items
     state, rules = scene.work_arrays(len(items), within), scene.rules(items, builds)
@@ -43,10 +43,17 @@ def separated(scene: Scene, start: Placed, within: PositionRange, builds: int) -
     return Attempt(least, nearest, None)
 
 
-def _clipped(placed: Placed, within: PositionRange) -> Placed:
-    """Return a layout with all items inside the build volume, as far as its sides are planes."""
-    lo, hi = within.lo[placed.shape], within.hi[placed.shape]
-    return placed._replace(position=np.maximum(np.minimum(placed.position, hi), lo))
+def _clipped(scene: Scene, placed: Placed, within: PositionRange) -> Placed:
+    """Return a layout with all items inside the build volume, as far as its sides are planes.
+
+    Items in a shape that is too high get the lowest one.
+    """
+    instance, shape = scene.instance, placed.shape.copy()
+    for row in np.flatnonzero((within.hi < within.lo)[shape].any(axis=1)).tolist():
+        first, end = int(instance.first[placed.items[row]]), int(instance.end[placed.items[row]])
+        shape[row] = first + int(np.argmin(instance.size[first:end, 2]))
+    position = np.maximum(np.minimum(placed.position, within.hi[shape]), within.lo[shape])
+    return placed._replace(shape=shape, position=position)
 
 
 def disturbed(scene: Scene, placed: Placed) -> Placed:

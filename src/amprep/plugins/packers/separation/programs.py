@@ -66,7 +66,7 @@ def make_exact(scene: Scene, placed: Placed, within: PositionRange) -> Placed | 
     """Return a layout near another without overlaps; None if the programs find none."""
     last = np.inf
     for _ in range(ATTEMPTS):
-        if is_exact(scene, placed) and _outside(scene, placed) <= EXACT:
+        if is_exact(scene, placed) and _outside(scene, placed, within) <= EXACT:
             return placed
         found = _solve(scene, placed, within, compact=False)
         if found is None or (found[1] > PROGRESS * last and found[1] > EXACT / 10.0):
@@ -82,7 +82,7 @@ def compacted(scene: Scene, placed: Placed, within: PositionRange) -> Placed:
     height = height_of(scene, placed)
     for _ in range(COMPACTIONS):
         found = None if scene.budget.over() else _solve(scene, placed, within, compact=True)
-        if found is None or not is_exact(scene, found[0]) or _outside(scene, found[0]) > EXACT:
+        if found is None or not is_exact(scene, found[0]) or _outside(scene, found[0], within) > EXACT:
             return placed
         lower = height_of(scene, found[0])
         if lower > height - 1e-9:
@@ -99,10 +99,12 @@ def height_of(scene: Scene, placed: Placed) -> float:
     return float(tops.max(initial=0.0))
 
 
-def _outside(scene: Scene, placed: Placed) -> float:
-    """Return the greatest length by which an item is beyond a side of the round build volume, mm."""
+def _outside(scene: Scene, placed: Placed, within: PositionRange) -> float:
+    """Return the greatest length by which an item is outside its range or beyond a side of a round build volume, mm."""
+    below = within.lo[placed.shape] - placed.position
+    above = placed.position - within.hi[placed.shape]
     beyond = _beyond_sides(scene, placed)
-    return float(beyond.max(initial=0.0))
+    return float(max(below.max(initial=0.0), above.max(initial=0.0), beyond.max(initial=0.0)))
 
 
 def _beyond_sides(scene: Scene, placed: Placed) -> Floats:

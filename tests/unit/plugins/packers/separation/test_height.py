@@ -127,3 +127,18 @@ def test_the_same_seed_gives_the_same_layout_and_the_time_limit_is_kept():
     assert [p.matrix.tolist() for p in one.builds[0]] == [p.matrix.tolist() for p in other.builds[0]]
     _, packing, _ = pack(items, (9, 9, 50), stop=Stop.after(0.0))
     assert {unplaced.reason for unplaced in packing.unplaced} == {"out of time"}
+
+
+def test_a_bar_that_stands_lowest_between_zones_stays_on_the_plate():
+    """Lying on the zones it would be higher, and a lower build has room for neither position."""
+    zones = np.array([[3.5, 0, 0, 12, 12, 9.5], [0, 3.5, 0, 12, 12, 9.5]])
+    space = BuildVolume(np.array([12.0, 12.0, 30.0]), "box", zones[:, :3], zones[:, 3:])
+    turns = Orientations("list", axis_rotations())
+    tall = Item(0, 0, Boxes(np.zeros(3), np.array([2.0, 2.0, 10.0])), 1.0, turns)
+    problem = PackingProblem((tall,), space, "height")
+    rng = np.random.default_rng(1)
+    packing = pack_separation(
+        problem, params=SeparationParams(work=10.0), rng=rng, stop=Stop(), progress=silent
+    )
+    assert check_packing(problem, packing) == []
+    assert objective_reached(problem, packing) == pytest.approx(10.0, abs=1e-6)
