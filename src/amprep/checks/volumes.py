@@ -1,11 +1,13 @@
 """Check the volume maker's promise: the bounding volume contains the part with its interior."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Floats
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.distance import box_solids, convex_solid, thickness
@@ -44,11 +46,15 @@ def check_volume(part: Part, volume: BoundingVolume | TurnedVolume) -> list[Viol
 
 
 def _left_out(part: Part, volume: BoundingVolume, cover: "Manifold") -> list[Violation]:
-    """Return a violation if something of the part is outside the cover."""
-    outside = (_solid(part) if part.is_solid else _triangle_prisms(part, volume)) - cover
+    """Return a violation if something of the part is outside the cover.
+
+    A thin remainder of a solid is within the tolerance. Triangles are always thin, so the cover is enlarged for them.
+    """
+    solid = part.is_solid
+    outside = _solid(part) - cover if solid else _triangle_prisms(part, volume) - _enlarged(volume, cover)
     if outside.is_empty() or outside.volume() <= _NEGLIGIBLE_MM3:
         return []
-    if not isinstance(volume, Boxes) and thickness(outside) <= CONTACT_TOLERANCE:
+    if solid and not isinstance(volume, Boxes) and thickness(outside) <= CONTACT_TOLERANCE:
         return []
     box = outside.bounding_box()
     return [_violation(part, f"{outside.volume():.3g} mm3 of the part", np.array(box[:3]), np.array(box[3:]))]
@@ -84,21 +90,51 @@ def _cover(volume: BoundingVolume) -> "Manifold":
     return as_manifold(volume.mesh.vertices, volume.mesh.triangles)
 
 
+def _enlarged(volume: BoundingVolume, cover: "Manifold") -> "Manifold":
+    """Return the cover enlarged by the tolerance, as cubes enlarge its pieces or its surface; boxes already are."""
+    from manifold3d import Manifold, OpType
+
+    if isinstance(volume, Boxes):
+        return cover
+    if isinstance(volume, ConvexPieces):
+        convex = [piece.vertices for piece in volume.pieces]
+    else:
+        convex = list(volume.mesh.vertices[volume.mesh.triangles])
+    cube = CONTACT_TOLERANCE * np.array(list(product((-1.0, 1.0), repeat=3)))
+    grown = [convex_solid((points[:, None] + cube).reshape(-1, 3)) for points in convex]
+    return Manifold.batch_boolean([cover, *grown], OpType.Add)
+
+
 def _solid(part: Part) -> "Manifold":
     return as_manifold(part.mesh.vertices, part.mesh.triangles)
 
 
+def _vertices_inside(vertices: Floats, volume: BoundingVolume) -> Iterator[Bools]:
+    """Yield for each box or convex piece which vertices are in it, up to `CONTACT_TOLERANCE`."""
+    if isinstance(volume, Boxes):
+        for least, most in zip(volume.lo - CONTACT_TOLERANCE, volume.hi + CONTACT_TOLERANCE, strict=True):
+            yield ((vertices >= least) & (vertices <= most)).all(axis=1)
+    if isinstance(volume, ConvexPieces):
+        for piece in volume.pieces:
+            hull = convex_solid(piece.vertices).to_mesh64()
+            corners = hull.vert_properties[:, :3][hull.tri_verts]
+            normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            length = np.linalg.norm(normal, axis=1)
+            normal, level = normal[length > 0], np.einsum("ij,ij->i", normal, corners[:, 0])[length > 0]
+            inside = np.full(len(vertices), len(level) > 0)
+            for n, reach in zip(normal, level + CONTACT_TOLERANCE * length[length > 0], strict=True):
+                inside &= vertices @ n <= reach
+            yield inside
+
+
 def _triangle_prisms(part: Part, volume: BoundingVolume) -> "Manifold":
-    """Return the triangles that no single box contains, as thin prisms."""
+    """Return the triangles that no single box or convex piece contains, as thin prisms."""
     from manifold3d import Manifold, OpType
 
-    corners = part.mesh.vertices[part.mesh.triangles]
-    if isinstance(volume, Boxes):
-        lo, hi = corners.min(axis=1), corners.max(axis=1)
-        held = np.zeros(len(corners), dtype=bool)
-        for least, most in zip(volume.lo - CONTACT_TOLERANCE, volume.hi + CONTACT_TOLERANCE, strict=True):
-            held |= ((lo >= least) & (hi <= most)).all(axis=1)
-        corners = corners[~held]
+    held = np.zeros(len(part.mesh.triangles), dtype=bool)
+    for inside in _vertices_inside(part.mesh.vertices, volume):
+        held |= inside[part.mesh.triangles].all(axis=1)
+    corners = part.mesh.vertices[part.mesh.triangles[~held]]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
     corners, normal, length = corners[length > 0], normal[length > 0], length[length > 0]

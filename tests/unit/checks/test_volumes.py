@@ -53,3 +53,29 @@ def test_a_volume_that_its_maker_did_not_turn_passes_whatever_orientations_the_p
     assert check_volume(part, TurnedVolume(box, np.eye(3))) == check_volume(part, box) == []
     (found,) = check_volume(part, TurnedVolume(box, quarter_turns()[2]))
     assert found.promise == "allowed motion"
+
+
+def surface_of(mesh):
+    return replace(BAR, mesh=Mesh(mesh.vertices, mesh.triangles[1:]), is_solid=False)
+
+
+@pytest.mark.parametrize(
+    "volume",
+    [ConvexPieces((LEFT, RIGHT)), Solid(BAR.mesh), Boxes([[0, 0, 0], [10, 0, 0]], [[10] * 3, [20, 10, 10]])],
+)
+def test_the_triangles_of_a_surface_that_cross_from_piece_to_piece_are_contained(volume):
+    assert check_volume(surface_of(BAR.mesh), volume) == []
+
+
+@pytest.mark.parametrize(
+    "volume",
+    [
+        ConvexPieces((LEFT,)),
+        ConvexPieces((LEFT, box_mesh((10.01, 0, 0), (10, 10, 10)))),
+        Solid(box_mesh((0, 0, 0), (20, 10, 9.99))),
+        Boxes([[0, 0, 0], [10.01, 0, 0]], [[10] * 3, [20, 10, 10]]),
+    ],
+)
+def test_a_triangle_of_a_surface_that_is_left_out_in_part_is_found(volume):
+    (found,) = check_volume(surface_of(BAR.mesh), volume)
+    assert found.promise == "volume contains part"
