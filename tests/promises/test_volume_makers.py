@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 from amprep.checks.volumes import check_volume
 from amprep.errors import MeshError
 from amprep.host import Host
-from amprep.model import Mesh, Orientations, Part, Stop
+from amprep.model import Boxes, ConvexPieces, Mesh, Orientations, Part, Stop
+from amprep.model.bounding_volume import as_turned
 
 HOST = Host.load()
 MAKERS = sorted(HOST.offers("volume"))
@@ -68,6 +69,22 @@ def test_a_volume_is_turned_only_as_its_part_allows(maker, allowed):
     turned = PARTS["angle"]().rotate([10, 20, 30])
     part = replace(part_of(allowed, turned), orientations=ORIENTATIONS[allowed])
     assert check_volume(part, made(maker, part)) == []
+
+
+def numbers_of(made):
+    turned = as_turned(made)
+    volume = turned.volume
+    if isinstance(volume, Boxes):
+        return turned.rotation.tolist(), volume.lo.tolist(), volume.hi.tolist()
+    pieces = volume.pieces if isinstance(volume, ConvexPieces) else (volume.mesh,)
+    return turned.rotation.tolist(), [piece.digest for piece in pieces]
+
+
+@pytest.mark.parametrize("maker", MAKERS)
+def test_the_same_part_and_seed_give_the_same_volume(maker):
+    solid = (PARTS["angle"]() + PARTS["ball"]()).rotate([10, 20, 30])
+    part = replace(part_of("part", solid), orientations=ORIENTATIONS["free"])
+    assert numbers_of(made(maker, part)) == numbers_of(made(maker, part))
 
 
 @pytest.mark.parametrize("maker", MAKERS)
