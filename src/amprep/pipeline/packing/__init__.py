@@ -172,6 +172,18 @@ def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:
     return found
 
 
+def _nothing_placed(parts: Sequence[Part], problem: PackingProblem, packing: Packing) -> str:
+    """Return a message that no part was placed, with the reasons and what to do."""
+    found = sorted({parts[problem.items[entry.item].part].name for entry in packing.unplaced})
+    names = f"{', '.join(found[:5])}{', ...' if len(found) > 5 else ''}"
+    reasons = sorted({entry.reason for entry in packing.unplaced})
+    if "out of time" in reasons:
+        return f"the packer was stopped before it placed a part ({names}); give it more time or choose a faster packer"
+    size = " x ".join(f"{value:g}" for value in problem.space.size)
+    advice = "choose a larger printer, less clearance or lift, or allow rotations"
+    return f"none of the parts fits the build volume of {size} mm ({', '.join(reasons)}: {names}); {advice}"
+
+
 def placed_builds(
     parts: Sequence[Part], problem: PackingProblem, packing: Packing
 ) -> list[tuple[PlacedPart, ...]]:
@@ -183,13 +195,7 @@ def placed_builds(
         If nothing at all was placed.
     """
     if not packing.builds or not any(packing.builds):
-        names = sorted({parts[problem.items[entry.item].part].name for entry in packing.unplaced})
-        reasons = sorted({entry.reason for entry in packing.unplaced})
-        size = " x ".join(f"{value:g}" for value in problem.space.size)
-        raise AmprepError(
-            f"none of the parts fits the build volume of {size} mm ({', '.join(reasons)}: {', '.join(names[:5])}"
-            f"{', ...' if len(names) > 5 else ''}); choose a larger printer, less clearance or lift, or allow rotations"
-        )
+        raise AmprepError(_nothing_placed(parts, problem, packing))
     names_of = labels(parts)
 
     def placed(placement: Placement) -> PlacedPart:
