@@ -37,7 +37,7 @@ def test_by_default_everything_stands_on_the_plate_and_the_rest_is_enclosed(ampr
 def test_columns_stand_on_the_floor_of_a_closed_chest(amprep, tmp_path, cell):
     outcome, supports, build = supported(amprep, tmp_path, CHEST, "--grounding", "anywhere", "--cell", cell)
     assert outcome.code == 0
-    assert "stand on parts" in supports["notes"][0]
+    assert "columns on parts" in supports["notes"][0]
     assert build.settings.rules.grounding == "anywhere"
     low, high = build.supports[0].mesh.bounds
     assert low[2] == pytest.approx(8.0 - 0.1, abs=1e-3), "as deep in the floor as in the lid"

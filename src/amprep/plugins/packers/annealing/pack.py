@@ -21,8 +21,8 @@ def pack_annealing(
 ) -> Packing:
     """Pack by simulated annealing on the bounding volumes themselves (thesis 2.6).
 
-    The packing is never worse than the first layout, which a packer of boxes makes. From there all motions are
-    continuous or begin outside, so no parts interlock, unless they are sets of boxes that interlock at first.
+    The packing is never worse than the first layout, which another packer makes. From there all motions are continuous
+    or begin outside, so no parts interlock unless they interlock at first; parts with one box each never do.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from amprep.validation import require, require_bounds
 
 SCHEDULES = ("geometric", "linear", "adaptive")
-STARTS = ("extreme-points", "auto", "sweep", "outside")
+STARTS = ("extreme-points", "auto", "sweep", "separation", "outside")
 COLLISIONS = ("any", "boxes", "trees", "pieces")
 
 
@@ -18,8 +18,9 @@ class AnnealingParams:
     Attributes
     ----------
     start
-        The first layout: the packer `extreme-points`, `auto` or `sweep` on enclosing boxes; ``outside``: all items
-        are beside the build volume, as in the thesis.
+        The first layout: ``separation``: that packer on the shapes themselves, in at most three quarters of the time
+        (without stacking, or when this is too short, `extreme-points`); the packer `extreme-points`, `auto` or `sweep`
+        on enclosing boxes; ``outside``: all items are beside the build volume, as in the thesis.
     moves
         Moves per item, accepted or not.
     cycle
@@ -49,7 +50,7 @@ class AnnealingParams:
         ``any`` takes the first of them that can handle the volumes, the pieces only if all volumes are convex pieces.
     """
 
-    start: str = "extreme-points"
+    start: str = "separation"
     moves: int = 2000
     cycle: int = 500
     schedule: str = "geometric"

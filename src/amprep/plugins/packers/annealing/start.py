@@ -1,4 +1,4 @@
-"""The first layout: a packing of enclosing boxes by one of the packers of boxes."""
+"""The first layout: a packing by another packer, of enclosing boxes or of the shapes themselves."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -11,7 +11,7 @@ from amprep.model.control import Stop, silent
 from amprep.model.packing import Item, Packing, PackingProblem, Placement, Unplaced
 from amprep.model.part import Orientations
 from amprep.model.rotations import axis_rotations, quarter_turns
-from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, SweepParams
+from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, SeparationParams, SweepParams
 
 
 class BoxStart(NamedTuple):
@@ -27,6 +27,9 @@ _PACKERS = {
     "sweep": BoxStart("sweep:pack_sweep", SweepParams()),
 }
 
+SHARE = 0.75
+"""Fraction of the time that is left for a first layout by `separation`, which prepares the shapes first."""
+
 RESERVE = 2e-3
 """Clearance (mm) that is added where the first layout is too tight: packers of boxes let them overlap by 1e-3 mm."""
 
@@ -34,7 +37,7 @@ RESERVE = 2e-3
 def start_layout(
     problem: PackingProblem, name: str, rng: np.random.Generator, stop: Stop, reserve: float = 0.0
 ) -> Packing:
-    """Return a packing of the enclosing boxes of the items; for ``outside`` no item is placed.
+    """Return a packing of the items or of their enclosing boxes; for ``outside`` no item is placed.
 
     Parameters
     ----------
@@ -52,11 +55,31 @@ def start_layout(
         left = (number for number in range(len(problem.items)) if number not in fixed)
         builds = (problem.fixed,) if problem.fixed else ()
         return Packing(builds, tuple(Unplaced(number, "no room left") for number in left))
+    if name == "separation":
+        return _separated(problem, rng, stop, reserve)
     module, _, function = _PACKERS[name].where.partition(":")
     pack = getattr(import_module(f"amprep.plugins.packers.{module}"), function)
     packing: Packing = pack(
         box_problem(problem, reserve), params=_PACKERS[name].params, rng=rng, stop=stop, progress=silent
     )
+    return packing
+
+
+def _separated(problem: PackingProblem, rng: np.random.Generator, stop: Stop, reserve: float) -> Packing:
+    """Return a packing of the shapes themselves by `separation`.
+
+    Without stacking, which it needs, and where its time is too short for all items, return one of boxes.
+    """
+    if not problem.stacking:
+        return start_layout(problem, "extreme-points", rng, stop, reserve)
+    from amprep.plugins.packers.separation import pack_separation
+
+    items = tuple(replace(item, orientations=listed(item.orientations)) for item in problem.items)
+    shaped = replace(problem, items=items, clearance=problem.clearance + reserve)
+    part = stop.within(SHARE * stop.remaining()) if np.isfinite(stop.remaining()) else stop
+    packing = pack_separation(shaped, params=SeparationParams(), rng=rng, stop=part, progress=silent)
+    if any(unplaced.reason == "out of time" for unplaced in packing.unplaced):
+        return start_layout(problem, "extreme-points", rng, stop, reserve)
     return packing
 
 

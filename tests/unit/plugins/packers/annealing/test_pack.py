@@ -23,7 +23,8 @@ ANY = Orientations("list", axis_rotations())
 
 def packed(problem, stop=None, progress=silent, **params):
     rng = np.random.default_rng(1)
-    chosen = AnnealingParams(**params)
+    # most tests are about the moves from a first layout of boxes
+    chosen = AnnealingParams(**{"start": "extreme-points", **params})
     return pack_annealing(problem, params=chosen, rng=rng, stop=stop or Stop(), progress=progress)
 
 
@@ -78,8 +79,18 @@ def test_builds_are_saved_where_meshes_fit_into_each_other():
     assert len(packing.builds) == 2
 
 
+def test_the_first_layout_is_one_of_the_shapes_themselves_unless_parts_must_not_be_stacked():
+    turns = Orientations("list", np.array([np.eye(3), np.diag([-1.0, 1.0, -1.0])]))
+    problem = shapes_problem("pieces", [(4, 4, 4)] * 4, (6.1, 4.1, 4.1), orientations=turns)
+    assert AnnealingParams().start == "separation"
+    assert len(packed(problem, start="separation", moves=0).builds) == 2
+    flat = packed(replace(problem, stacking=False), start="separation", moves=0)
+    assert check_packing(replace(problem, stacking=False), flat) == []
+    assert len(flat.builds) == 4
+
+
 @pytest.mark.parametrize("objective", ["fill", "builds", "height"])
-@pytest.mark.parametrize("start", ["extreme-points", "auto", "sweep", "outside"])
+@pytest.mark.parametrize("start", ["extreme-points", "auto", "sweep", "separation", "outside"])
 def test_every_start_and_objective_gives_a_packing_that_is_no_worse_than_it(start, objective):
     rng = np.random.default_rng(5)
     problem = boxes_problem(rng.uniform(2, 6, (12, 3)).round(1).tolist(), (9, 9, 12), objective=objective)
