@@ -16,7 +16,7 @@ from amprep.model import (
 )
 from amprep.plugins.packers.annealing.params import AnnealingParams
 from amprep.plugins.packers.annealing.scene import prepare_volumes
-from amprep.plugins.packers.annealing.search import BuildSearch
+from amprep.plugins.packers.annealing.search import BuildSearch, BuildTask
 from amprep.testing.problems import box_mesh
 
 ENGINES = ("boxes", "trees", "pieces")
@@ -54,17 +54,9 @@ def search_of(problem, layout=None, *, lowers=True, seed=1, engine="any", **para
     """Return the search of one build, from the berths or from a layout ``{item: placement}``."""
     items = [n for n in range(len(problem.items)) if n not in {p.item for p in problem.fixed}]
     volume = np.array([problem.items[n].value for n in items])
-    return BuildSearch(
-        prepare_volumes(problem, engine),
-        items,
-        problem.fixed,
-        layout or {},
-        volume,
-        volume,
-        AnnealingParams(**params),
-        np.random.default_rng(seed),
-        lowers=lowers,
-    )
+    task = BuildTask(items, problem.fixed, layout or {}, volume, volume, lowers)
+    chosen, rng = AnnealingParams(**params), np.random.default_rng(seed)
+    return BuildSearch(prepare_volumes(problem, engine), task, chosen, rng)
 
 
 def layout_of(search, problem):

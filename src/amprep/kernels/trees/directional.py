@@ -11,13 +11,15 @@ from amprep.kernels.trees.records import (
     ObbTree,
     Stack,
     Vector,
+    corners_along,
     moved_triangle,
+    push_nearer_last,
     relative,
     to_part,
     triangle_of,
 )
 from amprep.kernels.trees.triangles.distance import margin_travel
-from amprep.kernels.trees.triangles.travel import EDGE_ON, in_shadow_frame, shadow_travel
+from amprep.kernels.trees.triangles.travel import EDGE_ON, shadow_travel
 
 # Strategy. The thesis's branch and bound: pairs of nodes are visited in the order of the travel at which their boxes
 # meet, and dropped if that is no less than the least travel found so far. The larger box of a pair is replaced by its
@@ -113,8 +115,8 @@ def directional_distance(
                     travel = margin_travel(one, other, z, margin, best)
                 else:
                     travel = shadow_travel(
-                        in_shadow_frame(one, x, y, z),
-                        in_shadow_frame(other, x, y, z),
+                        corners_along(one, x, y, z),
+                        corners_along(other, x, y, z),
                         min(leading, facing),
                         stack.sides,
                     )
@@ -129,14 +131,7 @@ def directional_distance(
             near = first_overlap(a.nodes, near_a, b.nodes, near_b, frame, z, reach, best)
         if _some_within(a.cones, far_a, back) and _some_within(b.cones, far_b, toward):
             far = first_overlap(a.nodes, far_a, b.nodes, far_b, frame, z, reach, best)
-        if far < near:
-            near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
-        if far < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = far_a, far_b, far
-            waiting += 1
-        if near < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = near_a, near_b, near
-            waiting += 1
+        waiting = push_nearer_last(stack, waiting, best, near, near_a, near_b, far, far_a, far_b)
         if best <= 0.0:
             return 0.0
     return best

@@ -5,7 +5,15 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.kernels.helper import kernel
 from amprep.kernels.trees.boxes import distance_bound
-from amprep.kernels.trees.records import RADIUS, ObbTree, Stack, moved_triangle, relative, triangle_of
+from amprep.kernels.trees.records import (
+    RADIUS,
+    ObbTree,
+    Stack,
+    moved_triangle,
+    push_nearer_last,
+    relative,
+    triangle_of,
+)
 from amprep.kernels.trees.triangles.distance import closest_points
 
 
@@ -50,14 +58,7 @@ def surface_distance(
             near_a, near_b, far_a, far_b = i, next_b, i, next_b + 1
         near = distance_bound(a.nodes, near_a, b.nodes, near_b, frame, best)
         far = distance_bound(a.nodes, far_a, b.nodes, far_b, frame, best)
-        if far < near:
-            near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
-        if far < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = far_a, far_b, far
-            waiting += 1
-        if near < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = near_a, near_b, near
-            waiting += 1
+        waiting = push_nearer_last(stack, waiting, best, near, near_a, near_b, far, far_a, far_b)
         if best <= 0.0:
             return 0.0
     return best

@@ -143,3 +143,54 @@ def moved_triangle(frame: Frame, tree: ObbTree, t: int) -> Triangle:
     bx, by, bz = moved(frame, c[t, 3], c[t, 4], c[t, 5])
     cx, cy, cz = moved(frame, c[t, 6], c[t, 7], c[t, 8])
     return (ax, ay, az, bx, by, bz, cx, cy, cz)
+
+
+@inlined
+def corners_along(triangle: Triangle, x: Vector, y: Vector, z: Vector) -> Triangle:
+    """Return the corners along three directions."""
+    ax, ay, az, bx, by, bz, cx, cy, cz = triangle
+    return (
+        x[0] * ax + x[1] * ay + x[2] * az,
+        y[0] * ax + y[1] * ay + y[2] * az,
+        z[0] * ax + z[1] * ay + z[2] * az,
+        x[0] * bx + x[1] * by + x[2] * bz,
+        y[0] * bx + y[1] * by + y[2] * bz,
+        z[0] * bx + z[1] * by + z[2] * bz,
+        x[0] * cx + x[1] * cy + x[2] * cz,
+        y[0] * cx + y[1] * cy + y[2] * cz,
+        z[0] * cx + z[1] * cy + z[2] * cz,
+    )
+
+
+@inlined
+def push_nearer_last(
+    stack: Stack,
+    waiting: int,
+    best: float,
+    near: float,
+    near_a: int,
+    near_b: int,
+    far: float,
+    far_a: int,
+    far_b: int,
+) -> int:
+    """Push two pairs of nodes whose bounds are below the best one, the nearer one on top; return the new number.
+
+    Parameters
+    ----------
+    waiting
+        Number of pairs on the stack.
+    best
+        Least value so far; pairs whose bound is no less are dropped.
+    near, far
+        Bounds of the pairs, in any order.
+    """
+    if far < near:
+        near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
+    if far < best:
+        stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = far_a, far_b, far
+        waiting += 1
+    if near < best:
+        stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = near_a, near_b, near
+        waiting += 1
+    return waiting

@@ -15,8 +15,10 @@ from amprep.kernels.trees.records import (
     Stack,
     Triangle,
     Vector,
+    corners_along,
     moved,
     moved_triangle,
+    push_nearer_last,
     relative,
     to_part,
     triangle_of,
@@ -33,20 +35,10 @@ from amprep.kernels.trees.triangles.turn import contact_turn, margin_turn
 @inlined
 def _triangle_in_frame(t: Triangle, origin: Vector, x: Vector, y: Vector, z: Vector) -> Triangle:
     """Return the corners relative to an origin, along three directions."""
-    ax, ay, az = t[0] - origin[0], t[1] - origin[1], t[2] - origin[2]
-    bx, by, bz = t[3] - origin[0], t[4] - origin[1], t[5] - origin[2]
-    cx, cy, cz = t[6] - origin[0], t[7] - origin[1], t[8] - origin[2]
-    return (
-        x[0] * ax + x[1] * ay + x[2] * az,
-        y[0] * ax + y[1] * ay + y[2] * az,
-        z[0] * ax + z[1] * ay + z[2] * az,
-        x[0] * bx + x[1] * by + x[2] * bz,
-        y[0] * bx + y[1] * by + y[2] * bz,
-        z[0] * bx + z[1] * by + z[2] * bz,
-        x[0] * cx + x[1] * cy + x[2] * cz,
-        y[0] * cx + y[1] * cy + y[2] * cz,
-        z[0] * cx + z[1] * cy + z[2] * cz,
-    )
+    ox, oy, oz = origin
+    ax, ay, az, bx, by, bz, cx, cy, cz = t
+    moved_corners = (ax - ox, ay - oy, az - oz, bx - ox, by - oy, bz - oz, cx - ox, cy - oy, cz - oz)
+    return corners_along(moved_corners, x, y, z)
 
 
 @inlined
@@ -207,14 +199,7 @@ def rotational_distance(
             near = first_angle(a.nodes, near_a, b.nodes, near_b, frame, origin, z, reach, best)
         if _some_advances(a, far_a, from_a, z_a, 1.0) and _some_advances(b, far_b, origin, z, -1.0):
             far = first_angle(a.nodes, far_a, b.nodes, far_b, frame, origin, z, reach, best)
-        if far < near:
-            near, near_a, near_b, far, far_a, far_b = far, far_a, far_b, near, near_a, near_b
-        if far < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = far_a, far_b, far
-            waiting += 1
-        if near < best:
-            stack.pairs[waiting, 0], stack.pairs[waiting, 1], stack.bounds[waiting] = near_a, near_b, near
-            waiting += 1
+        waiting = push_nearer_last(stack, waiting, best, near, near_a, near_b, far, far_a, far_b)
         if best <= 0.0:
             return 0.0
     return best

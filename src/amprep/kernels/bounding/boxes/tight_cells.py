@@ -42,6 +42,23 @@ def _copy(source: Floats, count: int, target: Floats) -> None:
             target[i, c] = source[i, c]
 
 
+@helper
+def _cut_off(
+    polygon: Floats, count: int, axis: int, plane: float, lower: Floats, rest: Floats
+) -> tuple[int, int]:
+    """Write what is below a plane to `lower`, keep what is above; return both numbers of corners.
+
+    The plane is inf for the last cell, which gets all; the polygon is then left as it is.
+    """
+    if plane == np.inf:
+        _copy(polygon, count, lower)
+        return count, count
+    below = clip(polygon, count, axis, plane, -1.0, lower)
+    above = clip(polygon, count, axis, plane, 1.0, rest)
+    _copy(rest, above, polygon)
+    return below, above
+
+
 @njit(cache=True)
 def tight_cells(
     points: Floats, triangles: Int64s, origin: Floats, size: Floats, shape: Int64s, tight: Floats
@@ -76,40 +93,22 @@ def tight_cells(
         x0, x1 = _span(bounds[0] - origin[0], bounds[3] - origin[0], size[0], shape[0], normal[0])
         n_whole = 3
         for x in range(x0, x1 + 1):
-            if x < x1:
-                n_slab = clip(whole, n_whole, 0, origin[0] + (x + 1) * size[0], -1.0, slab)
-                n = clip(whole, n_whole, 0, origin[0] + (x + 1) * size[0], 1.0, rest)
-                _copy(rest, n, whole)
-                n_whole = n
-            else:
-                n_slab = n_whole
-                _copy(whole, n_whole, slab)
+            plane = origin[0] + (x + 1) * size[0] if x < x1 else np.inf
+            n_slab, n_whole = _cut_off(whole, n_whole, 0, plane, slab, rest)
             if n_slab == 0:
                 continue
             measure(slab, n_slab, bounds)
             y0, y1 = _span(bounds[1] - origin[1], bounds[4] - origin[1], size[1], shape[1], normal[1])
             for y in range(y0, y1 + 1):
-                if y < y1:
-                    n_row = clip(slab, n_slab, 1, origin[1] + (y + 1) * size[1], -1.0, row)
-                    n = clip(slab, n_slab, 1, origin[1] + (y + 1) * size[1], 1.0, rest)
-                    _copy(rest, n, slab)
-                    n_slab = n
-                else:
-                    n_row = n_slab
-                    _copy(slab, n_slab, row)
+                plane = origin[1] + (y + 1) * size[1] if y < y1 else np.inf
+                n_row, n_slab = _cut_off(slab, n_slab, 1, plane, row, rest)
                 if n_row == 0:
                     continue
                 measure(row, n_row, bounds)
                 z0, z1 = _span(bounds[2] - origin[2], bounds[5] - origin[2], size[2], shape[2], normal[2])
                 for z in range(z0, z1 + 1):
-                    if z < z1:
-                        n_cell = clip(row, n_row, 2, origin[2] + (z + 1) * size[2], -1.0, cell)
-                        n = clip(row, n_row, 2, origin[2] + (z + 1) * size[2], 1.0, rest)
-                        _copy(rest, n, row)
-                        n_row = n
-                    else:
-                        n_cell = n_row
-                        _copy(row, n_row, cell)
+                    plane = origin[2] + (z + 1) * size[2] if z < z1 else np.inf
+                    n_cell, n_row = _cut_off(row, n_row, 2, plane, cell, rest)
                     for i in range(n_cell):
                         for c in range(3):
                             tight[x, y, z, c] = min(tight[x, y, z, c], cell[i, c])

@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.kernels.helper import inlined
-from amprep.kernels.trees.records import TOUCH, Triangle, Vector
+from amprep.kernels.trees.records import TOUCH, Triangle
 
 # Strategy. A solid that travels meets another first where a line along the direction leaves the first solid and enters
 # the second: at a leading triangle of the first (normal along the direction) and a facing triangle of the second
@@ -22,23 +22,6 @@ from amprep.kernels.trees.records import TOUCH, Triangle, Vector
 
 EDGE_ON = 1e-10
 """Least cosine between a normal and the direction; triangles below it have no shadow."""
-
-
-@inlined
-def in_shadow_frame(triangle: Triangle, x: Vector, y: Vector, z: Vector) -> Triangle:
-    """Return the corners along three directions."""
-    ax, ay, az, bx, by, bz, cx, cy, cz = triangle
-    return (
-        x[0] * ax + x[1] * ay + x[2] * az,
-        y[0] * ax + y[1] * ay + y[2] * az,
-        z[0] * ax + z[1] * ay + z[2] * az,
-        x[0] * bx + x[1] * by + x[2] * bz,
-        y[0] * bx + y[1] * by + y[2] * bz,
-        z[0] * bx + z[1] * by + z[2] * bz,
-        x[0] * cx + x[1] * cy + x[2] * cz,
-        y[0] * cx + y[1] * cy + y[2] * cz,
-        z[0] * cx + z[1] * cy + z[2] * cz,
-    )
 
 
 @inlined

@@ -11,7 +11,7 @@ from amprep.model.packing import Packing, PackingProblem, Placement
 from amprep.plugins.packers.annealing.bounds import objective_bound, solid_volume
 from amprep.plugins.packers.annealing.params import AnnealingParams
 from amprep.plugins.packers.annealing.scene import PreparedVolumes
-from amprep.plugins.packers.annealing.search import BuildSearch
+from amprep.plugins.packers.annealing.search import BuildSearch, BuildTask
 from amprep.plugins.packers.annealing.start import RESERVE, placements, start_layout
 
 Builds = list[dict[int, Placement]]
@@ -95,18 +95,16 @@ class Annealing:
     ) -> BuildSearch:
         """Return the search of one build from a layout."""
         lowers = self.problem.objective == "height"
-        return BuildSearch(
-            self.prepared,
-            items,
-            self.problem.fixed if first else (),
-            layout,
-            weights[items],
-            self.volumes[items],
-            self.params,
-            self.rng,
+        task = BuildTask(
+            movable=items,
+            fixed=self.problem.fixed if first else (),
+            layout=layout,
+            weights=weights[items],
+            volumes=self.volumes[items],
             lowers=lowers,
             least_height=self.bound(set()) if lowers else 0.0,
         )
+        return BuildSearch(self.prepared, task, self.params, self.rng)
 
     def _pack_one(self, items: list[int], stop: Stop, progress: Progress) -> tuple[Builds, str]:
         """Anneal one build from the first layout; from one with more clearance if that layout is too tight."""

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,35 @@ PAUSE = 0.005
 """Seconds of moves between two calls of `stop`."""
 
 
+@dataclass(frozen=True, eq=False)
+class BuildTask:
+    """One build to be annealed.
+
+    Attributes
+    ----------
+    movable
+        Items that may move.
+    fixed
+        Placements that stay.
+    layout
+        First placements by item; the other movable items begin beside the build volume.
+    weights, volumes
+        ``(movable,)`` energy of each item outside the build volume, and its volume in mm3.
+    lowers
+        Whether the layout is to become low.
+    least_height
+        Height (mm) that no layout can have less of.
+    """
+
+    movable: Sequence[int]
+    fixed: Sequence[Placement]
+    layout: Mapping[int, Placement]
+    weights: Floats
+    volumes: Floats
+    lowers: bool
+    least_height: float = 0.0
+
+
 class BuildSearch:
     """Anneals the layout of one build; items that are not in the build are beside it.
 
@@ -33,32 +63,26 @@ class BuildSearch:
     def __init__(
         self,
         prepared: PreparedVolumes,
-        movable: Sequence[int],
-        fixed: Sequence[Placement],
-        layout: Mapping[int, Placement],
-        weights: Floats,
-        volumes: Floats,
+        task: BuildTask,
         params: AnnealingParams,
         rng: np.random.Generator,
-        *,
-        lowers: bool,
-        least_height: float = 0.0,
     ) -> None:
         from amprep.kernels.annealing.loop import begin, count_collisions
 
-        self.movable = list(movable)
+        self.movable = list(task.movable)
+        weights, volumes = task.weights, task.volumes
         mean = float(weights.mean()) if weights.size and weights.mean() > 0.0 else 1.0
         masses = params.gravity * volumes / max(float(volumes.mean()), 1e-12) if volumes.size else volumes
         self.weights = np.maximum(weights / mean, 1e-9)
-        self.scene, poses = make_scene(prepared, movable, fixed, self.weights, masses)
-        place(poses, movable, layout)
+        self.scene, poses = make_scene(prepared, self.movable, task.fixed, self.weights, masses)
+        place(poses, self.movable, task.layout)
         self.shapes = prepared.shapes
-        self.rules = _rules(params, len(self.movable), self.scene.high - self.scene.low, lowers=lowers)
+        self.rules = _rules(params, len(self.movable), self.scene.high - self.scene.low, lowers=task.lowers)
         self.state = _state(poses, len(self.movable), float(self.scene.high[2]), rng)
         begin(self.scene, self.state, self.rules)
         self.colliding = int(count_collisions(self.shapes, self.scene, self.state))
         self.total = params.moves * len(self.movable)
-        self.least_height = least_height
+        self.least_height = task.least_height
 
     def run(self, stop: Stop, progress: Callable[[float, str], None]) -> str:
         """Make moves until the budget is used up, or until told to stop; return the reason of a stop or ""."""
