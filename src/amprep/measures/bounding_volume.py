@@ -8,10 +8,14 @@ from amprep.arrays import Floats
 from amprep.geometry.boxes.build_space import union_volume
 from amprep.geometry.meshes.distance import convex_solid
 from amprep.geometry.meshes.shells import measure_shells, solid_volume
-from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
+from amprep.model.part import Part
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
+
+EQUAL_VOLUME = 1e-9
+"""Fraction by which boxes may be larger than the part that they equal."""
 
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
 
@@ -34,6 +38,13 @@ def points_of(volume: BoundingVolume) -> Floats:
     if isinstance(volume, ConvexPieces):
         return np.concatenate([piece.vertices for piece in volume.pieces])
     return volume.mesh.vertices
+
+
+def is_part_itself(volume: BoundingVolume, part: Part) -> bool:
+    """Return whether a bounding volume has the part's own mesh, or is boxes of no more volume than the part."""
+    if isinstance(volume, Boxes):
+        return part.is_solid and volume_of(volume) <= part.volume_mm3 * (1.0 + EQUAL_VOLUME)
+    return isinstance(volume, Solid) and volume.mesh is part.mesh and part.is_solid
 
 
 def count_pieces(volume: BoundingVolume) -> int:

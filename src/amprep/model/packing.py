@@ -13,6 +13,7 @@ from amprep.model.part import Orientations
 
 Objective = Literal["fill", "builds", "height"]
 Status = Literal["optimal", "feasible", "infeasible"]
+BoundFor = Literal["volumes", "shapes"]
 
 LARGEST_VALUE = 10**15
 """Greatest value of an item: sums and ratios of values stay finite, and a double counts them to within 1."""
@@ -34,6 +35,9 @@ class Item:
         Rotations that the packer may give the volume; they come after `turn`.
     turn
         ``(3, 3)`` rotation that the volume maker chose; the identity for a volume in part coordinates.
+    exact
+        Whether `volume` is the part itself and `orientations` are all that the part allows. A bound for the item is
+        then one for the part.
     """
 
     part: int
@@ -42,6 +46,7 @@ class Item:
     value: float
     orientations: Orientations = field(default_factory=Orientations)
     turn: Floats = field(default_factory=lambda: np.eye(3))
+    exact: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "turn", frozen(self.turn, np.float64).reshape(3, 3))
@@ -92,6 +97,11 @@ class PackingProblem:
     lift: float = 0.0
     stacking: bool = True
 
+    @property
+    def bound_for(self) -> BoundFor:
+        """What a bound for all packings of the items applies to: the parts, if every item is exact."""
+        return "shapes" if all(item.exact for item in self.items) else "volumes"
+
 
 def require_values(problem: PackingProblem) -> None:
     """Refuse values of items that are not finite numbers from 0 to `LARGEST_VALUE`.
@@ -125,6 +135,9 @@ class Packing:
     ----------
     bound
         Proven bound on the objective: no packing has fewer builds, more value or less height. None when unknown.
+    bound_for
+        What `bound` applies to: ``volumes``, packings of the bounding volumes in the orientations that the packer was
+        offered; or ``shapes``, any packing of the parts themselves.
     found_by
         The method that found the packing, where the packer has several: `ip` names its solver, or the heuristic that
         the solver started from. Else empty.
@@ -136,3 +149,4 @@ class Packing:
     status: Status = "feasible"
     stop_reason: str = "finished"
     found_by: str = ""
+    bound_for: BoundFor = "volumes"

@@ -85,6 +85,7 @@ def run_record(
         found_by=packing.found_by,
         reached=objective_reached(packed.problem, packing) if packed.problem.items else None,
         bound=packing.bound,
+        bound_for=packing.bound_for,
         warnings=(*loaded.resolved.host.warnings, *left, *advice),
         notes=(*(f"{part.name}: {note}" for part in loaded.parts for note in part.notes), *loaded.notes),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},

@@ -41,6 +41,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "found_by": record.found_by or None,
         "reached": record.reached,
         "bound": record.bound,
+        "bound_for": record.bound_for,
         "gap": gap_of(record),
         "total_value": total_value(record) if fill else None,
         "builds": [_build(entry, fill) for entry in record.builds],

@@ -42,6 +42,13 @@ def gap_of(record: RunRecord) -> float | None:
     return None if record.reached is None else relative_gap(record.objective, record.reached, record.bound)
 
 
+def status_words(record: RunRecord) -> str:
+    """Return the status of the packing; why it ended, unless it is optimal; and for what it is optimal."""
+    if record.status != "optimal":
+        return f"packing {record.status} ({record.stop_reason})"
+    return "packing optimal" if record.bound_for == "shapes" else "packing optimal for the bounding volumes"
+
+
 def objective_words(record: RunRecord) -> str:
     """Return what the packing reached and what its bound bounds; empty if nothing was packed."""
     if record.reached is None:
@@ -62,16 +69,17 @@ def amount(value: float) -> str:
 
 
 def _bound(record: RunRecord) -> str:
-    """Return what the bound bounds."""
+    """Return what the bound bounds, and for which packings."""
     if record.bound is None:
         return "no bound known"
+    packing = f"no packing of the {'parts' if record.bound_for == 'shapes' else 'bounding volumes'}"
     match record.objective:
         case "fill":
-            return f"no packing has more than {amount(record.bound)}"
+            return f"{packing} has more than {amount(record.bound)}"
         case "height":
-            return f"no packing is lower than {record.bound:.2f} mm"
+            return f"{packing} is lower than {record.bound:.2f} mm"
         case _:
-            return f"no packing has fewer than {record.bound:g}"
+            return f"{packing} has fewer than {record.bound:g}"
 
 
 def _gap(record: RunRecord) -> str:

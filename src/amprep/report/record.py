@@ -10,7 +10,7 @@ from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
 from amprep.model.counting import counted
-from amprep.model.packing import Objective
+from amprep.model.packing import BoundFor, Objective
 from amprep.model.summary import Summarised
 
 
@@ -196,6 +196,8 @@ class RunRecord(Summarised):
         nothing was packed.
     bound
         Bound on it: no packing has fewer builds, more value, or less height; None if not known.
+    bound_for
+        What `bound` applies to: packings of the bounding ``volumes``, or of the ``shapes`` of the parts.
     warnings, notes
         One sentence each: what needs attention; what was repaired or found in an input.
     settings
@@ -223,6 +225,7 @@ class RunRecord(Summarised):
     objective: Objective = "builds"
     reached: float | None = None
     found_by: str = ""
+    bound_for: BoundFor = "volumes"
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amprep.model.counting import counted
-from amprep.report.objective import amount, objective_words, part_values
+from amprep.report.objective import amount, objective_words, part_values, status_words
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _totals(record: RunRecord) -> str:
     counts = f"{counted(placed, 'part')} in {counted(len(record.builds), 'build')}, {len(record.unplaced)} unplaced"
     words = objective_words(record)
     reached = f": {words}" if words else ""
-    return f"{counts}; packing {record.status} ({record.stop_reason}){reached}; seed {record.seed}"
+    return f"{counts}; {status_words(record)}{reached}; seed {record.seed}"
 
 
 def _values(record: RunRecord) -> list[str]:

@@ -34,7 +34,8 @@ def printed(record):
 def test_a_fill_run_tells_value_bound_gap_and_the_value_of_each_part_everywhere(filled):
     placed = filled.reached
     words = (
-        f"value {amount(placed)} of {amount(placed + 60)}, no packing has more than {amount(1.25 * placed)}"
+        f"value {amount(placed)} of {amount(placed + 60)}, no packing of the bounding volumes has "
+        f"more than {amount(1.25 * placed)}"
     )
     assert objective_words(filled) == f"{words}, gap 25.0 %"
     assert total_value(filled) == pytest.approx(placed + 60)
@@ -56,9 +57,14 @@ def test_the_copies_of_a_part_are_counted_together(filled):
 @pytest.mark.parametrize(
     ("objective", "reached", "bound", "words"),
     [
-        ("builds", 3.0, 2.0, "3 builds, no packing has fewer than 2"),
+        ("builds", 3.0, 2.0, "3 builds, no packing of the bounding volumes has fewer than 2"),
         ("builds", 1.0, None, "1 build, no bound known"),
-        ("height", 50.0, 40.0, "height 50.00 mm, no packing is lower than 40.00 mm, gap 20.0 %"),
+        (
+            "height",
+            50.0,
+            40.0,
+            "height 50.00 mm, no packing of the bounding volumes is lower than 40.00 mm, gap 20.0 %",
+        ),
         ("fill", None, None, ""),
     ],
 )
@@ -68,6 +74,26 @@ def test_other_objectives_say_what_their_bound_bounds(filled, objective, reached
     assert part_values(record) == ()
     assert (gap_of(record) is None) == (bound is None)
     assert html_text(record)
+
+
+def test_a_bound_names_the_parts_where_it_is_for_any_packing_of_them(filled):
+    record = replace(filled, objective="builds", reached=3.0, bound=2.0, bound_for="shapes")
+    assert objective_words(record) == "3 builds, no packing of the parts has fewer than 2"
+    assert to_json(record)["bound_for"] == "shapes"
+
+
+@pytest.mark.parametrize(
+    ("status", "bound_for", "words"),
+    [
+        ("feasible", "volumes", "packing feasible (time limit)"),
+        ("optimal", "volumes", "packing optimal for the bounding volumes"),
+        ("optimal", "shapes", "packing optimal"),
+    ],
+)
+def test_a_stop_reason_is_shown_only_where_the_packing_is_not_optimal(filled, status, bound_for, words):
+    record = replace(filled, status=status, stop_reason="time limit", bound_for=bound_for)
+    assert f"{words};" in printed(record).replace(":", ";")
+    assert f"{words} ·" in html_text(record)
 
 
 def test_large_values_keep_all_digits_before_the_point():

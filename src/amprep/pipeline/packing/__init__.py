@@ -9,9 +9,11 @@ import numpy as np
 from amprep.errors import AmprepError
 from amprep.hookspecs import PackerAccepts
 from amprep.job import PackingSettings
+from amprep.measures.bounding_volume import is_part_itself
 from amprep.model import (
     BuildVolume,
     Item,
+    Orientations,
     Packing,
     PackingProblem,
     Part,
@@ -137,9 +139,10 @@ def packing_problem(
         Problems that the packer can handle; the items are offered those orientations that it can handle.
     """
     items = tuple(
-        Item(index, copy, made.volume, part.fill_value, offered, made.rotation)
+        Item(index, copy, made.volume, part.fill_value, offered, made.rotation, exact)
         for index, (part, made) in enumerate(zip(parts, volumes, strict=True))
         for offered in (offered_orientations(part.orientations, made.rotation, accepts),)
+        for exact in (_is_exact(part, made, offered),)
         for copy in range(part.quantity)
     )
     fixed = tuple(
@@ -156,6 +159,11 @@ def packing_problem(
         lift=settings.lift_mm,
         stacking=settings.stacking,
     )
+
+
+def _is_exact(part: Part, made: TurnedVolume, offered: Orientations) -> bool:
+    """Return whether the packer gets the part itself, in all orientations that the part allows."""
+    return offered.freedom == part.orientations.freedom and is_part_itself(made.volume, part)
 
 
 def labels(parts: Sequence[Part]) -> dict[tuple[int, int], str]:

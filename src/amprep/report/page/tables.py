@@ -10,7 +10,14 @@ from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
 from amprep.model.counting import counted
 from amprep.report.json_values import plain
-from amprep.report.objective import amount, gap_of, objective_words, part_values, total_value
+from amprep.report.objective import (
+    amount,
+    gap_of,
+    objective_words,
+    part_values,
+    status_words,
+    total_value,
+)
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 
@@ -38,7 +45,7 @@ def header(record: RunRecord) -> str:
         for text in (
             record.printer,
             f"target {record.target}",
-            f"packing {record.status} ({record.stop_reason})",
+            status_words(record),
             f"seed {record.seed}",
         )
     )

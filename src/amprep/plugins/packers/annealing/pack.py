@@ -65,6 +65,7 @@ def _finish(annealing: Annealing, builds: Builds, too_large: set[int], reason: s
         bound=bound,
         status=status,  # type: ignore[arg-type]
         stop_reason=reason or "finished",
+        bound_for=problem.bound_for,
     )
 
 

@@ -64,6 +64,7 @@ def as_packing(instance: PreparedInstance, result: PackerResult) -> Packing:
         status=status_of(instance, result),
         stop_reason=result.stop_reason,
         found_by=result.found_by,
+        bound_for=instance.problem.bound_for,
     )
 
 

@@ -61,6 +61,7 @@ def _as_packing(instance: ShapeInstance, placed: Placed, stop: Stop) -> Packing:
         bound=float(bound),
         status=_status(instance, placed, len(builds), float(bound)),
         stop_reason=stop.reason if stop() else "finished",
+        bound_for=problem.bound_for,
     )
 
 
