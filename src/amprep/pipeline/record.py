@@ -9,8 +9,9 @@ from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.objective import objective_reached
+from amprep.measures.removal_order import measure_removal_order
 from amprep.measures.slenderness import measure_slenderness
-from amprep.model import Build, Unsupported
+from amprep.model import Build, Stop, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
@@ -28,8 +29,11 @@ from amprep.report.record import (
 from amprep.supports.plan import SupportLayout
 
 
-def build_record(supported: SupportedBuild) -> BuildRecord:
-    """Return the record of a build, without file names and verification."""
+def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
+    """Return the record of a build, without file names and verification.
+
+    The search for the removal order ends at the stop.
+    """
     build, layout = supported.build, supported.layout
     return BuildRecord(
         build=build,
@@ -38,6 +42,7 @@ def build_record(supported: SupportedBuild) -> BuildRecord:
         support_volume_mm3=support_volume(build),
         advice=supported.advice,
         removal=supported.removal,
+        removal_order=measure_removal_order(build, stop),
         slenderness=tuple(measure_slenderness(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         demand_squares=0 if layout is None else len(layout.red.square),

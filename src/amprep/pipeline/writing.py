@@ -35,10 +35,11 @@ def finish_build(
     stl
         Write an STL file of each part and support, too.
     clock, stop
-        Time the stages; end verification early.
+        Time the stages; end measurement and verification early.
     """
     build = supported.build
-    record = build_record(supported)
+    with clock.stage("measure"):
+        record = build_record(supported, stop)
     if not dry_run:
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)

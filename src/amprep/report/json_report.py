@@ -9,6 +9,7 @@ from amprep.model import PlacedPart, Unsupported
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
+from amprep.report.removal_order import removal_order_json
 
 FORMAT = 1
 """Version of the layout; it increases when a key changes its meaning or is removed."""
@@ -73,6 +74,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "height_mm": entry.height_mm,
         "parts": [_part(placed, fill) for placed in build.parts],
         "supports": _supports(entry),
+        "removal_order": removal_order_json(entry),
         "verified": entry.verification is not None,
         "violations": violations_json(entry.verification or ()),
     }

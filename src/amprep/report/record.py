@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from amprep.arrays import Floats
 from amprep.checks.violation import Violation
+from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -141,6 +142,8 @@ class BuildRecord:
         Suggestions for a better build, one sentence each.
     volumes
         Bounding volumes that were packed; empty if nothing was packed.
+    removal_order
+        How the parts can be taken out of the build, by their indices in it.
     """
 
     build: Build
@@ -160,6 +163,7 @@ class BuildRecord:
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
     volumes: tuple[ShownVolume, ...] = ()
+    removal_order: RemovalOrder = field(default_factory=RemovalOrder)
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
@@ -233,6 +237,11 @@ class RunRecord(Summarised):
         placed = counted(sum(len(entry.build.parts) for entry in self.builds), "part")
         counts = f"{placed} in {counted(len(self.builds), 'build')}, {len(self.unplaced)} unplaced"
         return f"{self.job} on {self.printer}: {counts}, {counted(self.faults, 'fault')}"
+
+    @property
+    def stacking(self) -> bool:
+        """Whether parts may be above one another."""
+        return bool(self.settings.get("packing", {}).get("stacking"))
 
     @property
     def faults(self) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from amprep.model.counting import counted
 from amprep.report.objective import amount, objective_words, part_values, status_words
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
+from amprep.report.removal_order import hindrances_of, waiting_parts
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -23,6 +24,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
 
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
     blocks += [Text(printable(line), style="dim") for line in _listed(_values(record), "in the report")]
+    blocks += [Text(printable(line), style="dim") for line in _listed(_waiting(record), "in the report")]
     issues = _listed(_issues(record), "in the report")
     blocks += [Text(f"! {printable(line)}", style="yellow") for line in issues]
     blocks += [Text(_stages(record.stages), style="dim")]
@@ -77,8 +79,14 @@ def _values(record: RunRecord) -> list[str]:
     ]
 
 
+def _waiting(record: RunRecord) -> list[str]:
+    """Return, without stacking, one line for each part that can be lifted off only after others."""
+    numbered = enumerate(() if record.stacking else record.builds, start=1)
+    return [f"build {number}: {line}" for number, entry in numbered for line in waiting_parts(entry)]
+
+
 def _issues(record: RunRecord) -> list[str]:
-    """Return one line for each warning, unplaced copy, broken promise, unsupported region and powder pocket."""
+    """Return one line for each warning, unplaced copy, broken promise, unsupported region, and hindrance of removal."""
     lines = list(record.warnings)
     lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in _lost(record)]
     for number, entry in enumerate(record.builds, start=1):
@@ -88,6 +96,7 @@ def _issues(record: RunRecord) -> list[str]:
         ]
         lines += [f"build {number}: unsupported: {line}" for line in _unsupported(entry)]
         lines += [f"build {number}: {line}" for line in _trapped_powder(entry)]
+        lines += [f"build {number}: {line}" for line in hindrances_of(entry)]
     return lines
 
 

@@ -20,6 +20,7 @@ from amprep.report.objective import (
 )
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
+from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
 
 Cell = str | float | tuple[str, str]
 """Text that is escaped; a number, aligned to the right; or a CSS class and HTML, used as it is."""
@@ -68,6 +69,7 @@ def body_sections(record: RunRecord) -> str:
         ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
         ("Support removal", "".join(_removal(number, entry) for number, entry in numbered)),
         ("Overhangs", "".join(_overhangs(number, entry) for number, entry in numbered)),
+        ("Removal of parts", "".join(_part_removal(number, entry) for number, entry in numbered)),
         ("Verification", _verification(record)),
         ("Parts", "".join(_parts(number, entry) for number, entry in numbered)),
         ("Warnings and notes", _remarks(record)),
@@ -275,6 +277,14 @@ def _removal(number: int, entry: BuildRecord) -> str:
         "Trapped powder mm³|",
     )
     return _details(f"Build {number}", table(headings, rows))
+
+
+def _part_removal(number: int, entry: BuildRecord) -> str:
+    if not entry.removal_order.steps and not entry.removal_order.locked:
+        return ""
+    hindrances = "".join(f'<p class="bad">{escape(line)}.</p>' for line in hindrances_of(entry))
+    listed = table(("Parts", "Leave", "Only after"), removal_rows(entry))
+    return _details(f"Build {number}: {removal_summary(entry)}", hindrances + listed)
 
 
 def _figure(value: float | None, form: str) -> tuple[str, str]:
