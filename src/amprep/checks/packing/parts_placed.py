@@ -8,8 +8,10 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.packing.motion import motion_fault
+from amprep.checks.packing.pairs import PairCounts, PlacedBody, judge_pairs
 from amprep.checks.packing.walls import wall_distances
 from amprep.checks.violation import Violation
+from amprep.geometry.meshes.box_tree import BoxTree, box_tree
 from amprep.geometry.meshes.distance import box_solids, near_pairs, solid_distance, triangle_distance
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.build import BuildSettings, PlacedPart
@@ -25,13 +27,31 @@ ROUNDING = 1e-4
 TOLERANCE = CONTACT_TOLERANCE + ROUNDING
 
 
-class CheckedPart:
-    """A placed part in build coordinates; its solid is built when it is first needed."""
+class CheckedMesh:
+    """The mesh of a part with what all its copies share; each is made when it is first needed."""
 
-    def __init__(self, placed: PlacedPart, settings: BuildSettings) -> None:
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+
+    @cached_property
+    def tree(self) -> BoxTree:
+        """The tree of its triangles."""
+        return box_tree(*self.mesh.arrays)
+
+    @cached_property
+    def solid(self) -> "Manifold":
+        """The mesh as a solid, in part coordinates."""
+        return as_manifold(self.mesh.vertices, self.mesh.triangles)
+
+
+class CheckedPart:
+    """A placed part in build coordinates."""
+
+    def __init__(self, placed: PlacedPart, settings: BuildSettings, shared: CheckedMesh) -> None:
         self.placed = placed
         self.label = placed.label
         self.is_solid = placed.part.is_solid
+        self.shared = shared
         own = placed.part.overrides
         self.clearance = settings.clearance if own.clearance_mm is None else own.clearance_mm
         self.lift = settings.lift if own.lift_mm is None else own.lift_mm
@@ -42,28 +62,36 @@ class CheckedPart:
         return self.placed.mesh
 
     @cached_property
+    def body(self) -> PlacedBody:
+        """The part as the judge of distances needs it."""
+        return PlacedBody(
+            self.mesh.vertices, lambda: self.shared.tree, (lambda: self.solid) if self.is_solid else None
+        )
+
+    @cached_property
     def solid(self) -> "Manifold":
         """The mesh in build coordinates as a solid."""
-        return as_manifold(self.mesh.vertices, self.mesh.triangles)
+        return self.shared.solid.transform(self.placed.matrix[:3])
 
     @property
     def corners(self) -> Floats:
         """The corners ``(m, 3, 3)`` of the triangles (mm)."""
         return np.asarray(self.mesh.vertices[self.mesh.triangles])
 
-    def gap(self, other: "CheckedPart", limit: float) -> float:
-        """Return the distance to another part (mm), at most `limit`; negative if they overlap."""
-        if self.is_solid and other.is_solid:
-            return solid_distance(self.solid, other.solid, limit)
-        return triangle_distance(self.corners, other.corners, limit)
-
 
 def check_placed(parts: Sequence[PlacedPart], settings: BuildSettings, stop: Stop) -> list[Violation]:
-    """Return the violations of the packer's promise in a build.
+    """Return the violations of the packer's promise in a build; see `judge_placed`."""
+    return judge_placed(parts, settings, stop)[0]
+
+
+def judge_placed(
+    parts: Sequence[PlacedPart], settings: BuildSettings, stop: Stop
+) -> tuple[list[Violation], PairCounts]:
+    """Return the violations of the packer's promise in a build, and how many pairs were judged by which method.
 
     The clearance and lift of a part override those of the build; between two parts the greater clearance
-    applies. The check is exact on the meshes: solids are intersected by manifold3d, surfaces triangle by
-    triangle. An overlap of at most `CONTACT_TOLERANCE` is contact.
+    applies. The check is exact on the meshes: distances are those of triangles, and solids that meet or contain
+    each other are intersected by manifold3d. An overlap of at most `CONTACT_TOLERANCE` is contact.
 
     Parameters
     ----------
@@ -74,11 +102,14 @@ def check_placed(parts: Sequence[PlacedPart], settings: BuildSettings, stop: Sto
     stop
         Asked before each pair of parts. After a stop, a violation says that the rest is unknown.
     """
-    checked = [CheckedPart(placed, settings) for placed in parts]
+    meshes = {id(placed.part.mesh): CheckedMesh(placed.part.mesh) for placed in parts}
+    checked = [CheckedPart(placed, settings, meshes[id(placed.part.mesh)]) for placed in parts]
     found = [*_moved(checked), *_unchanged(checked)]
     checked = [part for part in checked if np.isfinite(part.mesh.vertices).all() and len(part.mesh.triangles)]
     found += [violation for part in checked for violation in _inside(part, settings)]
-    return [*found, *_zones(checked, settings), *_apart(checked, stop)]
+    found += _zones(checked, settings)
+    close, counts = _apart(checked, stop)
+    return [*found, *close], counts
 
 
 def _moved(checked: Sequence[CheckedPart]) -> list[Violation]:
@@ -164,26 +195,30 @@ def _any_inside(part: CheckedPart, lo: Floats, hi: Floats) -> bool:
     return bool(((vertices > lo + TOLERANCE) & (vertices < hi - TOLERANCE)).all(axis=1).any())
 
 
-def _apart(checked: Sequence[CheckedPart], stop: Stop) -> list[Violation]:
-    """Return the pairs of parts that overlap or are closer than their clearance."""
+def _apart(checked: Sequence[CheckedPart], stop: Stop) -> tuple[list[Violation], PairCounts]:
+    """Return the pairs of parts that overlap or are closer than their clearance, and how the pairs were judged."""
     if not checked:
-        return []
+        return [], PairCounts()
     lo, hi = (np.array([part.mesh.bounds[side] for part in checked]) for side in (0, 1))
-    greatest = max(part.clearance for part in checked)
-    found: list[Violation] = []
-    pairs = near_pairs(lo, hi, greatest - TOLERANCE)
-    for done, (i, j) in enumerate(pairs):
-        if stop():
-            message = f"stopped ({stop.reason}) after {done} of {len(pairs)} pairs of parts; the rest was not checked"
-            return [*found, Violation("clearance", "build", message)]
-        one, other = checked[i], checked[j]
-        needed = max(one.clearance, other.clearance)
-        gap = one.gap(other, needed)
-        if gap < -TOLERANCE:
-            found.append(
-                Violation("no intersection", one.label, f"it overlaps {other.label} by {-gap:.4g} mm")
-            )
-        elif gap < needed - TOLERANCE:
-            message = f"it is {max(gap, 0.0):.4g} mm from {other.label}, expected at least {needed:g} mm"
-            found.append(Violation("clearance", one.label, message))
-    return found
+    clearance = np.array([part.clearance for part in checked])
+    pairs = near_pairs(lo, hi, float(clearance.max()) - TOLERANCE)
+    needed = np.array([max(clearance[i], clearance[j]) for i, j in pairs])
+    judged = judge_pairs([part.body for part in checked], pairs, needed, TOLERANCE, stop)
+    found = [_fault(checked[i], checked[j], gap) for i, j, gap in judged.close]
+    if judged.left:
+        message = (
+            f"stopped ({stop.reason}) after {len(pairs) - judged.left} of {len(pairs)} pairs of parts; "
+            "the rest was not checked"
+        )
+        found.append(Violation("clearance", "build", message))
+    apart = len(checked) * (len(checked) - 1) // 2 - len(pairs)
+    return found, judged.counts + PairCounts(boxes=apart)
+
+
+def _fault(one: CheckedPart, other: CheckedPart, gap: float) -> Violation:
+    """Describe a pair of parts whose distance is too small."""
+    if gap < -TOLERANCE:
+        return Violation("no intersection", one.label, f"it overlaps {other.label} by {-gap:.4g} mm")
+    needed = max(one.clearance, other.clearance)
+    message = f"it is {max(gap, 0.0):.4g} mm from {other.label}, expected at least {needed:g} mm"
+    return Violation("clearance", one.label, message)

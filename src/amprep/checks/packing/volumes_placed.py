@@ -8,15 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Floats
+from amprep.arrays import CONTACT_TOLERANCE, Floats, Int64s
 from amprep.checks.packing.motion import motion_fault
+from amprep.checks.packing.pairs import CloseBodies, PlacedBody, judge_pairs
 from amprep.checks.packing.walls import wall_distances
 from amprep.checks.violation import Violation
 from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
+from amprep.geometry.meshes.box_tree import BoxTree, box_tree
 from amprep.geometry.meshes.distance import box_distance, box_solids, convex_solid, near_pairs, solid_distance
 from amprep.geometry.meshes.manifold import as_manifold
-from amprep.model.bounding_volume import Boxes, ConvexPieces
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
+from amprep.model.control import Stop
 from amprep.model.counting import counted
+from amprep.model.mesh import join_meshes
 from amprep.model.packing import Packing, PackingProblem, Placement
 
 if TYPE_CHECKING:
@@ -25,6 +29,12 @@ if TYPE_CHECKING:
 TOLERANCE = CONTACT_TOLERANCE * (1.0 + 1e-5)
 
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
+
+_FACES = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 7, 5], [4, 6, 7], [0, 4, 5], [0, 5, 1]]
+    + [[2, 7, 6], [2, 3, 7], [0, 2, 6], [0, 6, 4], [1, 7, 3], [1, 5, 7]]
+)
+"""The triangles of a box on `_CORNERS`, outward oriented."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +92,25 @@ class PlacedVolume:
         if self.boxes is not None and other.boxes is not None:
             return box_distance(*self.boxes, *other.boxes)
         return solid_distance(self.solid, other.solid, limit)
+
+    def body(self, trees: dict[int, BoxTree]) -> PlacedBody:
+        """Return the volume as the judge of distances needs it; `trees` are by the identity of the volumes."""
+        return PlacedBody(self.points, lambda: self._tree(trees), lambda: self.solid)
+
+    def _tree(self, trees: dict[int, BoxTree]) -> BoxTree:
+        volume = self.problem.items[self.placement.item].volume
+        if id(volume) not in trees:
+            trees[id(volume)] = box_tree(self.points, _triangles(volume))
+        return trees[id(volume)]
+
+
+def _triangles(volume: BoundingVolume) -> Int64s:
+    """Return the triangles of all pieces, ``(m, 3)``, on the points of `PlacedVolume`."""
+    if isinstance(volume, Boxes):
+        return np.concatenate([_FACES + 8 * k for k in range(len(volume.lo))])
+    if isinstance(volume, ConvexPieces):
+        return join_meshes(volume.pieces).triangles.astype(np.int64)
+    return volume.mesh.triangles.astype(np.int64)
 
 
 def check_packing(problem: PackingProblem, packing: Packing) -> list[Violation]:
@@ -219,21 +248,28 @@ def _apart(problem: PackingProblem, placed: Sequence[PlacedVolume]) -> list[Viol
         return []
     lo = np.array([volume.points.min(axis=0) for volume in placed])
     hi = np.array([volume.points.max(axis=0) for volume in placed])
-    faults = []
-    for i, j in near_pairs(lo, hi, problem.clearance - TOLERANCE):
-        one, other = placed[i], placed[j]
-        if one.fixed and other.fixed:
-            continue
-        gap = one.gap(other, problem.clearance)
-        if gap < problem.clearance - TOLERANCE:
-            promise = "clearance" if gap >= 0.0 else "no overlap"
-            message = (
-                f"it overlaps {other.label} by {-gap:.6g} mm"
-                if gap < 0.0
-                else f"it is {gap:.6g} mm from {other.label}, expected at least {problem.clearance:g} mm"
-            )
-            faults.append(Violation(promise, one.label, message))
-    return faults
+    near = near_pairs(lo, hi, problem.clearance - TOLERANCE)
+    near = [(i, j) for i, j in near if not (placed[i].fixed and placed[j].fixed)]
+    boxed = [(i, j) for i, j in near if placed[i].boxes is not None and placed[j].boxes is not None]
+    close = [CloseBodies(i, j, placed[i].gap(placed[j], problem.clearance)) for i, j in boxed]
+    trees: dict[int, BoxTree] = {}
+    bodies = [volume.body(trees) for volume in placed] if len(boxed) < len(near) else []
+    others = sorted(set(near) - set(boxed))
+    needed = np.full(len(others), problem.clearance)
+    close += judge_pairs(bodies, others, needed, TOLERANCE, Stop()).close
+    return [
+        _fault(problem, placed[i], placed[j], gap)
+        for i, j, gap in sorted(close)
+        if gap < problem.clearance - TOLERANCE
+    ]
+
+
+def _fault(problem: PackingProblem, one: PlacedVolume, other: PlacedVolume, gap: float) -> Violation:
+    """Describe a pair of volumes whose distance is too small."""
+    if gap < 0.0:
+        return Violation("no overlap", one.label, f"it overlaps {other.label} by {-gap:.6g} mm")
+    message = f"it is {gap:.6g} mm from {other.label}, expected at least {problem.clearance:g} mm"
+    return Violation("clearance", one.label, message)
 
 
 def _reasons(problem: PackingProblem, packing: Packing) -> list[Violation]:

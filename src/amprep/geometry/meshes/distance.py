@@ -5,9 +5,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.geometry.meshes.box_tree import box_tree
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
+
+    from amprep.kernels.meshes.distance import PlacedTree
 
 
 def near_pairs(lo: Floats, hi: Floats, distance: float) -> list[tuple[int, int]]:
@@ -92,17 +95,28 @@ def triangle_distance(corners: Floats, other: Floats, limit: float) -> float:
     limit
         Largest distance that is searched, mm; it is returned where the sets are farther apart.
     """
+    most = max(limit, 0.0)
+    return tree_distance(_tree_of(corners), _tree_of(other), most, -np.inf)
+
+
+def tree_distance(one: "PlacedTree", other: "PlacedTree", limit: float, enough: float) -> float:
+    """Return the distance of the triangles of two trees, at most `limit`; if they intersect, minus the depth.
+
+    Parameters
+    ----------
+    one, other
+        The triangles in the coordinates of the build.
+    limit
+        Largest distance that is searched, mm.
+    enough
+        A distance (mm) at which the search ends: the result is exact only if it is greater.
+    """
     from amprep.kernels.meshes.distance import least_distance
 
-    lo, hi = corners.min(axis=1), corners.max(axis=1)
-    other_lo, other_hi = other.min(axis=1), other.max(axis=1)
-    reach = max(limit, 0.0) + 1e-9
-    near = ((lo <= other_hi.max(axis=0) + reach) & (hi >= other_lo.min(axis=0) - reach)).all(axis=1)
-    other_near = ((other_lo <= hi.max(axis=0) + reach) & (other_hi >= lo.min(axis=0) - reach)).all(axis=1)
-    if not near.any() or not other_near.any():
-        return max(limit, 0.0)
-    chosen = np.flatnonzero(other_near)
-    chosen = chosen[np.argsort(other_lo[chosen, 0], kind="stable")]
-    widest = float((other_hi[chosen, 0] - other_lo[chosen, 0]).max())
-    one, two = np.ascontiguousarray(corners[near]), np.ascontiguousarray(other[chosen])
-    return float(least_distance(one, two, widest, max(limit, 0.0)))
+    depth = int(np.log2(len(one.boxes) + 1) + np.log2(len(other.boxes) + 1)) + 2
+    return float(least_distance(one, other, limit, enough, np.empty((depth, 2), np.int64)))
+
+
+def _tree_of(corners: Floats) -> "PlacedTree":
+    vertices = np.ascontiguousarray(corners, np.float64).reshape(-1, 3)
+    return box_tree(vertices, np.arange(len(vertices)).reshape(-1, 3)).placed(vertices)
