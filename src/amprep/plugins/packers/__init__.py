@@ -21,10 +21,15 @@ amprep_api = 1
 
 
 _BOXES = PackerAccepts(volumes=frozenset({"box", "boxes"}), orientations=frozenset({"fixed", "axis"}))
-_BUILDS, _FILL = frozenset({"builds"}), frozenset({"fill"})
+_BUILDS, _FILL, _HEIGHT = frozenset({"builds"}), frozenset({"fill"}), frozenset({"height"})
 _ANY_LIST = frozenset({"fixed", "axis", "list"})
 _ALL = replace(
-    _BOXES, objectives=_BUILDS | _FILL, orientations=_ANY_LIST, cylinder=True, zones=True, fixed=True
+    _BOXES,
+    objectives=_BUILDS | _FILL | _HEIGHT,
+    orientations=_ANY_LIST,
+    cylinder=True,
+    zones=True,
+    fixed=True,
 )
 
 
@@ -49,7 +54,9 @@ def amprep_packers() -> Iterable[Packer]:
         name="block-building",
         summary="Beam search over blocks of boxes in maximal empty spaces (Araya, Riff; Fanslau, Bortfeldt).",
         run=later("amprep.plugins.packers.block_building:pack_block_building"),
-        accepts=replace(_BOXES, volumes=frozenset({"box"}), objectives=_FILL, zones=True, fixed=True),
+        accepts=replace(
+            _BOXES, volumes=frozenset({"box"}), objectives=_FILL | _HEIGHT, zones=True, fixed=True
+        ),
         params=BlockBuildingParams,
     )
     yield Packer(

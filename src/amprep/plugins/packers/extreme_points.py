@@ -73,6 +73,12 @@ def pack_extreme_points(
 ) -> Packing:
     """Pack by extreme points (Crainic, Perboli, Tadei 2008, doi:10.1287/ijoc.1070.0250)."""
     instance = prepare(problem)
+    if problem.objective == "height":
+        from amprep.plugins.packers.lowest_build import lowest_by_orderings
+
+        return as_packing(
+            instance, lowest_by_orderings(instance, params=params, rng=rng, stop=stop, progress=progress)
+        )
     return as_packing(instance, construct(instance, params=params, rng=rng, stop=stop, progress=progress))
 
 
@@ -135,7 +141,7 @@ class PassRunner:
         Without a `best`, the items that have no position yet are packed into rows where that is possible.
         """
         n, boxes = len(self.instance.type_of), self.instance.boxes
-        most = 1 if self.instance.filling else n if best is None else int(best.rank[1])
+        most = 1 if self.instance.in_one_build else n if best is None else int(best.rank[1])
         arrangement, state = Arrangement.unassigned(n), self.state
         state.cursor[:] = 0
         state.cursor[LEFT] = len(tried.order)
@@ -158,7 +164,12 @@ class PassRunner:
         height, area = self.state.extents.sum(axis=0).tolist()
         if self.instance.filling:
             return (-value_of(self.instance, arrangement), height, area)
-        return (float(self.state.cursor[LEFT]), float(arrangement.builds), height, area)
+        left = float(self.state.cursor[LEFT])
+        return (
+            (left, height, area)
+            if self.instance.in_one_build
+            else (left, float(arrangement.builds), height, area)
+        )
 
 
 def _pass_state(instance: PreparedInstance) -> PassState:

@@ -121,7 +121,7 @@ def with_rows(instance: PreparedInstance, found: Arrangement) -> Arrangement | N
     The result is None on a round plate, beside forbidden zones, and in a fill problem, where rows are not packed.
     """
     space, fixed = instance.space, instance.problem.fixed
-    if instance.filling or space.radius or len(space.zone_lo):
+    if instance.in_one_build or space.radius or len(space.zone_lo):
         return None
     rows = best_rows(instance, np.flatnonzero(instance.free & (found.build < 0)))
     begun = max(found.builds, 1 if fixed else 0)

@@ -9,6 +9,7 @@ import numpy as np
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.auto.fill import fill_build
+from amprep.plugins.packers.auto.height import lower_build
 from amprep.plugins.packers.auto.ruin_and_recreate import RuinAndRecreate
 from amprep.plugins.packers.bounds.combinatorial import builds_bound
 from amprep.plugins.packers.bounds.fractional_cover import CoveringBound
@@ -26,7 +27,7 @@ def pack_auto(
     The first pass is always begun, so that a late stop still gives a result.
     """
     instance = prepare(problem)
-    pack = fill_build if instance.filling else pack_builds
+    pack = {"fill": fill_build, "height": lower_build, "builds": pack_builds}[problem.objective]
     return as_packing(instance, pack(instance, params=params, rng=rng, stop=stop, progress=progress))
 
 

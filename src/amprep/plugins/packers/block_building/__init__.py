@@ -15,7 +15,7 @@ from amprep.plugins.packers.block_building.integer_instance import IntegerInstan
 from amprep.plugins.packers.bounds.combinatorial import fill_bound
 from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
 from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
-from amprep.plugins.packers.params import BlockBuildingParams
+from amprep.plugins.packers.params import BlockBuildingParams, ExtremePointsParams
 
 WORKERS = (SearchSettings(), SearchSettings(min_fill=1.0, power=3, margin=0.0, density=1.0))
 """Settings of the two workers: blocks with little waste, and blocks with none."""
@@ -32,7 +32,7 @@ def pack_block_building(
     stop: Stop,
     progress: Progress,
 ) -> Packing:
-    """Fill one build with blocks of boxes (Araya and Riff 2014, doi:10.1016/j.cor.2013.09.003).
+    """Fill one build with blocks of boxes, or make one low (Araya and Riff 2014, doi:10.1016/j.cor.2013.09.003).
 
     Boxes are joined to blocks that leave little unused space inside. A state is a partly filled build with its
     maximal empty spaces. Each move places one of the best blocks in the space nearest to a corner of the
@@ -52,9 +52,25 @@ def pack_block_building(
     stop, progress
         Checked and called about a hundred times a second.
     """
-    del rng
     prepared = prepare(problem)
+    if problem.objective == "height":
+        return as_packing(prepared, _lowest(prepared, params, rng, stop, progress))
     return as_packing(prepared, fill_by_blocks(prepared, params, stop, progress))
+
+
+def _lowest(
+    prepared: PreparedInstance,
+    params: BlockBuildingParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> PackerResult:
+    """Return the lowest packing in one build; the start is that of `extreme-points`."""
+    from amprep.plugins.packers.block_building.lowest import lowest_by_blocks
+    from amprep.plugins.packers.lowest_build import lowest_by_orderings
+
+    start = lowest_by_orderings(prepared, params=ExtremePointsParams(), rng=rng, stop=stop, progress=progress)
+    return lowest_by_blocks(prepared, start, params, stop, progress)
 
 
 def fill_by_blocks(

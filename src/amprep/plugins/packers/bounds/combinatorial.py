@@ -1,4 +1,4 @@
-"""Bounds that no packing can beat: least number of builds, greatest value of one build.
+"""Bounds that no packing can beat: least number of builds, greatest value and least height of one build.
 
 All bounds are valid for every packing that the judge accepts: distances are Euclidean, and every contact may be
 penetrated by `CONTACT_TOLERANCE`, so boxes count smaller and rooms larger by it. Items of several boxes are
@@ -40,8 +40,10 @@ class RelaxedBoxes(NamedTuple):
 
 
 def packing_bound(instance: PreparedInstance) -> float:
-    """Return the bound on the objective: `fill_bound` or `builds_bound`."""
-    return fill_bound(instance) if instance.filling else float(builds_bound(instance))
+    """Return the bound on the objective: `fill_bound`, `height_bound` or `builds_bound`."""
+    if instance.filling:
+        return fill_bound(instance)
+    return height_bound(instance) if instance.in_one_build else float(builds_bound(instance))
 
 
 def builds_bound(instance: PreparedInstance) -> int:
@@ -77,6 +79,23 @@ def fill_bound(instance: PreparedInstance) -> float:
         fraction = np.clip((room - (full - weight[order])) / np.maximum(weight[order], 1e-12), 0.0, 1.0)
         bound = min(bound, float((fraction * value[order]).sum()))
     return aside + bound
+
+
+def height_bound(instance: PreparedInstance) -> float:
+    """Return a lower bound on the height (mm) of one build: fixed items, the highest item, and the volume.
+
+    Grown by half the clearance, the items are disjoint, and share a room that reaches half a clearance beyond.
+    """
+    gap, lift = instance.problem.clearance, instance.problem.lift
+    least = np.array([min(o.size[2] for o in item_type) for item_type in instance.types] or [0.0])
+    highest = float(least[instance.type_of[instance.free]].max(initial=-lift)) + lift
+    inside, taken = counted_items(instance), _taken(instance, 3)
+    filled = float(taken[instance.type_of[inside]].sum()) / max(_base_area(instance), 1e-12)
+    return max(
+        highest,
+        filled + lift - gap - 2.0 * CONTACT_TOLERANCE,
+        float(instance.fixed_hi[:, 2].max(initial=0.0)),
+    )
 
 
 def counted_items(instance: PreparedInstance) -> Bools:
@@ -140,13 +159,16 @@ def _available(instance: PreparedInstance, dimensions: int) -> float:
     side = space.hi - space.lo + gap + 2.0 * CONTACT_TOLERANCE
     if (side <= 0.0).any():
         return 1e-12
-    area = (
-        side[0] * side[1]
-        if space.radius == 0.0
-        else np.pi * (space.radius + gap / 2.0 + CONTACT_TOLERANCE) ** 2
-    )
-    whole = area * (side[2] if dimensions == 3 else 1.0)
+    whole = _base_area(instance) * (side[2] if dimensions == 3 else 1.0)
     return max(float(whole) - _lost(instance, dimensions), 1e-12)
+
+
+def _base_area(instance: PreparedInstance) -> float:
+    """Return the plate area that grown items share."""
+    space, gap = instance.space, instance.problem.clearance
+    if space.radius:
+        return float(np.pi * (space.radius + gap / 2.0 + CONTACT_TOLERANCE) ** 2)
+    return float(np.prod(space.hi[:2] - space.lo[:2] + gap + 2.0 * CONTACT_TOLERANCE))
 
 
 def _lost(instance: PreparedInstance, dimensions: int) -> float:

@@ -8,6 +8,9 @@ from amprep.kernels.boxes.records import Arrangement
 from amprep.model.packing import Packing, Placement, Status, Unplaced
 from amprep.plugins.packers.instance.prepare import PreparedInstance
 
+HEIGHT_TOLERANCE = 1e-10
+"""Height (mm) above the bound that is rounding."""
+
 
 class PackerResult(NamedTuple):
     """An arrangement, and the facts about it that a packing states.
@@ -15,7 +18,7 @@ class PackerResult(NamedTuple):
     Attributes
     ----------
     bound
-        Proven bound: fewest builds, or greatest value of one build.
+        Proven bound: fewest builds, greatest value of one build, or least height (mm).
     complete
         False when items are unplaced because the packer had to stop.
     found_by
@@ -41,6 +44,14 @@ def builds_used(instance: PreparedInstance, arrangement: Arrangement) -> int:
     return max(arrangement.builds, 1 if instance.problem.fixed else 0)
 
 
+def height_of(instance: PreparedInstance, arrangement: Arrangement) -> float:
+    """Return the height (mm) of the highest item above the plate, fixed items included."""
+    placed = arrangement.build >= 0
+    height = np.array([orientation.size[2] for orientation in instance.orientations])
+    tops = arrangement.position[placed, 2] + height[arrangement.orientation[placed]]
+    return float(max(tops.max(initial=0.0), instance.fixed_hi[:, 2].max(initial=0.0)))
+
+
 def status_of(instance: PreparedInstance, result: PackerResult) -> Status:
     """Return ``optimal`` when the bound is met, ``infeasible`` when an item to be built fits no build."""
     if instance.filling:
@@ -48,14 +59,18 @@ def status_of(instance: PreparedInstance, result: PackerResult) -> Status:
         return "optimal" if reached >= result.bound - 1e-9 * abs(result.bound) else "feasible"
     if instance.too_large.any():
         return "infeasible"
-    met = builds_used(instance, result.arrangement) <= result.bound
+    if instance.in_one_build:
+        all_placed = not np.any(instance.free & (result.arrangement.build < 0))
+        met = all_placed and height_of(instance, result.arrangement) <= result.bound + HEIGHT_TOLERANCE
+    else:
+        met = builds_used(instance, result.arrangement) <= result.bound
     return "optimal" if result.complete and met else "feasible"
 
 
 def as_packing(instance: PreparedInstance, result: PackerResult) -> Packing:
     """Return a result as a packing, with a reason for every unplaced item."""
     build = result.arrangement.build
-    left = "out of time" if not result.complete else "no room left" if instance.filling else "too large"
+    left = "out of time" if not result.complete else "no room left" if instance.in_one_build else "too large"
     out = np.flatnonzero((instance.free & (build < 0)) | instance.too_large).tolist()
     return Packing(
         builds=_builds(instance, result.arrangement),

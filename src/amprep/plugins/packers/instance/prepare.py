@@ -112,6 +112,11 @@ class PreparedInstance:
         return self.problem.objective == "fill"
 
     @property
+    def in_one_build(self) -> bool:
+        """Whether there is one build: it is filled, or has to be low."""
+        return self.problem.objective != "builds"
+
+    @property
     def demand(self) -> Int64s:
         """Number of free items of each type, ``(types,)``."""
         return np.bincount(self.type_of[self.free], minlength=len(self.types))
