@@ -8,6 +8,7 @@ import numpy as np
 from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.measures.density import build_density, build_height, support_volume
+from amprep.measures.height_profile import measure_profile
 from amprep.measures.objective import objective_reached
 from amprep.measures.removal_order import measure_removal_order
 from amprep.measures.slenderness import measure_slenderness
@@ -43,6 +44,7 @@ def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
         advice=supported.advice,
         removal=supported.removal,
         removal_order=measure_removal_order(build, stop),
+        profile=measure_profile(build),
         slenderness=tuple(measure_slenderness(body) for body in build.supports),
         overhangs=() if layout is None else _overhangs(build, layout),
         demand_squares=0 if layout is None else len(layout.red.square),

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from amprep.measures.density import part_volume
+from amprep.measures.height_profile import HeightProfile
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
@@ -74,9 +75,22 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "height_mm": entry.height_mm,
         "parts": [_part(placed, fill) for placed in build.parts],
         "supports": _supports(entry),
+        "height_profile": _profile(entry.profile),
         "removal_order": removal_order_json(entry),
         "verified": entry.verification is not None,
         "violations": violations_json(entry.verification or ()),
+    }
+
+
+def _profile(profile: HeightProfile) -> dict[str, Any]:
+    return {
+        "from_mm": profile.low,
+        "spacing_mm": profile.spacing,
+        "area_mm2": profile.areas.round(3),
+        "mean_area_mm2": profile.mean,
+        "variation": profile.variation,
+        "largest": profile.largest,
+        "largest_jump": profile.largest_jump,
     }
 
 

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from amprep.arrays import Floats
 from amprep.checks.violation import Violation
 from amprep.geometry.removal.order import RemovalOrder
+from amprep.measures.height_profile import NO_PROFILE, HeightProfile
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -144,6 +145,8 @@ class BuildRecord:
         Bounding volumes that were packed; empty if nothing was packed.
     removal_order
         How the parts can be taken out of the build, by their indices in it.
+    profile
+        Area of the cross-section of the parts at each height.
     """
 
     build: Build
@@ -164,6 +167,7 @@ class BuildRecord:
     removal: tuple[Removal, ...] = ()
     volumes: tuple[ShownVolume, ...] = ()
     removal_order: RemovalOrder = field(default_factory=RemovalOrder)
+    profile: HeightProfile = NO_PROFILE
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

@@ -18,6 +18,7 @@ from amprep.report.objective import (
     status_words,
     total_value,
 )
+from amprep.report.page.profile_chart import profile_chart
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
@@ -69,6 +70,7 @@ def body_sections(record: RunRecord) -> str:
         ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
         ("Support removal", "".join(_removal(number, entry) for number, entry in numbered)),
         ("Overhangs", "".join(_overhangs(number, entry) for number, entry in numbered)),
+        ("Cross-section by height", "".join(profile_chart(number, entry) for number, entry in numbered)),
         ("Removal of parts", "".join(_part_removal(number, entry) for number, entry in numbered)),
         ("Verification", _verification(record)),
         ("Parts", "".join(_parts(number, entry) for number, entry in numbered)),
@@ -80,8 +82,9 @@ def body_sections(record: RunRecord) -> str:
         f"<section><h2>{title}</h2>\n{content}</section>\n" for title, content in sections if content
     )
     footer = (
-        f"Made by amprep {escape(record.version)}. Lengths are in mm; the build plate is at z = 0. A demand square is "
-        "a square of the support grid below an overhang."
+        f"Made by amprep {escape(record.version)}. Lengths are in mm; the build plate is at z = 0. Density is the "
+        "volume of the parts / (area of the plate × height of the build). A demand square is a square of the support "
+        "grid below an overhang."
     )
     return f"{body}<footer>{footer}</footer>\n"
 
