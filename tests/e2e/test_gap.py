@@ -30,7 +30,7 @@ def test_supports_keep_the_gap_from_a_leg_and_hold_the_slab(amprep, mushroom, tm
     assert amprep("run", mushroom, *sets, "-o", tmp_path / "none").code == 0
     build = read_build(tmp_path / "none" / "mushroom.build-1.3mf")
     asked = replace(build, settings=replace(build.settings, rules=SupportRules(gap_mm=0.5)))
-    assert {each.promise for each in verify_build(asked)} == {PROMISE}
+    assert {each.promise for each in verify_build(asked).violations} == {PROMISE}
 
 
 def test_with_a_gap_a_knife_edge_is_held_as_well(amprep, fixtures, tmp_path):

@@ -1,9 +1,10 @@
 """Write a build job and verify it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from amprep.api.arguments import require_record
+from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.violation import Violation
 from amprep.errors import InputError
 from amprep.model import Build, Progress, Stop, silent
@@ -19,9 +20,13 @@ class Verification:
     ----------
     violations
         The broken promises; empty when all hold.
+    pairs
+        How many pairs of parts were judged by which method: their enclosing boxes, the distance of their triangles, or
+        the intersection of their solids.
     """
 
     violations: tuple[Violation, ...]
+    pairs: PairCounts = field(default_factory=PairCounts)
 
     @property
     def ok(self) -> bool:
@@ -95,7 +100,7 @@ def verify(
     every promise holds
     """
     if isinstance(build, str | Path):
-        return Verification(verify_file(Path(build), stop=stop, progress=progress))
+        return Verification(*verify_file(Path(build), stop=stop, progress=progress))
     require_record(build, (SupportedBuild, Build), "verify", "pass a path or the result of emit_cells")
     judged = build.build if isinstance(build, SupportedBuild) else build
-    return Verification(verify_build(judged, stop=stop, progress=progress))
+    return Verification(*verify_build(judged, stop=stop, progress=progress))

@@ -1,6 +1,7 @@
 """``amprep verify``: verify a build from its file alone."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -34,14 +35,16 @@ def verify(
     """
     from amprep import api
 
-    violations = api.verify(file).violations
+    result = api.verify(file)
+    violations = result.violations
     if as_json:
         from amprep.report.json_values import violations_json
 
-        result = {"file": str(file), "ok": not violations, "violations": violations_json(violations)}
-        typer.echo(json.dumps(result, indent=2))
+        record = {"file": str(file), "ok": result.ok, "violations": violations_json(violations)}
+        typer.echo(json.dumps(record | {"pairs_judged": asdict(result.pairs)}, indent=2))
     elif not quiet:
         _show(file, violations)
+        typer.echo(f"parts checked on their meshes exactly, {result.pairs}")
     raise typer.Exit(cli.INCOMPLETE if violations else cli.DONE)
 
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
-from amprep.checks.packing.parts_placed import check_placed
+from amprep.checks.packing.pairs import PairCounts
+from amprep.checks.packing.parts_placed import judge_placed
 from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, xy_distance
 from amprep.checks.supports.bodies import check_bodies
@@ -30,9 +32,14 @@ PROMISES = (
 """Names of all promises, in the order in which they are judged."""
 
 
-def verify_build(
-    build: Build, *, stop: Stop | None = None, progress: Progress = silent
-) -> tuple[Violation, ...]:
+class JudgedBuild(NamedTuple):
+    """Every broken promise of a build, and how many pairs of parts were judged by which method."""
+
+    violations: tuple[Violation, ...]
+    pairs: PairCounts
+
+
+def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:
     """Return every broken promise: of parts, then of supports, then of overhangs without support.
 
     Parameters
@@ -45,22 +52,20 @@ def verify_build(
         Called before each group of judges.
     """
     stop = stop or Stop()
+    progress(0.0, "parts")
+    found, pairs = judge_placed(build.parts, build.settings, stop)
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
-        ("parts", lambda: check_placed(build.parts, build.settings, stop)),
         ("supports", lambda: [*check_bodies(build, stop), *check_xy_distance(build, stop)]),
         ("coverage", lambda: check_coverage(build)),
     )
-    violations: list[Violation] = []
-    for index, (name, judge) in enumerate(judges):
-        progress(index / len(judges), name)
-        violations += judge()
+    for index, (name, judge) in enumerate(judges, start=1):
+        progress(index / (len(judges) + 1), name)
+        found += judge()
     progress(1.0, "verified")
-    return tuple(violations)
+    return JudgedBuild(tuple(found), pairs)
 
 
-def verify_file(
-    path: Path, *, stop: Stop | None = None, progress: Progress = silent
-) -> tuple[Violation, ...]:
+def verify_file(path: Path, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:
     """Read a build file and judge the build from the file alone.
 
     Parameters

@@ -45,7 +45,8 @@ def finish_build(
             record = _written(record, number, outputs, stl)
     with clock.stage("verify") as progress:
         checked = build if dry_run else _read_back(number, outputs)
-        return replace(record, verification=verify_build(checked, stop=stop, progress=progress))
+        judged = verify_build(checked, stop=stop, progress=progress)
+        return replace(record, verification=judged.violations, pairs=judged.pairs)
 
 
 def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> RunRecord:

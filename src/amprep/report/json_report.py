@@ -1,5 +1,6 @@
 """The report for programs: `job.report.json`, described in docs/report.md."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +79,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "height_profile": _profile(entry.profile),
         "removal_order": removal_order_json(entry),
         "verified": entry.verification is not None,
+        "pairs_judged": asdict(entry.pairs),
         "violations": violations_json(entry.verification or ()),
     }
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from amprep.arrays import Floats
+from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.violation import Violation
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
@@ -131,6 +132,8 @@ class BuildRecord:
         The demand squares that are not connected.
     verification
         Broken promises; None if the build was not verified.
+    pairs
+        How many pairs of parts were judged by which method.
     shared_supports
         One sentence for each support that holds several parts.
     notes
@@ -168,6 +171,7 @@ class BuildRecord:
     volumes: tuple[ShownVolume, ...] = ()
     removal_order: RemovalOrder = field(default_factory=RemovalOrder)
     profile: HeightProfile = NO_PROFILE
+    pairs: PairCounts = field(default_factory=PairCounts)
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

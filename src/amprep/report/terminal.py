@@ -4,6 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amprep.checks.packing.pairs import PairCounts
 from amprep.model.counting import counted
 from amprep.report.objective import amount, objective_words, part_values, status_words
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
@@ -27,6 +28,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     blocks += [Text(printable(line), style="dim") for line in _listed(_waiting(record), "in the report")]
     issues = _listed(_issues(record), "in the report")
     blocks += [Text(f"! {printable(line)}", style="yellow") for line in issues]
+    blocks += [Text(line, style="dim") for line in _judged(record)]
     blocks += [Text(_stages(record.stages), style="dim")]
     written = [f"wrote {folder / name}" for name in _files(record)]
     blocks += [Text(printable(line), style="dim") for line in _listed(written, f"in {folder}")]
@@ -61,6 +63,12 @@ def _verified(entry: BuildRecord) -> str:
     if entry.verification is None:
         return "-"
     return f"no ({len(entry.verification)})" if entry.verification else "yes"
+
+
+def _judged(record: RunRecord) -> list[str]:
+    """Return a line about how the pairs of parts were judged, if any were."""
+    pairs = sum((entry.pairs for entry in record.builds), PairCounts())
+    return [f"meshes checked exactly: {pairs}"] if pairs.total else []
 
 
 def _totals(record: RunRecord) -> str:

@@ -87,12 +87,16 @@ class PairCounts:
             self.boxes + other.boxes, self.triangles + other.triangles, self.solids + other.solids
         )
 
+    @property
+    def total(self) -> int:
+        """Number of pairs."""
+        return self.boxes + self.triangles + self.solids
+
     def __str__(self) -> str:
-        """One sentence."""
-        total = self.boxes + self.triangles + self.solids
+        """One line."""
         return (
-            f"{counted(total, 'pair')}: {self.boxes} apart by their enclosing boxes, {self.triangles} by the distance "
-            f"of their triangles, {self.solids} by the intersection of their solids"
+            f"{counted(self.total, 'pair')}: {self.boxes} apart by their enclosing boxes, {self.triangles} by the "
+            f"distance of their triangles, {self.solids} by the intersection of their solids"
         )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from textwrap import dedent
 
+from amprep.checks.packing.pairs import PairCounts
 from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
 from amprep.model.counting import counted
@@ -346,7 +347,9 @@ def _verification(record: RunRecord) -> str:
     if rows:
         return table(("Build|", "Promise", "Subject", "Finding"), rows)
     verified = record.builds and all(entry.verification is not None for entry in record.builds)
-    text = "All checks passed." if verified else "The builds were not verified."
+    pairs = sum((entry.pairs for entry in record.builds), PairCounts())
+    how = f" Meshes were checked exactly: {pairs}." if pairs.total else ""
+    text = f"All checks passed.{how}" if verified else "The builds were not verified."
     return f'<p class="empty">{text}</p>'
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from amprep.checks.packing.parts_placed import check_placed
+from amprep.checks.packing.pairs import PairCounts
+from amprep.checks.packing.parts_placed import check_placed, judge_placed
 from amprep.model import BuildSettings, BuildVolume, Mesh, Orientations, Overrides, Part, PlacedPart, Stop
 
 ROOM = BuildVolume(np.array([100.0, 100.0, 50.0]))
@@ -149,3 +150,19 @@ def test_a_check_that_is_stopped_reports_a_violation():
     found = check_placed([at(cube()), at(cube(), 8, label="b")], BuildSettings("test", ROOM), stop)
     assert [violation.promise for violation in found] == ["clearance"]
     assert "interrupted" in found[0].message
+
+
+def test_the_judge_counts_every_pair_once_by_the_method_that_judged_it():
+    ball = part(Manifold.sphere(5, 32))
+    placed = [
+        at(ball, 20, 20, 10),
+        at(ball, 28, 28, 10, label="near"),
+        at(cube(), 60, 60, 0, label="cube"),
+        at(cube(), 70, 60, 0, label="touching"),
+    ]
+    found, counts = judge_placed(placed, BuildSettings("test", ROOM), Stop())
+    assert not found
+    assert counts == PairCounts(boxes=5, triangles=1, solids=0), "boxes that only touch are apart"
+    found, counts = judge_placed(placed, BuildSettings("test", ROOM, clearance=0.5), Stop())
+    assert [violation.promise for violation in found] == ["clearance"]
+    assert counts == PairCounts(boxes=4, triangles=1, solids=1)
