@@ -36,17 +36,22 @@ def boxes_overlap(sizes, layout, i, j):
 
 def state_for(items, cells, seed=7):
     return SeparationState(
-        np.zeros((items, items)),
-        np.ones((items, items)),
-        np.zeros(items),
-        np.ones(items),
-        np.array([seed], np.uint64),
-        np.zeros(4, np.int64),
-        np.empty(cells, np.float32),
-        np.empty(items, np.int64),
-        np.empty(items, np.int64),
-        np.empty(4, np.int64),
-        np.empty(4),
+        overlap=np.zeros((items, items)),
+        weight=np.ones((items, items)),
+        outside=np.zeros(items),
+        outside_weight=np.ones(items),
+        touching=np.zeros(items, np.int64),
+        pairs=np.empty((items * items, 2), np.int32),
+        listed=np.zeros((items, items), bool),
+        progress=np.array([0, -1]),
+        least=np.full(1, np.inf),
+        random=np.array([seed], np.uint64),
+        spent=np.zeros(4, np.int64),
+        sums=np.empty(cells, np.float32),
+        near=np.empty(items, np.int64),
+        order=np.empty(items, np.int64),
+        cell=np.empty(4, np.int64),
+        value=np.empty(4),
     )
 
 

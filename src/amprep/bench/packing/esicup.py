@@ -41,10 +41,19 @@ MAX_BYTES = 10_000_000
 RECORDS = {
     "stoyan 2005 example1": 17.46,
     "stoyan 2005 example2": 19.00,
+    "stoyan 2005 example3": 27.53,
+    "stoyan 2004 example1": 51.54,
+    "stoyan 2004 example2": 29.00,
+    "stoyan 2004 example3": 40.07,
+    "stoyan 2004 example4": 54.21,
+    "stoyan 2004 example5": 68.02,
     "egeblad 2009 merged1": 16.55,
+    "egeblad 2009 merged2": 20.97,
     "egeblad 2009 merged3": 22.00,
+    "egeblad 2009 merged4": 23.84,
     "egeblad 2009 merged5": 26.14,
     "liu 2015 experiment1": 30.55,
+    "lamas 2022 chess": 131.36,
 }
 """Mean heights that sparrow-3d (github.com/JonasTollenaere/sparrow-3d) reaches in 10 minutes with four workers."""
 
@@ -104,7 +113,7 @@ class EsicupResult:
 
 
 def read_esicup(path: Path) -> EsicupInstance:
-    """Return an instance; its meshes are in the folder of the file, or in the subfolder of the same name less digits.
+    """Return an instance; its meshes are in the folder of the file or in folders in it.
 
     Raises
     ------
@@ -116,7 +125,7 @@ def read_esicup(path: Path) -> EsicupInstance:
             raise InputError(f"{path}: larger than {MAX_BYTES} bytes; give the file of one instance")
         record = json.loads(path.read_text(encoding="utf-8"))
         base = float(record["container"]["size-x"]), float(record["container"]["size-y"])
-        types = [(Path(str(row["path"])).name, int(row["demand"])) for row in record["item-types"]]
+        types = [(str(row["path"]), int(row["demand"])) for row in record["item-types"]]
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); give a JSON file") from error
     except KeyError as error:
@@ -141,11 +150,16 @@ def _key(path: Path) -> str:
 
 
 def _mesh_file(path: Path, name: str) -> Path:
-    folders = path.parent, path.parent / path.stem.rstrip("0123456789")
-    for folder in folders:
-        if (folder / name).is_file():
-            return folder / name
-    raise InputError(f"{path}: the mesh {name} is neither in {folders[0]} nor in {folders[1]}; put it there")
+    """Return the file of a mesh: as named from the folder above, from that of the instance, or from a part of it."""
+    folder, parts = path.parent, [part for part in re.split(r"[\\/]", name) if part not in ("", ".", "..")]
+    wanted = Path(*parts)
+    ends = [Path(*parts[k:]) for k in range(len(parts))]
+    folders = folder.parent, folder, folder / path.stem.rstrip("0123456789")
+    found = [place / end for end in ends for place in folders if (place / end).is_file()]
+    found += sorted(file for file in folder.glob(f"*/**/{wanted.name}") if file.is_file())
+    if not found:
+        raise InputError(f"{path}: the mesh {wanted.name} is not in {folder} or a folder in it; put it there")
+    return found[0]
 
 
 def _read_parts(files: Sequence[tuple[Path, int]]) -> tuple[Part, ...]:

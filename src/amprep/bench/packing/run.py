@@ -130,8 +130,8 @@ class PackerRun:
 
     def pack(self, problem: PackingProblem) -> Packing:
         """Pack a problem; only the time limit and the packer itself end the search."""
-        known = {field.name for field in fields(self.packer.offer.params)}
-        unlimited = {name: value for name, value in UNLIMITED.items() if name in known}
+        known = {field.name: field.default for field in fields(self.packer.offer.params)}
+        unlimited = {name: value for name, value in UNLIMITED.items() if known.get(name) is not None}
         params = self.host.params(self.packer, unlimited | self.params)
         rng, stop = np.random.default_rng(self.seed), Stop.after(self.seconds)
         return self.host.call(self.packer, problem, params=params, rng=rng, stop=stop, progress=silent)

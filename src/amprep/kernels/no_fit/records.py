@@ -5,13 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from amprep.arrays import Float32s, Floats, Int64s
+from amprep.arrays import Bools, Float32s, Floats, Int64s
 
 EVERYWHERE = -1
 """Build of an obstacle that is in every build."""
 
 READ, MOVES, SCANS, ROUNDS = range(4)
 """Columns of `SeparationState.spent`: field values read, moves, scans, rounds."""
+
+PAIRS, NEXT = range(2)
+"""Columns of `SeparationState.progress`: pairs in the list, next item of the round (-1: overlaps are unknown)."""
 
 
 class NoFitPieces(NamedTuple):
@@ -116,6 +119,16 @@ class SeparationState(NamedTuple):
         ``(items, n)`` depth (mm) of the overlap of each item with the others and the obstacles, and its weight.
     outside, outside_weight
         ``(items,)`` length (mm) by which an item is outside the circle, and its weight.
+    touching
+        ``(items,)`` number of items and obstacles that an item overlaps.
+    pairs
+        ``(p, 2)`` int32 list of the pairs that overlap or have a weight above 1; p is the number of all pairs.
+    listed
+        ``(items, n)`` whether a pair (i, j) with j < i or an obstacle j is in the list.
+    progress
+        ``(2,)`` see `PAIRS`.
+    least
+        ``(1,)`` total overlap (mm) of the best layout so far.
     random
         ``(1,)`` uint64 state of the random numbers, not 0.
     spent
@@ -132,6 +145,11 @@ class SeparationState(NamedTuple):
     weight: Floats
     outside: Floats
     outside_weight: Floats
+    touching: Int64s
+    pairs: NDArray[np.int32]
+    listed: Bools
+    progress: Int64s
+    least: Floats
     random: NDArray[np.uint64]
     spent: Int64s
     sums: Float32s

@@ -5,16 +5,19 @@ from numba import njit
 
 from amprep.arrays import Float32s, Floats, Int64s
 from amprep.kernels.helper import helper
-from amprep.kernels.no_fit.depth import outside_circle
+from amprep.kernels.no_fit.depth import depth_at, outside_circle
 from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, PositionRange, ShapeLayout
+
+FREE = 1e-4
+"""Total overlap (mm) that counts as none; rounding of samples causes less."""
 
 BLOCK = 4
 """Side of the blocks of cells of which a scan proposes the best cell."""
 
 
 @helper
-def add_overlaps(fields, within, layout, weight, outside_weight, item, build, start, grid, sums):
-    """Write the weighted overlap of an item with all others of a build at the cells of a grid; return values read.
+def add_overlaps(fields, within, layout, weight, outside_weight, item, build, since, start, grid, sums):
+    """Add the weighted overlap of an item with others of a build at the cells of a grid; return values read.
 
     Parameters
     ----------
@@ -22,6 +25,9 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, st
         ``(n, n)`` weights of the overlaps.
     outside_weight
         Weight of the length outside the circle.
+    since
+        The others are the rows of the layout from this one on. From row 0 on, the sums are set to 0 before, and lengths
+        outside the circle are added.
     start
         Three floats, mm: position at the first cell. Cells are two steps of the fields apart.
     grid
@@ -31,9 +37,10 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, st
     """
     gx, gy, gz = grid
     shape, step = layout.shape[item], fields.step
-    sums[: gx * gy * gz] = np.float32(0.0)
+    if since == 0:
+        sums[: gx * gy * gz] = np.float32(0.0)
     read = 0
-    for other in range(layout.shape.size):
+    for other in range(since, layout.shape.size):
         if other == item or (layout.build[other] != build and layout.build[other] != EVERYWHERE):
             continue
         b = layout.shape[other]
@@ -58,7 +65,7 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, st
                 to = (x * gy + y) * gz + z0
                 at = base + ((x + sx) * ny + y + sy) * nz + z0 + sz
                 _add_line(sums[to : to + length], fields.values[at : at + length], factor)
-    if within.radius > 0.0:
+    if within.radius > 0.0 and since == 0:
         _add_outside(within, shape, outside_weight, start, grid, 2.0 * step, sums)
     return read
 
@@ -111,6 +118,19 @@ def best_cells(sums, grid, cell, value):
     return count
 
 
+@helper
+def _is_free(fields, within, layout, item, x, y, z):
+    """Tell whether an item overlaps nothing of its build at a position."""
+    if outside_circle(within, layout.shape[item], x, y) > FREE:
+        return False
+    for other in range(layout.shape.size):
+        if other != item and (layout.build[other] == layout.build[item] or layout.build[other] == EVERYWHERE):
+            u, v, w = layout.position[other]
+            if depth_at(fields, layout.shape[item], layout.shape[other], x - u, y - v, z - w) > FREE:
+                return False
+    return True
+
+
 @njit(cache=True, nogil=True, _nrt=False)
 def lowest_free(
     fields: NoFitFields,
@@ -118,36 +138,62 @@ def lowest_free(
     layout: ShapeLayout,
     weight: Floats,
     item: int,
+    since: int,
     grid: Int64s,
-    free: float,
     sums: Float32s,
 ) -> int:
-    """Return the lowest cell of the item's build at which it overlaps nothing, then the one of least x + y; or -1.
+    """Move an item to the lowest position of a grid at which it overlaps nothing of its build, then of least x + y.
 
-    Positions are multiples of the step from the least position of the item's shape, so that samples are exact.
+    From there it goes further down and to the sides, by steps of the fields. All positions are multiples of the step
+    from the least position of the item's shape, so that samples are exact.
 
     Parameters
     ----------
+    layout
+        The item's position is written if there is one.
     weight
         ``(n, n)`` ones.
+    since
+        Row of the layout from which on items are new since `sums` was written for the same shape, build and grid;
+        0 if it was not.
     grid
         ``(3,)`` number of cells, two steps apart.
-    free
-        Overlap (mm) that counts as none.
     sums
-        Work array.
+        Overlap (mm) at the cells, modified.
+
+    Returns
+    -------
+    The number of field values read, negative if there is no free position.
     """
     shape = layout.shape[item]
     size = (grid[0], grid[1], grid[2])
-    start = (within.lo[shape, 0], within.lo[shape, 1], within.lo[shape, 2])
-    add_overlaps(fields, within, layout, weight, 1.0, item, layout.build[item], start, size, sums)
+    lo = within.lo[shape]
+    start = (lo[0], lo[1], lo[2])
+    build = layout.build[item]
+    read = add_overlaps(fields, within, layout, weight, 1.0, item, build, since, start, size, sums)
+    read += grid[0] * grid[1] * grid[2] + 1
     best, height, beside = -1, grid[2], 0
     for x in range(grid[0]):
         for y in range(grid[1]):
             row = (x * grid[1] + y) * grid[2]
             for z in range(min(grid[2], height + 1)):
-                if sums[row + z] <= free:
+                if sums[row + z] <= FREE:
                     if z < height or x + y < beside:
                         best, height, beside = row + z, z, x + y
                     break
-    return best
+    if best < 0:
+        return -read
+    u = lo[0] + 2.0 * fields.step * (best // (grid[1] * grid[2]))
+    v = lo[1] + 2.0 * fields.step * (best // grid[2] % grid[1])
+    w = lo[2] + 2.0 * fields.step * (best % grid[2])
+    step, moved = fields.step, True
+    while moved:
+        moved = False
+        for axis in (2, 0, 1):
+            x, y, z = u - step * (axis == 0), v - step * (axis == 1), w - step * (axis == 2)
+            inside = x > lo[0] - 1e-9 and y > lo[1] - 1e-9 and z > lo[2] - 1e-9
+            if inside and _is_free(fields, within, layout, item, x, y, z):
+                u, v, w, moved = x, y, z, True
+                break
+    layout.position[item, 0], layout.position[item, 1], layout.position[item, 2] = u, v, w
+    return read

@@ -8,6 +8,8 @@ from amprep.kernels.no_fit.depth import depth_at, outside_circle
 from amprep.kernels.no_fit.records import (
     EVERYWHERE,
     MOVES,
+    NEXT,
+    PAIRS,
     READ,
     ROUNDS,
     SCANS,
@@ -57,17 +59,34 @@ def _depth_of(fields, layout, i, j, x, y, z):
 
 @helper
 def _update_overlaps(fields, within, layout, items, state, i):
-    """Compute the overlaps of item i with all others anew."""
+    """Compute the overlaps of item i with all others anew, and add pairs that overlap to the list."""
     x, y, z = layout.position[i]
     for j in range(layout.shape.size):
-        depth = 0.0
+        before, depth = state.overlap[i, j], 0.0
         if j != i and _together(layout, i, j):
             depth = _depth_of(fields, layout, i, j, x, y, z)
+        if depth == before:
+            continue
+        change = int(depth > 0.0) - int(before > 0.0)
         state.overlap[i, j] = depth
+        state.touching[i] += change
         if j < items:
             state.overlap[j, i] = depth
+            state.touching[j] += change
+        _list(state, max(i, j) if j < items else i, min(i, j) if j < items else j)
+        state.spent[READ] += VALUES_A_DEPTH
     state.outside[i] = outside_circle(within, layout.shape[i], x, y)
-    state.spent[READ] += VALUES_A_DEPTH * layout.shape.size
+    state.spent[READ] += layout.shape.size
+
+
+@helper
+def _list(state, i, j):
+    """Add a pair to the list if it is not in it."""
+    if not state.listed[i, j]:
+        state.listed[i, j] = True
+        count = state.progress[PAIRS]
+        state.pairs[count, 0], state.pairs[count, 1] = i, j
+        state.progress[PAIRS] = count + 1
 
 
 @helper
@@ -181,6 +200,7 @@ def _scan(fields, within, layout, rules, state, i, best):
         state.outside_weight[i],
         i,
         layout.build[i],
+        0,
         start,
         grid,
         state.sums,
@@ -228,22 +248,23 @@ def _move(fields, within, layout, rules, state, i):
 def _weighted(state, i):
     """Return the weighted overlap of an item."""
     total = state.outside[i] * state.outside_weight[i]
-    for j in range(state.overlap.shape[1]):
-        total += state.overlap[i, j] * state.weight[i, j]
+    if state.touching[i] > 0:
+        for j in range(state.overlap.shape[1]):
+            total += state.overlap[i, j] * state.weight[i, j]
     return total
 
 
 @helper
-def _totals(rules, state):
+def _totals(state):
     """Return the total overlap and the deepest one, in which lengths outside the circle count."""
     total, deepest = 0.0, 0.0
-    for i in range(rules.first.size):
+    for i in range(state.outside.size):
         total += state.outside[i]
         deepest = max(deepest, state.outside[i])
-        for j in range(state.overlap.shape[1]):
-            if j < i or j >= rules.first.size:
-                total += state.overlap[i, j]
-                deepest = max(deepest, state.overlap[i, j])
+    for k in range(state.progress[PAIRS]):
+        overlap = state.overlap[state.pairs[k, 0], state.pairs[k, 1]]
+        total += overlap
+        deepest = max(deepest, overlap)
     return total, deepest
 
 
@@ -255,15 +276,23 @@ def _new_weight(weight, depth, deepest):
 
 
 @helper
-def _raise_weights(rules, state, deepest):
-    """Raise the weights of pairs that overlap and lower the others."""
-    for i in range(rules.first.size):
+def _raise_weights(state, deepest):
+    """Raise the weights of pairs that overlap and lower the others; pairs of weight 1 leave the list."""
+    items = state.outside.size
+    for i in range(items):
         state.outside_weight[i] = _new_weight(state.outside_weight[i], state.outside[i], deepest)
-        for j in range(state.overlap.shape[1]):
-            if j < i or j >= rules.first.size:
-                state.weight[i, j] = _new_weight(state.weight[i, j], state.overlap[i, j], deepest)
-                if j < i:
-                    state.weight[j, i] = state.weight[i, j]
+    kept = 0
+    for k in range(state.progress[PAIRS]):
+        i, j = state.pairs[k, 0], state.pairs[k, 1]
+        weight = _new_weight(state.weight[i, j], state.overlap[i, j], deepest)
+        state.weight[i, j] = weight
+        if j < items:
+            state.weight[j, i] = weight
+        state.listed[i, j] = weight > 1.0 or state.overlap[i, j] > 0.0
+        if state.listed[i, j]:
+            state.pairs[kept, 0], state.pairs[kept, 1] = i, j
+            kept += 1
+    state.progress[PAIRS] = kept
 
 
 @helper
@@ -272,6 +301,24 @@ def _copy(source, target):
         target.shape[i], target.build[i] = source.shape[i], source.build[i]
         for axis in range(3):
             target.position[i, axis] = source.position[i, axis]
+
+
+@helper
+def _begin(fields, within, layout, best, items, state):
+    """Compute all overlaps; the layout is the best one so far."""
+    for i in range(items):
+        _update_overlaps(fields, within, layout, items, state, i)
+        state.order[i] = i
+    state.progress[NEXT] = 0
+    state.least[0] = _totals(state)[0]
+    _copy(layout, best)
+
+
+@helper
+def _shuffle(state, items):
+    for k in range(items - 1, 0, -1):
+        other = int(uniform(state.random) * (k + 1))
+        state.order[k], state.order[other] = state.order[other], state.order[k]
 
 
 @njit(cache=True, nogil=True, _nrt=False)
@@ -283,39 +330,43 @@ def separate(
     best: ShapeLayout,
     state: SeparationState,
     rounds: int,
-) -> float:
-    """Move items for some rounds; return the total overlap (mm) of the best layout.
+    work: int,
+) -> int:
+    """Move items for some rounds, and write the layout of least total overlap; return the number of finished rounds.
 
     Parameters
     ----------
     layout
         Items, then obstacles, which stay; modified.
     best
-        The layout of least total overlap, written.
+        The layout of least total overlap so far, written.
     state
-        Weights, kept from call to call; modified.
+        Overlaps, weights and the place in a round, kept from call to call; modified.
+    work
+        Field values read after which the call ends, within a round too; the next call goes on from there.
     """
     items = rules.first.size
-    for i in range(items):
-        _update_overlaps(fields, within, layout, items, state, i)
-        state.order[i] = i
-    least, deepest = _totals(rules, state)
-    _copy(layout, best)
-    for _ in range(rounds):
-        if least <= rules.enough:
-            break
-        for k in range(items - 1, 0, -1):
-            other = int(uniform(state.random) * (k + 1))
-            state.order[k], state.order[other] = state.order[other], state.order[k]
-        for k in range(items):
-            i = state.order[k]
+    last = state.spent[READ] + work
+    if state.progress[NEXT] < 0:
+        _begin(fields, within, layout, best, items, state)
+    done = 0
+    while done < rounds and state.least[0] > rules.enough and state.spent[READ] < last:
+        if state.progress[NEXT] == 0:
+            _shuffle(state, items)
+        while state.progress[NEXT] < items and state.spent[READ] < last:
+            i = state.order[state.progress[NEXT]]
+            state.progress[NEXT] += 1
             if _weighted(state, i) > rules.enough / items:
                 _move(fields, within, layout, rules, state, i)
                 _update_overlaps(fields, within, layout, items, state, i)
-        total, deepest = _totals(rules, state)
+        if state.progress[NEXT] < items:
+            break
+        state.progress[NEXT] = 0
+        total, deepest = _totals(state)
         state.spent[ROUNDS] += 1
-        if total < least:
-            least = total
+        done += 1
+        if total < state.least[0]:
+            state.least[0] = total
             _copy(layout, best)
-        _raise_weights(rules, state, max(deepest, 1e-12))
-    return least
+        _raise_weights(state, max(deepest, 1e-12))
+    return done

@@ -257,11 +257,14 @@ class SeparationParams:
         Fraction by which the height is reduced after a success; after failures less.
     persistence
         Spans of ten rounds without progress after which a layout is given up and disturbed.
+    workers
+        Threads that search side by side. The packing depends on their number.
     failures
-        Layouts given up one after another at which the search ends.
+        Layouts given up one after another at which a worker ends. Without a value any number if time or work is
+        limited, else 20.
     work
-        Millions of field values read after which the search ends; some 300 to 1000 per second. Computing the fields
-        does not count.
+        Millions of field values read by all workers after which the search ends; some 300 to 1000 per second and
+        worker. Computing the fields does not count. Without a value, a time limit is used up, or the work is 6000.
     """
 
     step: float = 0.06
@@ -269,11 +272,13 @@ class SeparationParams:
     scan_chance: float = 0.4
     shrink: float = 0.01
     persistence: int = 40
-    failures: int = 20
-    work: float = 3000.0
+    workers: int = 2
+    failures: int | None = None
+    work: float | None = None
 
     def __post_init__(self) -> None:
         require_bounds(self, "step", above=0, at_most=0.5)
-        require_bounds(self, "scan_chance", "work", "failures", at_least=0)
+        require_bounds(self, "scan_chance", "failures", "work", at_least=0)
+        require_bounds(self, "workers", at_least=1, at_most=64)
         require_bounds(self, "shrink", above=0, at_most=0.5)
         require_bounds(self, "memory", "persistence", at_least=1)

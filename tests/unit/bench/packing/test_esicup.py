@@ -42,7 +42,7 @@ def test_every_seed_gives_a_layout_that_is_valid_on_the_meshes(instance_file):
         ({"container": {"size-x": 4.0}}, "size-y is missing"),
         ({"container": {"size-x": -4.0, "size-y": 1}}, "positive sizes"),
         ({"item-types": [{"path": "cube.stl", "demand": 0}]}, "at least 1"),
-        ({"item-types": [{"path": "ball.stl", "demand": 1}]}, "ball.stl is neither in"),
+        ({"item-types": [{"path": "ball.stl", "demand": 1}]}, "ball.stl is not in"),
     ],
 )
 def test_a_wrong_file_is_refused_with_its_fault(instance_file, change, complaint):
@@ -50,3 +50,16 @@ def test_a_wrong_file_is_refused_with_its_fault(instance_file, change, complaint
     instance_file.write_text(json.dumps(record), encoding="utf-8")
     with pytest.raises(InputError, match=complaint):
         read_esicup(instance_file)
+
+
+def test_meshes_of_the_same_name_are_told_apart_by_their_folders(instance_file):
+    folder = instance_file.parent
+    (folder / "other" / "clean").mkdir(parents=True)
+    trimesh.creation.box((1.0, 1.0, 1.0)).export(folder / "other" / "clean" / "cube.stl")
+    record = json.loads(instance_file.read_text(encoding="utf-8"))
+    record["item-types"] = [
+        {"path": "Sets/other/clean/cube.stl", "demand": 1},
+        {"path": "cube.stl", "demand": 1},
+    ]
+    instance_file.write_text(json.dumps(record), encoding="utf-8")
+    assert [part.volume_mm3 for part in read_esicup(instance_file).parts] == pytest.approx([1.0, 8.0])

@@ -19,7 +19,7 @@ def test_the_depth_of_two_boxes_is_exact_but_near_edges(offset):
     layout = layout_of([0, 1], [[10, 10, 10], np.array([10, 10, 10]) + offset])
     state, best = state_for(2, 1), layout_of([0, 1], np.zeros((2, 3)))
     room = in_box(SIZES, (30, 30, 30))
-    separate(FIELDS, room, rules_for([0, 1]), layout, best, state, 0)
+    separate(FIELDS, room, rules_for([0, 1]), layout, best, state, 0, 1)
     lo, hi = np.array([-3.0, -1, -2]), np.array([2.0, 3, 4])
     depth = max(0.0, min((offset - lo).min(), (hi - offset).min()))
     assert abs(state.overlap[0, 1] - depth) < 0.25  # less than a step, where sides meet

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.shared.no_fit import box_shapes, boxes_overlap, in_box, layout_of, rules_for, state_for
 
-from amprep.kernels.no_fit.records import MOVES, READ, ROUNDS, SCANS
+from amprep.kernels.no_fit.records import MOVES, PAIRS, READ, ROUNDS, SCANS
 from amprep.kernels.no_fit.separate import separate
 
 SIZES = [[4, 4, 2], [2, 4, 4], [4, 2, 4], [2, 2, 2]]
@@ -15,12 +15,18 @@ def two_at_once():
     return layout_of([0, 0], np.zeros((2, 3)))
 
 
-def run(rounds=200, seed=7, room=(7.0, 7.0, 7.0)):
+def least_of(fields, within, rules, layout, best, state, rounds, work=10**12):
+    """The total overlap of the best layout after some rounds."""
+    separate(fields, within, rules, layout, best, state, rounds, work)
+    return state.least[0]
+
+
+def run(rounds=200, seed=7, room=(7.0, 7.0, 7.0), work=10**12):
     _, fields = box_shapes(SIZES, 0.5)
     rng = np.random.default_rng(seed)
     layout, best = layout_of(ITEMS, rng.uniform(0, 3, (8, 3))), layout_of(ITEMS, np.zeros((8, 3)))
     state = state_for(8, 8**3, seed)
-    least = separate(fields, in_box(SIZES, room), rules_for(ITEMS), layout, best, state, rounds)
+    least = least_of(fields, in_box(SIZES, room), rules_for(ITEMS), layout, best, state, rounds, work)
     return least, best, state
 
 
@@ -38,7 +44,7 @@ def test_the_best_layout_has_the_overlap_that_is_returned():
     assert least > 0.0
     _, fields = box_shapes(SIZES, 0.5)
     state = state_for(8, 8**3)
-    again = separate(
+    again = least_of(
         fields,
         in_box(SIZES, (5.0, 5.0, 5.0)),
         rules_for(ITEMS),
@@ -67,7 +73,7 @@ def test_weights_grow_for_pairs_that_overlap_and_stay_one_for_others():
     _, fields = box_shapes([[4, 4, 4]], 0.5)
     layout = two_at_once()
     state = state_for(2, 8)
-    separate(
+    least_of(
         fields,
         in_box([[4, 4, 4]], (4.0, 4.0, 4.0)),
         rules_for([0, 0]),
@@ -84,7 +90,7 @@ def test_an_item_changes_its_shape_or_its_build_where_it_would_overlap():
     sizes = [[6, 2, 2], [2, 6, 2]]
     _, fields = box_shapes(sizes, 0.5)
     layout, best = two_at_once(), two_at_once()
-    crossed = separate(
+    crossed = least_of(
         fields,
         in_box(sizes, (6.0, 6.0, 2.0)),
         rules_for([0, 0], ends=[2, 2]),
@@ -95,7 +101,7 @@ def test_an_item_changes_its_shape_or_its_build_where_it_would_overlap():
     )
     assert crossed <= 1e-6
     layout, best = two_at_once(), two_at_once()
-    apart = separate(
+    apart = least_of(
         fields,
         in_box(sizes, (6.0, 2.0, 2.0)),
         rules_for([0, 0], builds=2),
@@ -106,3 +112,34 @@ def test_an_item_changes_its_shape_or_its_build_where_it_would_overlap():
     )
     assert apart <= 1e-6
     assert sorted(best.build.tolist()) == [0, 1]
+
+
+def test_a_call_ends_within_a_round_and_the_next_one_goes_on():
+    _, fields = box_shapes(SIZES, 0.5)
+    rng = np.random.default_rng(7)
+    layout, best = layout_of(ITEMS, rng.uniform(0, 3, (8, 3))), layout_of(ITEMS, np.zeros((8, 3)))
+    state, within = state_for(8, 8**3), in_box(SIZES, (5.0, 5.0, 5.0))
+    done = calls = 0
+    while done < 3:
+        done += separate(fields, within, rules_for(ITEMS), layout, best, state, 3 - done, 1)
+        calls += 1
+    _, whole, state = run(3, room=(5.0, 5.0, 5.0))
+    assert state.spent[ROUNDS] == 3
+    assert calls > 3 * 3
+    assert (best.position == whole.position).all()
+
+
+@pytest.mark.parametrize("rounds", [1, 7, 40])
+def test_overlaps_and_the_list_of_pairs_agree_with_the_layout(rounds):
+    """The overlaps are kept up move by move; computed anew from the layout they are the same."""
+    _, fields = box_shapes(SIZES, 0.5)
+    rng, within = np.random.default_rng(1), in_box(SIZES, (5.0, 5.0, 5.0))
+    layout, best = layout_of(ITEMS, rng.uniform(0, 3, (8, 3))), layout_of(ITEMS, np.zeros((8, 3)))
+    state, fresh = state_for(8, 8**3), state_for(8, 8**3)
+    separate(fields, within, rules_for(ITEMS), layout, best, state, rounds, 10**12)
+    separate(fields, within, rules_for(ITEMS), layout, best, fresh, 0, 10**12)
+    np.testing.assert_allclose(state.overlap, fresh.overlap, atol=1e-6)
+    assert (state.touching == (state.overlap > 0.0).sum(axis=1)).all()
+    listed = {tuple(pair) for pair in state.pairs[: state.progress[PAIRS]].tolist()}
+    below = np.tril((state.overlap > 0.0) | (state.weight > 1.0), -1)
+    assert listed == {tuple(pair) for pair in np.argwhere(below).tolist()}

@@ -30,6 +30,9 @@ _PACKERS = {
 SHARE = 0.75
 """Fraction of the time that is left for a first layout by `separation`, which prepares the shapes first."""
 
+SEPARATION = SeparationParams(work=3000.0, failures=20)
+"""Parameters of a first layout by `separation`."""
+
 RESERVE = 2e-3
 """Clearance (mm) that is added where the first layout is too tight: packers of boxes let them overlap by 1e-3 mm."""
 
@@ -77,7 +80,7 @@ def _separated(problem: PackingProblem, rng: np.random.Generator, stop: Stop, re
     items = tuple(replace(item, orientations=listed(item.orientations)) for item in problem.items)
     shaped = replace(problem, items=items, clearance=problem.clearance + reserve)
     part = stop.within(SHARE * stop.remaining()) if np.isfinite(stop.remaining()) else stop
-    packing = pack_separation(shaped, params=SeparationParams(), rng=rng, stop=part, progress=silent)
+    packing = pack_separation(shaped, params=SEPARATION, rng=rng, stop=part, progress=silent)
     if any(unplaced.reason == "out of time" for unplaced in packing.unplaced):
         return start_layout(problem, "extreme-points", rng, stop, reserve)
     return packing

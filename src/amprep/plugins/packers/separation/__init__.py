@@ -20,6 +20,12 @@ from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget, n
 TOP_TOLERANCE = 1e-6
 """Length (mm) by which an item may be higher than the build volume."""
 
+DEFAULT_WORK = 6000.0
+"""Work of all workers if neither time nor work is limited, in millions of field values."""
+
+UNLIMITED = 1e12
+"""Work, in millions of field values, that no search does."""
+
 
 def pack_separation(
     problem: PackingProblem,
@@ -31,13 +37,20 @@ def pack_separation(
 ) -> Packing:
     """Pack true shapes, as convex pieces, for any objective."""
     instance = prepare_shapes(problem, stop)
-    budget = WorkBudget(stop, params.work * 1e6)
+    budget = WorkBudget(stop, _work(params, stop) * 1e6)
     no_fit = prepare_no_fit(instance, params, stop) if instance.free.any() else None
     if no_fit is None:
         return _as_packing(instance, nothing_placed(), stop)
-    scene = Scene(instance, no_fit, params, rng, budget)
+    scene = Scene(instance, no_fit, params, rng, budget, progress)
     pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
-    return _as_packing(instance, _below_top(instance, pack(scene, progress)), stop)
+    return _as_packing(instance, _below_top(instance, pack(scene)), stop)
+
+
+def _work(params: SeparationParams, stop: Stop) -> float:
+    """Return the work in millions of field values; without limit if only the time is limited."""
+    if params.work is not None:
+        return params.work
+    return DEFAULT_WORK if stop.deadline is None else UNLIMITED
 
 
 def _below_top(instance: ShapeInstance, placed: Placed) -> Placed:

@@ -27,6 +27,11 @@ def _base_area(instance: ShapeInstance) -> float:
     return float(side.prod() * (np.pi / 4.0 if instance.circle else 1.0))
 
 
+def build_room(instance: ShapeInstance) -> float:
+    """Return the volume (mm3) of one build."""
+    return _base_area(instance) * (float(instance.problem.space.size[2]) + CONTACT_TOLERANCE)
+
+
 def counted(instance: ShapeInstance) -> Bools:
     """Return which items are in every complete packing: all but those that are too large."""
     return np.asarray(~instance.too_large)
@@ -36,8 +41,8 @@ def builds_bound(instance: ShapeInstance) -> int:
     """Return the least number of builds by volume."""
     if not counted(instance).any():
         return 0
-    room = _base_area(instance) * (float(instance.problem.space.size[2]) + CONTACT_TOLERANCE)
-    return max(1, int(np.ceil(_counted_volumes(instance)[counted(instance)].sum() / room - 1e-9)))
+    taken = _counted_volumes(instance)[counted(instance)].sum()
+    return max(1, int(np.ceil(taken / build_room(instance) - 1e-9)))
 
 
 def height_bound(instance: ShapeInstance) -> float:
@@ -65,7 +70,7 @@ def fill_bound(instance: ShapeInstance) -> float:
     values = np.array([item.value for item in instance.problem.items])
     inside, taken = instance.free, _counted_volumes(instance)
     fixed = float(values[~instance.free & ~instance.too_large].sum())
-    room = _base_area(instance) * (float(instance.problem.space.size[2]) + CONTACT_TOLERANCE)
+    room = build_room(instance)
     order = np.flatnonzero(inside)
     order = order[np.argsort(-values[order] / np.maximum(taken[order], 1e-12), kind="stable")]
     full = np.cumsum(taken[order])

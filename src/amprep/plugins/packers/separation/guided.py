@@ -1,10 +1,12 @@
 """Guided separation within fixed builds, and the disturbance of layouts from which it starts again."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.plugins.packers.separation.programs import make_exact
-from amprep.plugins.packers.separation.state import Placed, Scene, placed_from
+from amprep.plugins.packers.separation.state import Placed, Scene, only, placed_from
 
 PROGRESS = 0.98
 """The total overlap must fall below this fraction of the least one to count as progress."""
@@ -23,24 +25,46 @@ class Attempt:
         self.overlap, self.nearest, self.exact = overlap, nearest, exact
 
 
-def separated(scene: Scene, start: Placed, within: PositionRange, builds: int) -> Attempt:
-    """Move overlapping items until nothing overlaps, or until there is no progress for a while."""
+def separated(
+    scene: Scene,
+    start: Placed,
+    within: PositionRange,
+    builds: int,
+    useless: Callable[[], bool] = lambda: False,
+) -> Attempt:
+    """Move overlapping items until nothing overlaps, or until there is no progress for a while.
+
+    `useless` tells after each span whether the attempt has become pointless, because a better layout is known.
+    """
     layout = scene.layout(_clipped(scene, start, within))
     best = scene.layout(start)
     items = start.items
     state, rules = scene.work_arrays(len(items), within), scene.rules(items, builds)
     least, nearest, idle = np.inf, start, 0
     residue = RESIDUE * scene.instance.mean_size
-    while not scene.budget.over() and idle < scene.params.persistence:
+    while not scene.budget.over() and idle < scene.params.persistence and not useless():
         overlap = scene.run(layout, best, rules, within, state)
         idle = 0 if overlap < PROGRESS * least else idle + 1
         if overlap < least:
             least, nearest = overlap, placed_from(best, items)
         if overlap < residue and (overlap < SMALL or overlap <= least):
-            exact = make_exact(scene, placed_from(best, items), within)
+            exact = _exact(scene, placed_from(best, items), within)
             if exact is not None:
                 return Attempt(0.0, nearest, exact)
     return Attempt(least, nearest, None)
+
+
+def _exact(scene: Scene, placed: Placed, within: PositionRange) -> Placed | None:
+    """Return a layout near another without overlaps, found for each build on its own; None if none is found."""
+    position = placed.position.copy()
+    for build in range(placed.builds):
+        rows = np.flatnonzero(placed.build == build)
+        found = make_exact(scene, only(placed, rows), within) if len(rows) else None
+        if found is None and len(rows):
+            return None
+        if found is not None:
+            position[rows] = found.position
+    return placed._replace(position=position)
 
 
 def _clipped(scene: Scene, placed: Placed, within: PositionRange) -> Placed:

@@ -1,13 +1,15 @@
 """The height problem: the lowest layout in one build."""
 
+from functools import partial
+
 import numpy as np
 
-from amprep.model.control import Progress
 from amprep.plugins.packers.separation.bounds import fixed_top, height_bound
-from amprep.plugins.packers.separation.construct import by_size, construct
+from amprep.plugins.packers.separation.construct import best_constructed
 from amprep.plugins.packers.separation.guided import AttemptPool, disturbed, separated
 from amprep.plugins.packers.separation.programs import compacted, height_of
 from amprep.plugins.packers.separation.state import Placed, Scene
+from amprep.plugins.packers.separation.workers import SearchWorker, run_workers
 
 MET = 1e-6
 """Height (mm) above the bound at which the search ends."""
@@ -19,25 +21,39 @@ FASTER, MOST = 1.5, 0.1
 """Factor of the reduction after each success in a row, and the greatest one."""
 
 
-def pack_lowest(scene: Scene, progress: Progress) -> Placed:
-    """Return a layout of little height; it may be higher than the build volume.
+MISSING = 1e12
+"""Value (mm) of an item that is not placed."""
+
+
+def pack_lowest(scene: Scene) -> Placed:
+    """Return a layout of little height; it may be higher than the build volume."""
+    goal = max(height_bound(scene.instance), fixed_top(scene.instance)) + MET
+    return run_workers(scene, goal, _search)
+
+
+def _search(worker: SearchWorker) -> None:
+    """Publish lower and lower layouts.
 
     The height is reduced by a fraction, overlaps are allowed and removed; after a failure the layout is disturbed and
     the reduction is smaller.
     """
+    scene = worker.scene
     instance, params = scene.instance, scene.params
-    items = by_size(scene, np.flatnonzero(instance.free))
-    bound, base = height_bound(instance), fixed_top(instance)
-    best = construct(scene, items, instance.positions(_any_height(scene)), 1)
-    best = compacted(scene, best, instance.positions(_any_height(scene)))
-    if len(best.items) < len(items):
-        return best
-    height, work = height_of(scene, best), scene.budget.left
+    best = _first_layout(worker)
+    height = _value(scene, best)
+    worker.publish(height, best)
+    if height >= MISSING:
+        return
+    bound = height_bound(instance)
     start, failures, pool, reduction = best, 0, AttemptPool(), params.shrink
-    while height > max(bound, base) + MET and failures < params.failures and not scene.budget.over():
+    while not worker.over() and not scene.gives_up(failures):
+        news = worker.better_than(height)
+        if news is not None:
+            best, height = news.placed, news.value
+            start, failures, pool, reduction = best, 0, AttemptPool(), params.shrink
+        scene.progress(scene.budget.fraction, f"height {height:.6g} mm")
         within = instance.positions(max(bound, height * (1.0 - reduction)))
-        attempt = separated(scene, start, within, 1)
-        progress(1.0 - max(scene.budget.left, 0.0) / max(work, 1.0), f"height {height:.4g} mm")
+        attempt = separated(scene, start, within, 1, partial(worker.knows_better, height))
         if attempt.exact is None:
             failures += 1
             reduction = params.shrink * max(LEAST, SLOWER**failures)
@@ -46,9 +62,24 @@ def pack_lowest(scene: Scene, progress: Progress) -> Placed:
             continue
         best = compacted(scene, attempt.exact, within)
         height = height_of(scene, best)
+        worker.publish(height, best)
         reduction = min(reduction * FASTER, MOST) if failures == 0 else params.shrink
         start, failures, pool = best, 0, AttemptPool()
-    return best
+
+
+def _first_layout(worker: SearchWorker) -> Placed:
+    """Return a constructed layout, compacted."""
+    scene = worker.scene
+    items = np.flatnonzero(scene.instance.free)
+    within = scene.instance.positions(_any_height(scene))
+    best = best_constructed(scene, items, within, 1, partial(_value, scene), worker.number)
+    return compacted(scene, best, within)
+
+
+def _value(scene: Scene, placed: Placed) -> float:
+    """Return the height of a layout, or more if items are missing."""
+    missing = int(scene.instance.free.sum()) - len(placed.items)
+    return height_of(scene, placed) + MISSING * missing
 
 
 def _any_height(scene: Scene) -> float:

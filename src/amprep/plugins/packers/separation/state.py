@@ -1,6 +1,9 @@
 """The moving state of the separation search: layouts, work arrays, and the budget of work."""
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, field
+from functools import cached_property
+from threading import Event
 from typing import NamedTuple
 
 import numpy as np
@@ -8,8 +11,9 @@ import numpy as np
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.no_fit.records import READ, MoveRules, PositionRange, SeparationState, ShapeLayout
 from amprep.kernels.no_fit.separate import separate
-from amprep.model.control import Stop
+from amprep.model.control import Progress, Stop, silent
 from amprep.plugins.packers.params import SeparationParams
+from amprep.plugins.packers.separation.bounds import build_room
 from amprep.plugins.packers.separation.shapes import NoFit, ShapeInstance
 
 CANDIDATES = 4
@@ -19,7 +23,13 @@ FINEST = 0.02
 """Step at which a descent ends, in steps of the fields."""
 
 ROUNDS = 10
-"""Rounds between two calls of `WorkBudget.over`."""
+"""Rounds of a span, after which progress is judged."""
+
+DEFAULT_FAILURES = 20
+"""Number of failures at which a search ends if neither time nor work nor failures are limited."""
+
+CALL_WORK = 50_000_000
+"""Field values read between two calls of `WorkBudget.over`: a tenth of a second or less."""
 
 
 class Placed(NamedTuple):
@@ -52,14 +62,44 @@ class Placed(NamedTuple):
 
 @dataclass
 class WorkBudget:
-    """Work that may still be done, in field values read."""
+    """Work that may still be done, in field values read.
+
+    Attributes
+    ----------
+    stop
+        Time limit and cancellation.
+    limit, left
+        Work at the start, and what is left of it.
+    ended
+        Event that is set when the search ends for another reason.
+    begun
+        ``time.monotonic()`` at the start.
+    """
 
     stop: Stop
-    left: float
+    limit: float
+    left: float = field(init=False)
+    ended: Event = field(default_factory=Event)
+    begun: float = field(default_factory=time.monotonic)
+
+    def __post_init__(self) -> None:
+        self.left = self.limit
+
+    @property
+    def spent(self) -> float:
+        """Work that is done."""
+        return self.limit - self.left
+
+    @property
+    def fraction(self) -> float:
+        """Fraction of the work, or of the time where that is limited, that is used up."""
+        end = self.stop.remaining() + (time.monotonic() - self.begun)
+        timed = (time.monotonic() - self.begun) / max(end, 1e-9)
+        return float(min(max(self.spent / max(self.limit, 1.0), timed, 0.0), 1.0))
 
     def over(self) -> bool:
         """Tell whether the search has to end."""
-        return self.left <= 0.0 or self.stop()
+        return self.left <= 0.0 or self.ended.is_set() or self.stop()
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +111,29 @@ class Scene:
     params: SeparationParams
     rng: np.random.Generator
     budget: WorkBudget
+    progress: Progress = silent
+
+    @cached_property
+    def full_height(self) -> PositionRange:
+        """Positions in a build as high as the build volume."""
+        problem = self.instance.problem
+        return self.instance.positions(float(problem.space.size[2]) - problem.clearance)
+
+    @cached_property
+    def item_values(self) -> Floats:
+        """Value of each item of the problem."""
+        return np.array([item.value for item in self.instance.problem.items])
+
+    def free_volume(self, placed: Placed) -> float:
+        """Return the volume (mm3) of one build that the items of a layout leave free."""
+        return build_room(self.instance) - float(self.instance.volumes[placed.items].sum())
+
+    def gives_up(self, failures: int) -> bool:
+        """Tell whether the search ends after some failures."""
+        most = self.params.failures
+        if most is None and self.params.work is None and self.budget.stop.deadline is None:
+            most = DEFAULT_FAILURES
+        return most is not None and failures >= most
 
     def layout(self, placed: Placed) -> ShapeLayout:
         """Return items and obstacles as the kernels read them; a copy."""
@@ -97,17 +160,22 @@ class Scene:
         cells = scan_cells(within, self.no_fit.fields.step)
         seed = self.rng.integers(1, 2**63, 1).astype(np.uint64)
         return SeparationState(
-            np.zeros((items, n)),
-            np.ones((items, n)),
-            np.zeros(items),
-            np.ones(items),
-            seed,
-            np.zeros(4, np.int64),
-            np.empty(cells, np.float32),
-            np.empty(n, np.int64),
-            np.empty(items, np.int64),
-            np.empty(CANDIDATES, np.int64),
-            np.empty(CANDIDATES),
+            overlap=np.zeros((items, n)),
+            weight=np.ones((items, n)),
+            outside=np.zeros(items),
+            outside_weight=np.ones(items),
+            touching=np.zeros(items, np.int64),
+            pairs=np.empty((items * n, 2), np.int32),
+            listed=np.zeros((items, n), bool),
+            progress=np.array([0, -1]),
+            least=np.full(1, np.inf),
+            random=seed,
+            spent=np.zeros(4, np.int64),
+            sums=np.empty(cells, np.float32),
+            near=np.empty(n, np.int64),
+            order=np.empty(items, np.int64),
+            cell=np.empty(CANDIDATES, np.int64),
+            value=np.empty(CANDIDATES),
         )
 
     def run(
@@ -118,11 +186,14 @@ class Scene:
         within: PositionRange,
         state: SeparationState,
     ) -> float:
-        """Run some rounds of the separation and charge their work; return the total overlap of the best layout."""
-        before = int(state.spent[READ])
-        least = separate(self.no_fit.fields, within, rules, layout, best, state, ROUNDS)
-        self.budget.left -= int(state.spent[READ]) - before + 1000
-        return float(least)
+        """Run a span of the separation and charge its work; return the total overlap of its best layout."""
+        state.least[0], rounds = np.inf, ROUNDS
+        while rounds > 0 and not self.budget.over():
+            before = int(state.spent[READ])
+            done = separate(self.no_fit.fields, within, rules, layout, best, state, rounds, CALL_WORK)
+            self.budget.left -= int(state.spent[READ]) - before + 1000
+            rounds = 0 if state.least[0] <= rules.enough else rounds - int(done)
+        return float(state.least[0])
 
 
 def scan_cells(within: PositionRange, step: float) -> int:
