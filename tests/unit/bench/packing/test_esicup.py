@@ -32,7 +32,7 @@ def test_every_seed_gives_a_layout_that_is_valid_on_the_meshes(instance_file):
     assert instance.record is None
     results = run_esicup(instance, "separation", seconds=0.5, seeds=[1, 2], progress=lambda _: None)
     assert [result.validated for result in results] == [True, True]
-    assert 4.0 <= summary(results)["least_height_mm"] <= 6.0
+    assert 4.0 <= summary(results)["least_height_mm"] <= 6.0 + 1e-3  # one above the other, compacted
     assert results[0].density == pytest.approx((8 + 8 + 4) / (8 * results[0].height_mm), rel=1e-3)
 
 
