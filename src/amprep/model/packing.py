@@ -13,6 +13,7 @@ from amprep.model.part import Orientations
 
 Objective = Literal["fill", "builds", "height"]
 Status = Literal["optimal", "feasible", "infeasible"]
+Interlocking = Literal["allow", "forbid"]
 BoundFor = Literal["volumes", "shapes"]
 
 LARGEST_VALUE = 10**15
@@ -87,6 +88,9 @@ class PackingProblem:
         Height of the lowest parts above the plate, mm.
     stacking
         Whether parts may be above one another; if not, all of them are at `lift`.
+    interlocking
+        Whether parts may be locked into each other. A packer may ignore it: `amprep.pipeline.packing` puts locked parts
+        elsewhere.
     """
 
     items: tuple[Item, ...]
@@ -96,6 +100,7 @@ class PackingProblem:
     clearance: float = 0.0
     lift: float = 0.0
     stacking: bool = True
+    interlocking: Interlocking = "allow"
 
     @property
     def bound_for(self) -> BoundFor:

@@ -253,6 +253,8 @@ class RunRecord(Summarised):
 
     @property
     def faults(self) -> int:
-        """Number of unplaced copies, unsupported regions and broken promises."""
+        """Number of unplaced copies, unsupported regions, broken promises, and forbidden groups of locked parts."""
         listed = sum(len(entry.unsupported) + len(entry.verification or ()) for entry in self.builds)
+        if self.settings.get("packing", {}).get("interlocking") == "forbid":
+            listed += sum(len(entry.removal_order.locked) for entry in self.builds)
         return listed + (0 if self.objective == "fill" else len(self.unplaced))

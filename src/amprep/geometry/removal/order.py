@@ -74,7 +74,9 @@ class RemovalOrder:
     unknown: tuple[int, ...] = ()
 
 
-def find_removal_order(blocking: Blocking, stop: Callable[[], bool] = lambda: False) -> RemovalOrder:
+def find_removal_order(
+    blocking: Blocking, stop: Callable[[], bool] = lambda: False, paths: bool = True
+) -> RemovalOrder:
     """Return an order in which all bodies leave, singly where that is found.
 
     Paths of several motions are a limited search: a group reported as locked may have a path that was not found.
@@ -85,6 +87,8 @@ def find_removal_order(blocking: Blocking, stop: Callable[[], bool] = lambda: Fa
         The bodies and the directions in which they may leave.
     stop
         Ends the search early.
+    paths
+        Whether paths of several motions are searched for.
     """
     steps: list[RemovalStep] = []
     locked: list[tuple[int, ...]] = []
@@ -104,7 +108,7 @@ def find_removal_order(blocking: Blocking, stop: Callable[[], bool] = lambda: Fa
                 waiting.append(group[0])
                 rest = [body for body in rest if body not in group[0]]
                 continue
-            path = _first_path(blocking, rest, stop)
+            path = _first_path(blocking, rest, stop) if paths else None
             if path is None:
                 locked.append(tuple(rest))
                 break

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amprep.model.packing import Objective
+from amprep.model.packing import Interlocking, Objective
 from amprep.validation import require, require_bounds
 
 
@@ -29,6 +29,7 @@ class PackingSettings:
     clearance_mm: float = 2.0
     lift_mm: float = 0.0
     stacking: bool = False
+    interlocking: Interlocking = "allow"
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     volume_params: Mapping[str, Any] = field(default_factory=dict)

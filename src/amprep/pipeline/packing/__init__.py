@@ -24,6 +24,7 @@ from amprep.model import (
 )
 from amprep.model.summary import Summarised
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
+from amprep.pipeline.packing.interlocking import free_locked_items
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
@@ -64,11 +65,14 @@ class PackedParts(Summarised):
         The packing problem, and the packer's answer.
     builds
         Builds of placed parts; copies are in the order of the job.
+    moved
+        Items that were locked into others and were placed elsewhere, because interlocking is forbidden.
     """
 
     problem: PackingProblem
     packing: Packing
     builds: tuple[PackedBuild, ...]
+    moved: tuple[int, ...] = ()
 
     def __str__(self) -> str:
         """Return one line per build, and one for the unplaced items."""
@@ -109,11 +113,15 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
             stop=stop.within(job.packing.time_limit_s),
             progress=progress,
         )
+        moved: tuple[int, ...] = ()
+        if problem.interlocking == "forbid":
+            freed = free_locked_items(problem, packing, stop)
+            packing, moved = freed.packing, freed.moved
     builds = (
         PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
-    return PackedParts(problem, packing, tuple(builds))
+    return PackedParts(problem, packing, tuple(builds), moved)
 
 
 def packing_problem(
@@ -158,6 +166,7 @@ def packing_problem(
         clearance=settings.clearance_mm,
         lift=settings.lift_mm,
         stacking=settings.stacking,
+        interlocking=settings.interlocking,
     )
 
 

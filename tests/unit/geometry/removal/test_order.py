@@ -55,7 +55,7 @@ def test_a_hook_in_a_ring_is_locked():
 
 
 def test_links_of_a_chain_are_one_locked_group_beside_parts_that_leave():
-    links = [ring((0, 10 * k, 0), "xz"[k % 2]) for k in range(3)]
+    links = [ring((0, 14 * k, 0), "xz"[k % 2]) for k in range(3)]
     order = judged([*links, box((-20, -20, 20), (20, 40, 25)), box((30, 0, 0), (35, 5, 5))])
     assert [set(group) for group in order.locked] == [{0, 1, 2}]
     assert {step.bodies for step in order.steps} == {(3,), (4,)}
