@@ -12,6 +12,7 @@ TimeLimit = Annotated[
 ]
 PackerName = Annotated[str, typer.Option("--packer", metavar="NAME", help="Packer to measure.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random numbers.")]
+Seeds = Annotated[int, typer.Option("--seeds", metavar="N", min=1, help="Number of runs, with seeds 1 to N.")]
 First = Annotated[
     int, typer.Option("--first", metavar="N", min=1, help="Number of the first instance, from 1.")
 ]
