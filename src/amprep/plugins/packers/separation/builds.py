@@ -6,10 +6,13 @@ import numpy as np
 
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.plugins.packers.separation.bounds import builds_bound
-from amprep.plugins.packers.separation.construct import best_constructed
-from amprep.plugins.packers.separation.guided import AttemptPool, disturbed, separated
-from amprep.plugins.packers.separation.state import Placed, Scene
+from amprep.plugins.packers.separation.construct import best_constructed, by_size, construct, random_order
+from amprep.plugins.packers.separation.guided import AttemptPool, disturbed, put_at_random, separated
+from amprep.plugins.packers.separation.state import Placed, Scene, joined
 from amprep.plugins.packers.separation.workers import SearchWorker, run_workers
+
+AFRESH = 0.4
+"""Probability that a search begins anew after a failure."""
 
 MISSING = 1e9
 """Value, in builds, of an item that is not placed."""
@@ -23,8 +26,8 @@ def pack_builds(scene: Scene) -> Placed:
 def _search(worker: SearchWorker) -> None:
     """Publish layouts in fewer and fewer builds: constructed, then with one build less again and again.
 
-    The items of a build with little in it go into the others, overlapping, and all are separated. After a failure the
-    layout is disturbed, or another build is dissolved.
+    The layout with one build less is constructed, evenly filled, and items without room are put in, overlapping; or the
+    items of a build with little in it go into the others. Then all are separated.
     """
     scene = worker.scene
     within = scene.full_height
@@ -38,8 +41,7 @@ def _search(worker: SearchWorker) -> None:
         if news is not None:
             best, failures, pool = news.placed, 0, AttemptPool()
         scene.progress(scene.budget.fraction, f"{best.builds} builds")
-        dissolved = _without_build(scene, best, failures)
-        start = dissolved if failures == 0 else disturbed(scene, pool.choose(scene, dissolved))
+        start = _start(worker, best, failures, pool)
         attempt = separated(scene, start, within, best.builds - 1, partial(worker.knows_better, best.builds))
         if attempt.exact is None:
             failures += 1
@@ -47,6 +49,25 @@ def _search(worker: SearchWorker) -> None:
             continue
         best, failures, pool = attempt.exact, 0, AttemptPool()
         worker.publish(_value(scene, best), best)
+
+
+def _start(worker: SearchWorker, best: Placed, failures: int, pool: AttemptPool) -> Placed:
+    """Return a layout with one build less, with overlaps; after failures mostly a failed one, disturbed."""
+    scene = worker.scene
+    if failures == 0 or scene.rng.random() < AFRESH:
+        if (failures + worker.number) % 2 == 0:
+            return _evenly_filled(scene, best.builds - 1, failures)
+        return _without_build(scene, best, failures)
+    return disturbed(scene, pool.choose(scene, best=None))
+
+
+def _evenly_filled(scene: Scene, builds: int, failures: int) -> Placed:
+    """Return a constructed layout in some builds, into which items without room are put at random."""
+    within, items = scene.full_height, np.flatnonzero(scene.instance.free)
+    order = random_order(scene, items) if failures else by_size(scene, items)
+    placed = construct(scene, order, within, builds, even=True)
+    left = np.setdiff1d(items, placed.items)
+    return joined(placed, put_at_random(scene, left, builds, within)) if len(left) else placed
 
 
 def _first_layout(worker: SearchWorker, within: PositionRange) -> Placed:

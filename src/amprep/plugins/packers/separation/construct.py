@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.no_fit.records import PositionRange, ShapeLayout
 from amprep.kernels.no_fit.scan import lowest_free
-from amprep.plugins.packers.separation.state import Placed, Scene, nothing_placed, only, placed_from
+from amprep.plugins.packers.separation.state import Placed, Scene, only, placed_from
 
 UNPLACED = -2
 """Build of an item that is in none."""
@@ -38,31 +38,29 @@ class LowestPositionPass:
     room for an item has none for an identical one.
     """
 
-    def __init__(self, scene: Scene, items: Int64s, within: PositionRange, start: Placed) -> None:
-        self.scene, self.within = scene, within
+    def __init__(self, scene: Scene, items: Int64s, within: PositionRange, *, even: bool) -> None:
+        self.scene, self.within, self.even = scene, within, even
         self.spacing = 2.0 * scene.no_fit.fields.step
-        n, m = len(start.items) + len(items), len(start.items)
-        self.placed = Placed(
-            np.concatenate((start.items, items)),
-            np.concatenate((start.shape, np.zeros(n - m, np.int64))),
-            np.concatenate((start.build, np.full(n - m, UNPLACED))),
-            np.concatenate((start.position, np.zeros((n - m, 3)))),
-        )
+        n = len(items)
+        self.placed = Placed(items, np.zeros(n, np.int64), np.full(n, UNPLACED), np.zeros((n, 3)))
         self.layout: ShapeLayout = scene.layout(self.placed)
         self.weight = np.broadcast_to(1.0, (n, len(self.layout.shape)))
         self.top: dict[int, float] = {}
+        self.filled: dict[int, float] = {}
         self.scanned: dict[tuple[int, int], ScannedBuild] = {}
         self.full: set[tuple[int, int]] = set()
-        for build, shape, position in zip(start.build, start.shape, start.position, strict=True):
-            self._raise_top(int(build), int(shape), position)
 
     def place(self, k: int, builds: int) -> bool:
-        """Place row k in the first of some builds that has a free position; return whether one has."""
+        """Place row k in the first of some builds that has a free position; return whether one has.
+
+        With `even`, the least filled build comes first.
+        """
         item = int(self.placed.items[k])
         first = int(self.scene.instance.first[item])
         if first not in {shape for shape, _ in self.scanned}:
             self.scanned.clear()
-        for build in range(builds):
+        order = sorted(range(builds), key=lambda b: self.filled.get(b, 0.0)) if self.even else range(builds)
+        for build in order:
             if (first, build) in self.full:
                 continue
             self.layout.build[k] = build
@@ -70,8 +68,7 @@ class LowestPositionPass:
             if found is None and build not in self.top and not self._has_fixed(build):
                 found = self._alone(item)
             if found is not None:
-                self.layout.shape[k], self.layout.position[k] = found
-                self._raise_top(build, *found)
+                self._put(k, build, *found)
                 return True
             self.full.add((first, build))
         self.layout.build[k] = UNPLACED
@@ -125,13 +122,17 @@ class LowestPositionPass:
         shape = min((s for s in shapes if instance.shapes[s].fits), key=lambda s: float(instance.size[s, 2]))
         return shape, instance.shapes[shape].feasible_position
 
-    def _raise_top(self, build: int, shape: int, position: Floats) -> None:
-        top = float(position[2] + self.scene.instance.size[shape, 2])
+    def _put(self, k: int, build: int, shape: int, position: Floats) -> None:
+        instance = self.scene.instance
+        self.layout.build[k], self.layout.shape[k], self.layout.position[k] = build, shape, position
+        top = float(position[2] + instance.size[shape, 2])
         self.top[build] = max(self.top.get(build, 0.0), top)
+        volume = float(instance.volumes[self.placed.items[k]])
+        self.filled[build] = self.filled.get(build, 0.0) + volume
 
 
 def construct(
-    scene: Scene, items: Int64s, within: PositionRange, most_builds: int, start: Placed | None = None
+    scene: Scene, items: Int64s, within: PositionRange, most_builds: int, *, even: bool = False
 ) -> Placed:
     """Place items one after another at their lowest free positions; return those that are placed.
 
@@ -141,16 +142,15 @@ def construct(
         Items in the order in which they are placed.
     most_builds
         Number of builds after which items without a free position are left out.
-    start
-        Items that are placed before.
+    even
+        Whether items go to the least filled of all of these builds first, instead of to the first one.
     """
-    begun = nothing_placed() if start is None else start
-    work = LowestPositionPass(scene, items, within, begun)
-    builds = max(begun.builds, 1)
-    for k in range(len(begun.items), len(work.placed.items)):
+    work = LowestPositionPass(scene, items, within, even=even)
+    builds = most_builds if even else 1
+    for k in range(len(items)):
         if scene.budget.over():
             break
-        scene.progress(scene.budget.fraction, f"{k} of {len(work.placed.items)} parts placed")
+        scene.progress(scene.budget.fraction, f"{k} of {len(items)} parts placed")
         if work.place(k, min(builds + 1, most_builds)):
             builds = max(builds, int(work.layout.build[k]) + 1)
     placed = placed_from(work.layout, work.placed.items)
@@ -189,33 +189,43 @@ def best_constructed(
 
 
 def _orders(scene: Scene, items: Int64s, worker: int, density: Floats | None) -> Iterator[Int64s]:
-    """Yield orders of the items by decreasing size, equal ones together, then such with sizes changed at random."""
-    instance = scene.instance
-    first = instance.first[items]
-    size = instance.size[first]
-    keys = [
+    """Yield orders of the items by decreasing size, then such with sizes changed at random."""
+    keys = _sizes(scene, items)
+    if density is not None:
+        keys = [density, density * keys[0], *(density * np.sqrt(key) for key in keys)]
+    for k in range(len(keys)):
+        yield _by_key(scene, items, keys[(k + worker) % len(keys)])
+    for k in range(MOST_ORDERS):
+        yield random_order(scene, items, keys[k % len(keys)])
+
+
+def _sizes(scene: Scene, items: Int64s) -> list[Floats]:
+    """Return measures of size by which items are ordered."""
+    size = scene.instance.size[scene.instance.first[items]]
+    return [
         size.prod(axis=1),
         size[:, 2] * size[:, :2].max(axis=1),
-        instance.volumes[items],
+        scene.instance.volumes[items],
         size[:, 2],
         size[:, :2].prod(axis=1),
         size.max(axis=1),
     ]
-    if density is not None:
-        keys = [density, density * keys[0], *(density * np.sqrt(key) for key in keys)]
-    for k in range(len(keys)):
-        yield _by_key(items, first, keys[(k + worker) % len(keys)])
-    for k in range(MOST_ORDERS):
-        changed = np.exp(scene.rng.normal(0.0, 0.3, len(instance.shapes)))[first]
-        yield _by_key(items, first, keys[k % len(keys)] * changed)
 
 
-def _by_key(items: Int64s, first: Int64s, key: Floats) -> Int64s:
+def random_order(scene: Scene, items: Int64s, key: Floats | None = None) -> Int64s:
+    """Return items by decreasing size (or another key), changed at random for each type."""
+    sizes = _sizes(scene, items)[0] if key is None else key
+    types = scene.instance.first[items]
+    return _by_key(
+        scene, items, sizes * np.exp(scene.rng.normal(0.0, 0.3, len(scene.instance.shapes)))[types]
+    )
+
+
+def _by_key(scene: Scene, items: Int64s, key: Floats) -> Int64s:
     """Return items in the order of a decreasing key, those of the same type together."""
-    return np.asarray(items[np.lexsort((items, first, -key))])
+    return np.asarray(items[np.lexsort((items, scene.instance.first[items], -key))])
 
 
 def by_size(scene: Scene, items: Int64s) -> Int64s:
     """Return items in the order of decreasing volume of their enclosing boxes, equal ones together."""
-    first = scene.instance.first[items]
-    return _by_key(items, first, scene.instance.size[first].prod(axis=1))
+    return _by_key(scene, items, _sizes(scene, items)[0])

@@ -8,7 +8,7 @@ from amprep.arrays import Floats, Int64s
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.plugins.packers.separation.bounds import fill_bound
 from amprep.plugins.packers.separation.construct import best_constructed
-from amprep.plugins.packers.separation.guided import separated
+from amprep.plugins.packers.separation.guided import put_at_random, separated
 from amprep.plugins.packers.separation.state import Placed, Scene, joined, only
 from amprep.plugins.packers.separation.workers import SearchWorker, run_workers
 
@@ -101,9 +101,6 @@ def _added(scene: Scene, left: Int64s, lost: float, room: float) -> Int64s:
 
 def _put(scene: Scene, items: Int64s, places: Floats, within: PositionRange) -> Placed:
     """Return items at given places, as far as these suffice, and at random ones, each in one of its shapes."""
-    instance, rng = scene.instance, scene.rng
-    shape = np.array([int(rng.integers(instance.first[item], instance.end[item])) for item in items])
-    lo, hi = within.lo[shape], np.maximum(within.hi, within.lo)[shape]
-    position = lo + rng.random((len(items), 3)) * (hi - lo)
-    position[: len(places)] = places[: len(items)]
-    return Placed(items, shape, np.zeros(len(items), np.int64), position)
+    put = put_at_random(scene, items, 1, within)
+    put.position[: len(places)] = places[: len(items)]
+    return put

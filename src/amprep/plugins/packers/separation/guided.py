@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from amprep.arrays import Int64s
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.plugins.packers.separation.programs import make_exact
 from amprep.plugins.packers.separation.state import Placed, Scene, only, placed_from
@@ -95,6 +96,17 @@ def disturbed(scene: Scene, placed: Placed) -> Placed:
     return changed
 
 
+def put_at_random(scene: Scene, items: Int64s, builds: int, within: PositionRange) -> Placed:
+    """Return items at random positions in random builds, each in one of its shapes."""
+    instance, rng = scene.instance, scene.rng
+    shape = np.array(
+        [int(rng.integers(instance.first[item], instance.end[item])) for item in items], np.int64
+    )
+    lo, hi = within.lo[shape], np.maximum(within.hi, within.lo)[shape]
+    position = lo + rng.random((len(items), 3)) * (hi - lo)
+    return Placed(items, shape, rng.integers(0, builds, len(items)), position)
+
+
 class AttemptPool:
     """The attempts with the least overlap, from which the search starts again."""
 
@@ -109,9 +121,12 @@ class AttemptPool:
         self.attempts.sort(key=lambda each: each.overlap)
         del self.attempts[self.SIZE :]
 
-    def choose(self, scene: Scene, best: Placed) -> Placed:
-        """Return the best layout so far or, as often, one of the attempts, those of little overlap more often."""
-        if scene.rng.random() < 0.5 or not self.attempts:
+    def choose(self, scene: Scene, best: Placed | None) -> Placed:
+        """Return the best layout so far or, as often, one of the attempts, those of little overlap more often.
+
+        Without a best layout it is always one of the attempts.
+        """
+        if best is not None and (scene.rng.random() < 0.5 or not self.attempts):
             return best
         number = min(int(scene.rng.exponential(1.5)), len(self.attempts) - 1)
         return self.attempts[number].nearest
