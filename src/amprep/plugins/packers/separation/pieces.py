@@ -1,26 +1,63 @@
 """Convex pieces of bounding volumes."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.bounding.convex.decompose import PieceGoal, decompose_by_cuts
 from amprep.geometry.bounding.convex.prepared import extreme_points
-from amprep.geometry.meshes.manifold import as_manifold
-from amprep.geometry.no_fit.partition import MOST_FACES, exact_pieces
-from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
+from amprep.geometry.bounding.grid_cuts.decompose import SETS, CutSolid, cut_solid
+from amprep.geometry.bounding.grid_cuts.distribute import distribute_pieces
+from amprep.geometry.meshes.topology import edges_match
+from amprep.geometry.no_fit.partition import MOST_FACES, exact_pieces, hull_volume
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.control import Stop
-from amprep.model.mesh import Mesh
+
+# Strategy. Boxes and convex pieces are taken as they are, and solids of few faces are decomposed exactly. All other
+# solids get their hulls first. Then they are cut, the one with the greatest excess first: the volume of its hull
+# outside the solid, times its copies. Each has now a decomposition for any number of pieces, and the number that all
+# may have together is spent where a piece saves most volume. After a stop the solids that are not done keep hulls.
 
 MOST_EXACT = 20
 """Number of exact pieces up to which a solid is packed exactly; work grows with the square of the number."""
 
-MOST_CURVED, CURVED_EXCESS = 12, 0.03
-"""Largest number of pieces of a solid with many faces, and the excess up to which fewer are preferred."""
+MOST_CURVED = 12
+"""Largest number of pieces of a solid with many faces."""
 
 MOST_POLYHEDRA = 60_000
 """Number of pairs of pieces that the shapes of a problem may have together; each takes some 2 kB and 0.1 ms."""
+
+LEAST_GAIN = 2e-3
+"""Volume that another piece must save, as a fraction of the volume of the solid."""
+
+TRIANGLE_WORK, CUT_WORK, PIECE_WORK = 1_500, 700_000, 2_000_000
+"""Work of a triangle, of a cut and of a piece of a solid, in field values read."""
+
+
+@dataclass(frozen=True, eq=False)
+class PieceSet:
+    """Convex pieces that contain a volume.
+
+    Attributes
+    ----------
+    pieces
+        For each piece its corners ``(k, 3)`` mm.
+    excess
+        Total volume of the pieces over that of the volume, less 1: what packing the pieces costs.
+    """
+
+    pieces: tuple[Floats, ...]
+    excess: float
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """The pieces of some volumes, and the work (field values read) that they took."""
+
+    sets: tuple[PieceSet, ...]
+    work: float
 
 
 def most_pieces(shapes: int) -> int:
@@ -34,21 +71,87 @@ def convex_pieces_of(volume: BoundingVolume, most: int, stop: Stop) -> list[Floa
     `most` is the number of pieces that a solid may have. A solid of few faces and pieces is decomposed exactly, another
     one into pieces that contain it.
     """
+    given = _given_or_exact(volume, most, stop)
+    found = given or decompose_volumes([volume], [1], min(most, MOST_CURVED), stop).sets[0]
+    return list(found.pieces)
+
+
+def decompose_volumes(
+    volumes: Sequence[BoundingVolume], copies: Sequence[int], total: int, stop: Stop
+) -> Decomposition:
+    """Decompose volumes into convex pieces that contain them; the ones whose pieces waste most are refined first.
+
+    Parameters
+    ----------
+    volumes
+        Bounding volumes.
+    copies
+        How often each is to be packed.
+    total
+        Number of pieces that all solids may have together; each has at least one.
+    stop
+        Asked between steps. After a stop each volume has at least its hull.
+    """
+    most = max(total // max(len(volumes), 1), 1)
+    sets = [_first_pieces(volume, most, stop) for volume in volumes]
+    meshes = {k: volume.mesh for k, volume in enumerate(volumes) if isinstance(volume, Solid)}
+    work = float(sum(TRIANGLE_WORK * len(mesh.triangles) for mesh in meshes.values()))
+    wasted = {k: sets[k].excess * mesh.signed_volume * copies[k] for k, mesh in meshes.items()}
+    worst = sorted((k for k in wasted if sets[k].excess > LEAST_GAIN), key=lambda k: (-wasted[k], k))
+    left = total - sum(len(sets[k].pieces) for k in range(len(sets)) if k not in worst)
+    cuts: dict[int, CutSolid] = {}
+    for k in worst[: max(left - 1, 0)]:
+        if stop():
+            break
+        cuts[k] = cut_solid(*meshes[k].arrays, stop, _sets_to_cut(left, len(worst)))
+        work += CUT_WORK * len(cuts[k].sets)
+    counts = distribute_pieces(
+        [cut.hulls for cut in cuts.values()],
+        [copies[k] for k in cuts],
+        left - (len(worst) - len(cuts)),
+        [LEAST_GAIN * cut.volume for cut in cuts.values()],
+    )
+    for k, count in zip(cuts, counts.tolist(), strict=True):
+        pieces = cuts[k].pieces(count, stop) if count > 1 else None
+        if pieces is not None:
+            sets[k] = _piece_set(pieces, meshes[k].signed_volume)
+            work += PIECE_WORK * count
+    return Decomposition(tuple(sets), work)
+
+
+def _sets_to_cut(total: int, solids: int) -> int:
+    """Return into how many sets of cells a solid is cut: many more than it gets pieces."""
+    return int(np.clip(6 * total // max(solids, 1), 24, SETS))
+
+
+def _first_pieces(volume: BoundingVolume, most: int, stop: Stop) -> PieceSet:
+    """Return the given or exact pieces of a volume, or its hull as the only piece."""
+    found = _given_or_exact(volume, most, stop)
+    if found is None and isinstance(volume, Solid):
+        return _hull(volume)
+    return found or PieceSet((), 0.0)
+
+
+def _given_or_exact(volume: BoundingVolume, most: int, stop: Stop) -> PieceSet | None:
+    """Return boxes, convex pieces, and the exact pieces of a solid of few faces, if they are not too many."""
     if isinstance(volume, Boxes):
         boxes = zip(volume.lo, volume.hi, strict=True)
-        return [np.array(list(product(*zip(lo, hi, strict=True)))) for lo, hi in boxes]
+        return PieceSet(tuple(np.array(list(product(*zip(lo, hi, strict=True)))) for lo, hi in boxes), 0.0)
     if isinstance(volume, ConvexPieces):
-        return [extreme_points(piece.vertices) for piece in volume.pieces]
-    return _pieces_of_mesh(volume.mesh, most, stop)
+        return PieceSet(tuple(extreme_points(piece.vertices) for piece in volume.pieces), 0.0)
+    if len(volume.mesh.triangles) > MOST_FACES:
+        return None
+    exact = exact_pieces(volume.mesh.vertices, volume.mesh.triangles, stop)
+    return PieceSet(tuple(exact), 0.0) if exact is not None and len(exact) <= min(most, MOST_EXACT) else None
 
 
-def _pieces_of_mesh(mesh: Mesh, most: int, stop: Stop) -> list[Floats]:
-    hull = extreme_points(mesh.vertices)
-    exact = exact_pieces(mesh.vertices, mesh.triangles, stop) if len(mesh.triangles) <= MOST_FACES else None
-    if exact is not None and len(exact) <= min(most, MOST_EXACT):
-        return exact
-    solid = as_manifold(mesh.vertices, mesh.triangles)
-    if most == 1 or solid.volume() <= 0.0:
-        return [hull]
-    goal = PieceGoal(min(most, MOST_CURVED), CURVED_EXCESS)
-    return [extreme_points(points) for points in decompose_by_cuts(solid, goal, stop)]
+def _hull(volume: Solid) -> PieceSet:
+    """Return the hull of a solid as its only piece; its excess is 0 if the solid cannot be cut."""
+    mesh = volume.mesh
+    if mesh.signed_volume <= 0.0 or not edges_match(mesh.triangles):
+        return PieceSet((extreme_points(mesh.vertices),), 0.0)
+    return _piece_set([extreme_points(mesh.vertices)], mesh.signed_volume)
+
+
+def _piece_set(pieces: list[Floats], volume: float) -> PieceSet:
+    return PieceSet(tuple(pieces), sum(map(hull_volume, pieces)) / volume - 1.0)

@@ -1,0 +1,1 @@
+"""Convex pieces of solids, cut along the planes of a rectilinear grid."""
