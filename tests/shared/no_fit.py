@@ -3,7 +3,7 @@
 import numpy as np
 
 from amprep.geometry.no_fit.fields import sample_fields
-from amprep.geometry.no_fit.pieces import no_fit_pieces
+from amprep.geometry.no_fit.pieces import shape_set
 from amprep.kernels.no_fit.records import MoveRules, PositionRange, SeparationState, ShapeLayout
 
 
@@ -12,9 +12,9 @@ def corners_of(size):
 
 
 def box_shapes(sizes, step, clearance=0.0):
-    """No-fit polyhedra and fields of boxes with their least corners at the origin."""
-    pieces = no_fit_pieces([[corners_of(size)] for size in sizes], [], [clearance], lambda: False)
-    return pieces, sample_fields(pieces, step, lambda: False)
+    """Boxes with their least corners at the origin, as shapes, and the fields of their no-fit solids."""
+    shapes = shape_set([[corners_of(size)] for size in sizes], [], [clearance])
+    return shapes, sample_fields(shapes, step, lambda: False)
 
 
 def in_box(sizes, room):

@@ -1,59 +1,88 @@
 """Sample the depth of no-fit solids as fields for the kernels."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import DTypeLike
 
-from amprep.arrays import Float32s, Floats, Int64s
+from amprep.arrays import Bools, Float32s, Floats, Int64s
+from amprep.geometry.no_fit.pieces import ShapeSet, no_fit_solid
 from amprep.kernels.no_fit.depth import sample_depth
-from amprep.kernels.no_fit.records import NoFitFields, NoFitPieces
+from amprep.kernels.no_fit.records import NoFitFields, NoFitSolid
 
 
-def sample_fields(pieces: NoFitPieces, step: float, stop: Callable[[], bool]) -> NoFitFields | None:
-    """Return the fields of all pairs; None after a stop.
+def sample_fields(shapes: ShapeSet, step: float, stop: Callable[[], bool]) -> NoFitFields | None:
+    """Return the fields of the exact no-fit solids of all pairs; None after a stop.
 
-    Grids contain the offset 0 if continued. The depth in a union of convex polyhedra is the greatest of theirs, or,
-    where it is greater, the distance to the next sample outside, less a step.
+    The depth in a union of convex polyhedra is the greatest of theirs, or, where it is greater, the distance to the
+    next sample outside, less a step.
     """
-    m = len(pieces.first)
-    first, cells = np.full((m, m), -1, np.int64), np.ones((m, m, 3), np.int64)
-    origin, values = np.zeros((m, m, 3)), []
-    length = 0
-
-    def add(a: int, b: int, at: Floats, samples: Float32s) -> None:
-        nonlocal length
-        first[a, b], origin[a, b], cells[a, b] = length, at, np.array(samples.shape) // 2
-        values.append(_phases(samples))
-        length += samples.size
-
-    for a, b in np.argwhere(pieces.end > pieces.first).tolist():
+    fields = unsampled_fields(shapes, step, np.float32, 1.0)
+    for a, b in stored_pairs(fields):
         if stop():
             return None
-        at, size = _grid(pieces, a, b, step)
-        samples = _sampled(pieces, a, b, at, size, step)
-        add(a, b, at, samples)
-        if a != b and pieces.end[b, b] > pieces.first[b, b]:
-            add(b, a, -(at + (size - 1) * step), samples[::-1, ::-1, ::-1])
-    joined = np.concatenate(values) if values else np.zeros(0, np.float32)
-    return NoFitFields(joined, first, origin, cells, step)
+        solid = no_fit_solid(shapes.shapes[b], shapes.shapes[a], float(shapes.clearance[b]))
+        values = _phases(_sampled(solid, fields.origin[a, b], 2 * fields.cells[a, b], step))
+        start = int(fields.first[a, b])
+        fields.values[start : start + values.size] = values
+    return fields
 
 
-def _grid(pieces: NoFitPieces, a: int, b: int, step: float) -> tuple[Floats, Int64s]:
-    """Return the first point and the even numbers of samples of a grid around the no-fit solid of a pair."""
-    box = pieces.box[pieces.first[a, b] : pieces.end[a, b]]
-    low = np.floor(box[:, :3].min(axis=0) / step) - 1.0
-    count = (np.ceil(box[:, 3:].max(axis=0) / step) + 2.0 - low).astype(np.int64)
-    return low * step, count + count % 2
+def unsampled_fields(shapes: ShapeSet, step: float, dtype: DTypeLike, scale: float) -> NoFitFields:
+    """Return fields of all pairs of moving shapes, and of them with obstacles, whose values are still to be written.
+
+    A grid is around the box of the no-fit solid, with a sample more on each side, and an even number along each axis.
+    It contains the offset 0 if continued.
+    """
+    low, count = grids(shapes, step)
+    n, m = len(shapes.shapes), shapes.moving
+    a, b = np.indices((n, n))
+    stored = _stored(shapes)
+    sizes = np.where(stored, count.prod(axis=2), 0)
+    first = np.where(stored, np.cumsum(sizes).reshape(n, n) - sizes, -1)
+    mirrored = (b > a) & (b < m)
+    first = np.where(mirrored, (first + sizes).T - 1, first)
+    origin = np.where(mirrored[:, :, None], -(low + count - 1).transpose(1, 0, 2), low) * step
+    cells = np.where(mirrored[:, :, None], count.transpose(1, 0, 2), count) // 2
+    stride = np.where(mirrored, -1, 1)
+    values = np.empty(int(sizes.sum()), dtype)
+    return NoFitFields(values, scale, first, stride, np.ascontiguousarray(origin), cells, step)
 
 
-def _sampled(pieces: NoFitPieces, a: int, b: int, at: Floats, size: Int64s, step: float) -> Float32s:
+def samples(shapes: ShapeSet, step: float) -> int:
+    """Return the number of samples of all fields with some step, mm."""
+    return int(grids(shapes, step)[1].prod(axis=2)[_stored(shapes)].sum())
+
+
+def _stored(shapes: ShapeSet) -> Bools:
+    """Return which pairs of shapes have samples, ``(n, n)``."""
+    a, b = np.indices((len(shapes.shapes), len(shapes.shapes)))
+    return np.asarray((a < shapes.moving) & ((b <= a) | (b >= shapes.moving)))
+
+
+def grids(shapes: ShapeSet, step: float) -> tuple[Floats, Int64s]:
+    """Return the first point, in steps, and the numbers of samples of the grid of each pair, ``(n, n, 3)``."""
+    lo, hi = shapes.boxes
+    gap = shapes.clearance[None, :, None]
+    low = np.floor((lo[None] - hi[:, None] - gap) / step) - 1.0
+    count = (np.ceil((hi[None] - lo[:, None] + gap) / step) + 2.0 - low).astype(np.int64)
+    return low, count + count % 2
+
+
+def stored_pairs(fields: NoFitFields) -> Iterator[tuple[int, int]]:
+    """Yield the pairs whose samples are stored."""
+    yield from zip(
+        *(axis.tolist() for axis in np.nonzero((fields.first >= 0) & (fields.stride > 0))), strict=True
+    )
+
+
+def _sampled(solid: NoFitSolid, at: Floats, size: Int64s, step: float) -> Float32s:
     from scipy.ndimage import distance_transform_edt
 
     out = np.empty(size.tolist(), np.float32)
-    first, end = int(pieces.first[a, b]), int(pieces.end[a, b])
-    sample_depth(pieces, first, end, at, step, np.empty(int(size[2]), np.float32), out)
+    sample_depth(solid, at, step, np.empty(int(size[2]), np.float32), out)
     inside = out > 0.0
-    if end - first > 1 and inside.any():
+    if len(solid.box) > 1 and inside.any():
         distance = (distance_transform_edt(inside) - 1.0) * step
         out[inside] = np.maximum(out, distance)[inside]
     return out

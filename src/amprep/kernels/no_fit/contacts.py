@@ -1,17 +1,142 @@
-"""Contacts of a layout: for each pair of near convex pieces the plane that separates them most."""
+"""Contacts of a layout: for each pair of near convex pieces a plane that separates them."""
 
 import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.no_fit.records import EVERYWHERE, NoFitPieces, ShapeLayout
+from amprep.kernels.bounding.gjk import pair_distance
+from amprep.kernels.helper import helper
+from amprep.kernels.no_fit.records import EVERYWHERE, ContactShapes, ShapeLayout
+
+# Strategy. A plane separates two convex pieces if they are on different sides of it; the gap is their distance along
+# its normal, less the clearance, and negative where they overlap or are too near. The normals that matter are those of
+# faces of one of the pieces, and normals of an edge of each (the faces of the Minkowski sum); the plane of greatest gap
+# is taken. It lets the pieces slide along a face. Where all of these gaps are negative, the normal from nearest point
+# to nearest point (GJK) is tried as well, whose gap is the exact distance less the clearance. So two pieces that are
+# not nearer than the clearance always have a plane with a gap of at least 0. Boxes of shapes and of pieces that are
+# too far apart are skipped first, then pairs for which any plane shows a gap beyond the reach.
+
+WORK = (8, 5)
+"""Shape of the work array of `find_contacts`: a plane with its gap, a pose, and the simplex of GJK."""
+
+
+@helper
+def _boxes_apart(shapes, one, other, x, y, z, limit):
+    """Tell whether the boxes of pieces, the first one moved by (x, y, z), are farther apart than a limit."""
+    centre, half = shapes.corners.centre, shapes.corners.half
+    return (
+        abs(centre[one, 0] + x - centre[other, 0]) - half[one, 0] - half[other, 0] > limit
+        or abs(centre[one, 1] + y - centre[other, 1]) - half[one, 1] - half[other, 1] > limit
+        or abs(centre[one, 2] + z - centre[other, 2]) - half[one, 2] - half[other, 2] > limit
+    )
+
+
+@helper
+def _least(shapes, piece, u, v, w):
+    """Return the least extent of a piece along a direction."""
+    corners, least = shapes.corners.vertices, np.inf
+    for k in range(shapes.corners.first[piece], shapes.corners.first[piece + 1]):
+        along = u * corners[k, 0] + v * corners[k, 1] + w * corners[k, 2]
+        least = along if along < least else least
+    return least
+
+
+@helper
+def _try(shapes, one, other, u, v, w, x, y, z, clearance, best):
+    """Write a plane to `best` if its gap is the greatest so far: normal, offset, gap."""
+    offset = clearance - _least(shapes, other, -u, -v, -w) - _least(shapes, one, u, v, w)
+    gap = u * x + v * y + w * z - offset
+    if gap > best[4]:
+        best[0], best[1], best[2], best[3], best[4] = u, v, w, offset, gap
+
+
+@helper
+def _try_axes(shapes, one, other, x, y, z, clearance, best):
+    centre, half, shift = shapes.corners.centre, shapes.corners.half, (x, y, z)
+    for axis in range(3):
+        between = centre[one, axis] + shift[axis] - centre[other, axis]
+        gap = abs(between) - half[one, axis] - half[other, axis] - clearance
+        if gap > best[4]:
+            sign = 1.0 if between > 0.0 else -1.0
+            best[0], best[1], best[2], best[4] = 0.0, 0.0, 0.0, gap
+            best[axis] = sign
+            best[3] = sign * shift[axis] - gap
+
+
+@helper
+def _try_faces(shapes, one, other, x, y, z, clearance, limit, best):
+    """Try the normals of both pieces; end at a gap beyond the limit."""
+    for k in range(shapes.first_normal[other], shapes.first_normal[other + 1]):
+        u, v, w = shapes.normals[k, 0], shapes.normals[k, 1], shapes.normals[k, 2]
+        offset = clearance + shapes.reach[k] - _least(shapes, one, u, v, w)
+        gap = u * x + v * y + w * z - offset
+        if gap > best[4]:
+            best[0], best[1], best[2], best[3], best[4] = u, v, w, offset, gap
+            if gap > limit:
+                return
+    for k in range(shapes.first_normal[one], shapes.first_normal[one + 1]):
+        u, v, w = shapes.normals[k, 0], shapes.normals[k, 1], shapes.normals[k, 2]
+        offset = clearance + shapes.reach[k] - _least(shapes, other, u, v, w)
+        gap = -u * x - v * y - w * z - offset
+        if gap > best[4]:
+            best[0], best[1], best[2], best[3], best[4] = -u, -v, -w, offset, gap
+            if gap > limit:
+                return
+
+
+@helper
+def _try_edges(shapes, one, other, x, y, z, clearance, limit, best):
+    """Try the normals of an edge of each piece; end at a gap beyond the limit."""
+    edges = shapes.edges
+    for i in range(shapes.first_edge[one], shapes.first_edge[one + 1]):
+        for j in range(shapes.first_edge[other], shapes.first_edge[other + 1]):
+            u = edges[i, 1] * edges[j, 2] - edges[i, 2] * edges[j, 1]
+            v = edges[i, 2] * edges[j, 0] - edges[i, 0] * edges[j, 2]
+            w = edges[i, 0] * edges[j, 1] - edges[i, 1] * edges[j, 0]
+            length = np.sqrt(u * u + v * v + w * w)
+            if length > 1e-6:
+                u, v, w = u / length, v / length, w / length
+                _try(shapes, one, other, u, v, w, x, y, z, clearance, best)
+                _try(shapes, one, other, -u, -v, -w, x, y, z, clearance, best)
+                if best[4] > limit:
+                    return
+
+
+@helper
+def _try_nearest(shapes, one, other, x, y, z, clearance, pose, simplex, best):
+    """Try the normal from the nearest point of one piece to that of the other."""
+    pose[0, 3], pose[1, 3], pose[2, 3] = -x, -y, -z
+    pieces = shapes.corners
+    distance, u, v, w = pair_distance(pieces, one, pieces, other, pose, 0.0, np.inf, simplex)
+    length = np.sqrt(u * u + v * v + w * w)
+    if distance > 0.0 and length > 0.0:
+        _try(shapes, one, other, u / length, v / length, w / length, x, y, z, clearance, best)
+
+
+@helper
+def _find_plane(shapes, one, other, x, y, z, clearance, reach, pose, simplex, best):
+    """Write a plane between two pieces, the first one moved by (x, y, z): normal, offset, gap."""
+    best[4] = -np.inf
+    _try_axes(shapes, one, other, x, y, z, clearance, best)
+    if best[4] <= reach:
+        _try_faces(shapes, one, other, x, y, z, clearance, reach, best)
+    if best[4] <= reach:
+        _try_edges(shapes, one, other, x, y, z, clearance, reach, best)
+    if best[4] < 0.0:
+        _try_nearest(shapes, one, other, x, y, z, clearance, pose, simplex, best)
 
 
 @njit(cache=True, nogil=True, _nrt=False)
 def find_contacts(
-    pieces: NoFitPieces, layout: ShapeLayout, items: int, reach: float, pairs: Int64s, planes: Floats
+    shapes: ContactShapes,
+    layout: ShapeLayout,
+    items: int,
+    reach: float,
+    pairs: Int64s,
+    planes: Floats,
+    work: Floats,
 ) -> tuple[int, float]:
-    """Write a plane for each pair of near pieces; return their number and the least separation (mm).
+    """Write a plane for each pair of near pieces; return their number and the least gap (mm).
 
     Items i and j are apart if ``normal @ (position i - position j) >= offset`` for every contact of the two. The
     arrays may be too short: then the number says how many rows are needed.
@@ -21,47 +146,45 @@ def find_contacts(
     items
         Number of items; obstacles follow.
     reach
-        Pieces that are farther apart than this (mm) are left out.
+        Pieces with a gap beyond this (mm) are left out.
     pairs, planes
         ``(k, 2)`` items i and j, and ``(k, 4)`` normal and offset; written.
+    work
+        Of the shape `WORK`, modified.
     """
+    best, pose, simplex = work[0], work[1:4], work[4:8]
+    for row in range(3):
+        for column in range(3):
+            pose[row, column] = 1.0 if row == column else 0.0
     count, worst = 0, np.inf
     for i in range(items):
+        a = layout.shape[i]
         for j in range(layout.shape.size):
             if (i <= j < items) or (layout.build[i] != layout.build[j] and layout.build[j] != EVERYWHERE):
                 continue
-            a, b, sign = layout.shape[i], layout.shape[j], 1.0
-            if pieces.first[a, b] == pieces.end[a, b]:
-                a, b, sign = b, a, -1.0
-            x = sign * (layout.position[i, 0] - layout.position[j, 0])
-            y = sign * (layout.position[i, 1] - layout.position[j, 1])
-            z = sign * (layout.position[i, 2] - layout.position[j, 2])
-            for k in range(pieces.first[a, b], pieces.end[a, b]):
-                box = pieces.box[k]
-                if (
-                    x < box[0] - reach
-                    or y < box[1] - reach
-                    or z < box[2] - reach
-                    or x > box[3] + reach
-                    or y > box[4] + reach
-                    or z > box[5] + reach
-                ):
-                    continue
-                apart, best = -np.inf, 0
-                for q in range(pieces.first_plane[k], pieces.first_plane[k + 1]):
-                    plane = pieces.planes[q]
-                    distance = plane[0] * x + plane[1] * y + plane[2] * z - plane[3]
-                    if distance > apart:
-                        apart, best = distance, q
-                        if apart > reach:
-                            break
-                if apart > reach:
-                    continue
-                worst = min(worst, apart)
-                if count < planes.shape[0]:
-                    pairs[count, 0], pairs[count, 1] = i, j
-                    for axis in range(3):
-                        planes[count, axis] = sign * pieces.planes[best, axis]
-                    planes[count, 3] = pieces.planes[best, 3]
-                count += 1
+            b = layout.shape[j]
+            x = layout.position[i, 0] - layout.position[j, 0]
+            y = layout.position[i, 1] - layout.position[j, 1]
+            z = layout.position[i, 2] - layout.position[j, 2]
+            clearance, box, other = shapes.clearance[b], shapes.box[a], shapes.box[b]
+            limit = reach + clearance
+            if (
+                max(box[0] + x - other[3], other[0] - box[3] - x) > limit
+                or max(box[1] + y - other[4], other[1] - box[4] - y) > limit
+                or max(box[2] + z - other[5], other[2] - box[5] - z) > limit
+            ):
+                continue
+            for p in range(shapes.first[a], shapes.first[a + 1]):
+                for q in range(shapes.first[b], shapes.first[b + 1]):
+                    if _boxes_apart(shapes, p, q, x, y, z, limit):
+                        continue
+                    _find_plane(shapes, p, q, x, y, z, clearance, reach, pose, simplex, best)
+                    if best[4] > reach:
+                        continue
+                    worst = min(worst, best[4])
+                    if count < planes.shape[0]:
+                        pairs[count, 0], pairs[count, 1] = i, j
+                        for axis in range(4):
+                            planes[count, axis] = best[axis]
+                    count += 1
     return count, worst

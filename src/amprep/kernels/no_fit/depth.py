@@ -5,22 +5,18 @@ from numba import njit
 
 from amprep.arrays import Float32s, Floats
 from amprep.kernels.helper import helper
-from amprep.kernels.no_fit.records import NoFitFields, NoFitPieces, PositionRange
+from amprep.kernels.no_fit.records import NoFitFields, NoFitSolid, PositionRange
 
 
 @njit(cache=True, nogil=True, _nrt=False, fastmath={"nnan", "nsz"})
-def sample_depth(
-    pieces: NoFitPieces, first: int, end: int, origin: Floats, step: float, line: Float32s, out: Float32s
-) -> None:
-    """Write the greatest depth in some convex polyhedra at the points of a grid.
+def sample_depth(solid: NoFitSolid, origin: Floats, step: float, line: Float32s, out: Float32s) -> None:
+    """Write the greatest depth in the convex polyhedra of a solid at the points of a grid.
 
     The depth in a polyhedron is the least distance to the planes of its faces. It is written up to two steps from the
     box of the polyhedron, and at least ``-2 * step`` everywhere.
 
     Parameters
     ----------
-    first, end
-        Range of the polyhedra.
     origin
         ``(3,)`` mm, the first grid point.
     line
@@ -30,30 +26,30 @@ def sample_depth(
     """
     out[:] = np.float32(-2.0 * step)
     nx, ny, nz = out.shape
-    for k in range(first, end):
-        x0 = max(0, int(np.floor((pieces.box[k, 0] - origin[0]) / step)) - 1)
-        y0 = max(0, int(np.floor((pieces.box[k, 1] - origin[1]) / step)) - 1)
-        z0 = max(0, int(np.floor((pieces.box[k, 2] - origin[2]) / step)) - 1)
-        x1 = min(nx, int(np.ceil((pieces.box[k, 3] - origin[0]) / step)) + 2)
-        y1 = min(ny, int(np.ceil((pieces.box[k, 4] - origin[1]) / step)) + 2)
-        z1 = min(nz, int(np.ceil((pieces.box[k, 5] - origin[2]) / step)) + 2)
+    for k in range(solid.box.shape[0]):
+        x0 = max(0, int(np.floor((solid.box[k, 0] - origin[0]) / step)) - 1)
+        y0 = max(0, int(np.floor((solid.box[k, 1] - origin[1]) / step)) - 1)
+        z0 = max(0, int(np.floor((solid.box[k, 2] - origin[2]) / step)) - 1)
+        x1 = min(nx, int(np.ceil((solid.box[k, 3] - origin[0]) / step)) + 2)
+        y1 = min(ny, int(np.ceil((solid.box[k, 4] - origin[1]) / step)) + 2)
+        z1 = min(nz, int(np.ceil((solid.box[k, 5] - origin[2]) / step)) + 2)
         for x in range(x0, x1):
             for y in range(y0, y1):
-                _depth_on_line(pieces, k, origin, step, x, y, z0, z1, line)
+                _depth_on_line(solid, k, origin, step, x, y, z0, z1, line)
                 row = out[x, y]
                 for z in range(z0, z1):
                     row[z] = line[z] if line[z] > row[z] else row[z]
 
 
 @helper
-def _depth_on_line(pieces, k, origin, step, x, y, z0, z1, line):
+def _depth_on_line(solid, k, origin, step, x, y, z0, z1, line):
     """Write the depth in polyhedron k at the grid points (x, y, z) with z0 <= z < z1."""
     px, py = origin[0] + x * step, origin[1] + y * step
     for z in range(z0, z1):
         line[z] = np.float32(np.inf)
-    for q in range(pieces.first_plane[k], pieces.first_plane[k + 1]):
-        a, b, c = pieces.planes[q, 0], pieces.planes[q, 1], pieces.planes[q, 2]
-        start = pieces.planes[q, 3] - a * px - b * py - c * origin[2]
+    for q in range(solid.first_plane[k], solid.first_plane[k + 1]):
+        a, b, c = solid.planes[q, 0], solid.planes[q, 1], solid.planes[q, 2]
+        start = solid.planes[q, 3] - a * px - b * py - c * origin[2]
         slope = -c * step
         for z in range(z0, z1):
             depth = np.float32(start + slope * z)
@@ -63,7 +59,7 @@ def _depth_on_line(pieces, k, origin, step, x, y, z0, z1, line):
 @helper
 def depth_at(fields: NoFitFields, a: int, b: int, x: float, y: float, z: float) -> float:
     """Return the depth (mm) at an offset of shape a from shape b, between samples; 0 outside or without a field."""
-    start = fields.first[a, b]
+    start, stride = fields.first[a, b], fields.stride[a, b]
     if start < 0:
         return 0.0
     nx, ny, nz = fields.cells[a, b, 0], fields.cells[a, b, 1], fields.cells[a, b, 2]
@@ -79,11 +75,12 @@ def depth_at(fields: NoFitFields, a: int, b: int, x: float, y: float, z: float) 
     depth = 0.0
     for dx in range(2):
         for dy in range(2):
-            at = start + (((i + dx) & 1) * 4 + ((j + dy) & 1) * 2) * phase
+            at = (((i + dx) & 1) * 4 + ((j + dy) & 1) * 2) * phase
             at += (((i + dx) >> 1) * ny + ((j + dy) >> 1)) * nz
+            one, other = start + stride * (at + lower), start + stride * (at + upper)
             share = (tx if dx else 1.0 - tx) * (ty if dy else 1.0 - ty)
-            depth += share * ((1.0 - tz) * fields.values[at + lower] + tz * fields.values[at + upper])
-    return max(depth, 0.0)
+            depth += share * ((1.0 - tz) * fields.values[one] + tz * fields.values[other])
+    return max(depth * fields.scale, 0.0)
 
 
 @helper

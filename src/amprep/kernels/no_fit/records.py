@@ -1,11 +1,12 @@
 """Records of the separation search: shapes, fields, walls, layouts and the search state."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from amprep.arrays import Bools, Float32s, Floats, Int64s
+from amprep.kernels.bounding.gjk import PieceArrays
 
 EVERYWHERE = -1
 """Build of an obstacle that is in every build."""
@@ -17,8 +18,8 @@ PAIRS, NEXT = range(2)
 """Columns of `SeparationState.progress`: pairs in the list, next item of the round (-1: overlaps are unknown)."""
 
 
-class NoFitPieces(NamedTuple):
-    """No-fit solids of pairs of shapes as unions of convex polyhedra.
+class NoFitSolid(NamedTuple):
+    """The no-fit solid of two shapes as a union of convex polyhedra.
 
     Attributes
     ----------
@@ -28,30 +29,62 @@ class NoFitPieces(NamedTuple):
         ``(p + 1,)`` index of the first plane of each polyhedron, and k.
     box
         ``(p, 6)`` mm, least and greatest corner of each polyhedron.
-    first, end
-        ``(m, m)`` range of the polyhedra of the offsets of shape a from shape b. Only one of (a, b) and (b, a) has
-        polyhedra; the other is its mirror image in the origin.
     """
 
     planes: Floats
     first_plane: Int64s
     box: Floats
+
+
+class ContactShapes(NamedTuple):
+    """Shapes as convex pieces, for the search of planes between them; mm from the position of the shape.
+
+    Attributes
+    ----------
+    corners
+        Corners of all pieces, and their boxes; the last box is not used.
+    first
+        ``(m + 1,)`` index of the first piece of each shape, and p.
+    box
+        ``(m, 6)`` least and greatest corner of each shape.
+    normals, first_normal
+        ``(k, 3)`` outward unit normals of all pieces, and ``(p + 1,)`` the index of the first one of each, and k.
+    reach
+        ``(k,)`` greatest extent of the piece along each of its normals.
+    edges, first_edge
+        ``(e, 3)`` unit vectors along edges of all pieces, and ``(p + 1,)`` the index of the first one of each, and e.
+    clearance
+        ``(m,)`` least distance of a moving shape from each shape.
+    """
+
+    corners: PieceArrays
     first: Int64s
-    end: Int64s
+    box: Floats
+    normals: Floats
+    first_normal: Int64s
+    reach: Floats
+    edges: Floats
+    first_edge: Int64s
+    clearance: Floats
 
 
 class NoFitFields(NamedTuple):
     """Depth of no-fit solids, sampled on grids of one step.
 
     A depth is positive inside and negative outside near the boundary. Samples are stored in eight phases, the
-    parities of their indices, so that every other sample along each axis is contiguous.
+    parities of their indices, so that every other sample along each axis is contiguous. The field of (b, a) is that of
+    (a, b) mirrored in the origin, which is the same sequence of samples backwards; so only one of both is stored.
 
     Attributes
     ----------
     values
-        All samples, mm.
+        All samples, in units of `scale`; float32, or int8 where there are many shapes.
+    scale
+        mm.
     first
         ``(m, m)`` index of the first sample of a pair; -1 for a pair without a field.
+    stride
+        ``(m, m)`` 1, or -1 for a pair that is read backwards.
     origin
         ``(m, m, 3)`` mm, offset of the first sample.
     cells
@@ -60,8 +93,10 @@ class NoFitFields(NamedTuple):
         Distance of samples, mm.
     """
 
-    values: Float32s
+    values: NDArray[Any]
+    scale: float
     first: Int64s
+    stride: Int64s
     origin: Floats
     cells: Int64s
     step: float

@@ -51,20 +51,23 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, si
         kx = int(np.floor((start[0] - position[0] - origin[0]) / step + 0.5))
         ky = int(np.floor((start[1] - position[1] - origin[1]) / step + 0.5))
         kz = int(np.floor((start[2] - position[2] - origin[2]) / step + 0.5))
-        base = fields.first[shape, b] + ((kx & 1) * 4 + (ky & 1) * 2 + (kz & 1)) * nx * ny * nz
+        base, stride = ((kx & 1) * 4 + (ky & 1) * 2 + (kz & 1)) * nx * ny * nz, fields.stride[shape, b]
         sx, sy, sz = kx >> 1, ky >> 1, kz >> 1
         x0, x1 = max(0, -sx), min(gx, nx - sx)
         y0, y1 = max(0, -sy), min(gy, ny - sy)
         z0, z1 = max(0, -sz), min(gz, nz - sz)
         if x0 >= x1 or y0 >= y1 or z0 >= z1:
             continue
-        length, factor = z1 - z0, np.float32(weight[item, other])
+        length, factor = z1 - z0, np.float32(weight[item, other] * fields.scale)
         read += (x1 - x0) * (y1 - y0) * length
         for x in range(x0, x1):
             for y in range(y0, y1):
                 to = (x * gy + y) * gz + z0
-                at = base + ((x + sx) * ny + y + sy) * nz + z0 + sz
-                _add_line(sums[to : to + length], fields.values[at : at + length], factor)
+                at = fields.first[shape, b] + stride * (base + ((x + sx) * ny + y + sy) * nz + z0 + sz)
+                if stride > 0:
+                    _add_line(sums[to : to + length], fields.values[at : at + length], factor)
+                else:
+                    _add_backwards(sums[to : to + length], fields.values[at - length + 1 : at + 1], factor)
     if within.radius > 0.0 and since == 0:
         _add_outside(within, shape, outside_weight, start, grid, 2.0 * step, sums)
     return read
@@ -73,7 +76,17 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, si
 @njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz"})
 def _add_line(sums, values, factor):
     for k in range(sums.size):
-        value = values[k]
+        value = np.float32(values[k])
+        sums[k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
+
+
+@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz"})
+def _add_backwards(sums, values, factor):
+    last = np.uint64(
+        sums.size - 1
+    )  # unsigned, so that no index counts from the end and the loop is vectorised
+    for k in range(sums.size):
+        value = np.float32(values[last - np.uint64(k)])
         sums[k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from amprep.geometry.no_fit.fields import sample_fields
-from amprep.geometry.no_fit.pieces import no_fit_pieces
+from amprep.geometry.no_fit.pieces import shape_set
 
 
 def box(lo, hi):
@@ -14,13 +14,13 @@ def box(lo, hi):
 
 
 def fields_of(shapes, step, clearance=0.0):
-    return sample_fields(no_fit_pieces(shapes, [], [clearance], lambda: False), step, lambda: False)
+    return sample_fields(shape_set(shapes, [], [clearance]), step, lambda: False)
 
 
 def samples_of(fields, a, b):
     """The samples of a pair in their natural order, with the offsets of the grid along each axis."""
     n = fields.cells[a, b]
-    flat = fields.values[fields.first[a, b] :][: 8 * n.prod()]
+    flat = fields.values[fields.first[a, b] + fields.stride[a, b] * np.arange(8 * n.prod())]
     natural = flat.reshape(2, 2, 2, *n).transpose(3, 0, 4, 1, 5, 2).reshape(*(2 * n))
     return natural, [fields.origin[a, b, k] + fields.step * np.arange(2 * n[k]) for k in range(3)]
 
@@ -33,10 +33,7 @@ def box_depth(points, lo, hi):
 
 @pytest.mark.parametrize("step", [0.5, 0.7])
 def test_the_depth_of_two_boxes_is_the_least_distance_to_a_side(step):
-    pieces = no_fit_pieces(
-        [[box((0, 0, 0), (2, 3, 4))], [box((0, 0, 0), (1, 1, 6))]], [], [0.0], lambda: False
-    )
-    fields = sample_fields(pieces, step, lambda: False)
+    fields = fields_of([[box((0, 0, 0), (2, 3, 4))], [box((0, 0, 0), (1, 1, 6))]], step)
     for a, b, lo, hi in ((1, 0, (-1, -1, -6), (2, 3, 4)), (0, 1, (-2, -3, -4), (1, 1, 6))):
         found, axes = samples_of(fields, a, b)
         exact = box_depth(np.meshgrid(*axes, indexing="ij"), lo, hi)
@@ -70,6 +67,4 @@ def test_the_sign_of_a_union_tells_whether_shapes_of_several_boxes_overlap():
 
 
 def test_a_stop_ends_the_sampling():
-    pieces = no_fit_pieces([[box((0, 0, 0), (1, 1, 1))]], [], [0.0], lambda: False)
-    assert pieces is not None
-    assert sample_fields(pieces, 0.5, lambda: True) is None
+    assert sample_fields(shape_set([[box((0, 0, 0), (1, 1, 1))]], [], [0.0]), 0.5, lambda: True) is None

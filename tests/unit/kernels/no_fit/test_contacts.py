@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from tests.shared.no_fit import box_shapes, layout_of
 
-from amprep.kernels.no_fit.contacts import find_contacts
+from amprep.geometry.no_fit.contacts import contact_shapes
+from amprep.kernels.no_fit.contacts import WORK, find_contacts
 
 
 def contacts(pieces, layout, reach, rows=10):
     pairs, planes = np.zeros((rows, 2), np.int64), np.zeros((rows, 4))
-    count, apart = find_contacts(pieces, layout, len(layout.shape), reach, pairs, planes)
+    shapes = contact_shapes(pieces)
+    count, apart = find_contacts(shapes, layout, len(layout.shape), reach, pairs, planes, np.empty(WORK))
     return count, apart, pairs[:count], planes[:count]
 
 

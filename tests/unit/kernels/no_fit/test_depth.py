@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from tests.shared.examples import examples
 from tests.shared.no_fit import box_shapes, in_box, layout_of, rules_for, state_for
 
+from amprep.geometry.no_fit.pieces import no_fit_solid
 from amprep.kernels.no_fit.depth import sample_depth
 from amprep.kernels.no_fit.separate import separate
 
@@ -32,5 +33,6 @@ def test_the_depth_of_two_boxes_is_exact_but_near_edges(offset):
 def test_samples_outside_all_polyhedra_have_the_least_depth():
     out = np.empty((4, 4, 4), np.float32)
     far = np.array([100.0, 100, 100])
-    sample_depth(PIECES, 0, 1, far, 0.25, np.empty(4, np.float32), out)
+    solid = no_fit_solid(PIECES.shapes[0], PIECES.shapes[1], 0.0)
+    sample_depth(solid, far, 0.25, np.empty(4, np.float32), out)
     assert (out == np.float32(-0.5)).all()

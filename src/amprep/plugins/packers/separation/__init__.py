@@ -14,7 +14,8 @@ from amprep.plugins.packers.separation.bounds import builds_bound, fill_bound, h
 from amprep.plugins.packers.separation.builds import pack_builds
 from amprep.plugins.packers.separation.fill import pack_most
 from amprep.plugins.packers.separation.height import pack_lowest
-from amprep.plugins.packers.separation.shapes import ShapeInstance, prepare_no_fit, prepare_shapes
+from amprep.plugins.packers.separation.no_fit import prepare_no_fit
+from amprep.plugins.packers.separation.shapes import ShapeInstance, prepare_shapes
 from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget, nothing_placed, only
 
 TOP_TOLERANCE = 1e-6

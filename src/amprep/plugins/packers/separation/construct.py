@@ -7,6 +7,7 @@ import numpy as np
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.no_fit.records import PositionRange, ShapeLayout
 from amprep.kernels.no_fit.scan import lowest_free
+from amprep.plugins.packers.separation.repair import repaired
 from amprep.plugins.packers.separation.state import Placed, Scene, only, placed_from
 
 UNPLACED = -2
@@ -154,7 +155,8 @@ def construct(
         if work.place(k, min(builds + 1, most_builds)):
             builds = max(builds, int(work.layout.build[k]) + 1)
     placed = placed_from(work.layout, work.placed.items)
-    return only(placed, np.flatnonzero(placed.build >= 0))
+    placed = only(placed, np.flatnonzero(placed.build >= 0))
+    return placed if scene.no_fit.exact else repaired(scene, placed, within, most_builds)
 
 
 def best_constructed(

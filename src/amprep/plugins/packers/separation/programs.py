@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.no_fit.contacts import find_contacts
+from amprep.kernels.no_fit.contacts import WORK, find_contacts
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.plugins.packers.separation.state import Placed, Scene
 
@@ -47,11 +47,11 @@ class Contacts(NamedTuple):
 
 def contacts_of(scene: Scene, placed: Placed, reach: float) -> Contacts:
     """Return the contacts of a layout within a reach, mm."""
-    layout, items = scene.layout(placed), len(placed.items)
+    layout, items, shapes = scene.layout(placed), len(placed.items), scene.no_fit.contacts
     rows = 40 * items + 1000
     while True:
         pairs, planes = np.empty((rows, 2), np.int64), np.empty((rows, 4))
-        count, apart = find_contacts(scene.no_fit.pieces, layout, items, reach, pairs, planes)
+        count, apart = find_contacts(shapes, layout, items, reach, pairs, planes, np.empty(WORK))
         if count <= rows:
             return Contacts(pairs[:count], planes[:count], apart)
         rows = count

@@ -1,4 +1,4 @@
-"""Prepare a packing problem for the separation search: shapes, their positions, no-fit solids and fields."""
+"""Prepare a packing problem for the separation search: the shapes of its items and their positions."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,24 +8,15 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.geometry.boxes.build_space import find_feasible_position
 from amprep.geometry.no_fit.circle import Circle, circle_sides, find_inside_circle, outline_of
-from amprep.geometry.no_fit.fields import sample_fields
-from amprep.geometry.no_fit.pieces import no_fit_pieces
-from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, NoFitPieces, PositionRange
+from amprep.kernels.no_fit.records import PositionRange
 from amprep.measures.bounding_volume import volume_of
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
-from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.pieces import convex_pieces_of, most_pieces
 
 MOST_SHAPES = 150
 """Number of shapes above which types with several orientations keep only some, those of least height."""
-
-MOST_OF_FIXED = 12
-"""Number of pieces of a fixed item."""
-
-BORDER = 6.0
-"""Samples along each axis by which a field may be longer than its no-fit solid."""
 
 SAME = 1e-6
 """Difference (mm) of points up to which two rotations of a volume are the same shape."""
@@ -66,28 +57,6 @@ class Shape:
     def fits(self) -> bool:
         """Whether a position in an empty build is known."""
         return bool(np.isfinite(self.feasible_position[0]))
-
-
-@dataclass(frozen=True, eq=False)
-class ShapeObstacle:
-    """A forbidden zone, or a fixed item of the first build.
-
-    Attributes
-    ----------
-    pieces
-        For each convex piece its points ``(k, 3)`` mm, relative to `position`.
-    position
-        ``(3,)`` mm, a grid point of the constructive pass.
-    build
-        0, or `EVERYWHERE`.
-    clearance
-        Least distance of items, mm.
-    """
-
-    pieces: tuple[Floats, ...]
-    position: Floats
-    build: int
-    clearance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,15 +129,6 @@ class ShapeInstance:
         return PositionRange(lo, hi, float(space.radius), np.array(space.axis), corners, first)
 
 
-@dataclass(frozen=True, eq=False)
-class NoFit:
-    """The no-fit solids of the shapes of an instance, as polyhedra and as fields, and the obstacles of its builds."""
-
-    pieces: NoFitPieces
-    fields: NoFitFields
-    obstacles: tuple[ShapeObstacle, ...]
-
-
 def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
     """Return the shapes of a problem; copies share theirs."""
     require_values(problem)
@@ -189,33 +149,6 @@ def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
     free[[placement.item for placement in problem.fixed]] = False
     volumes = np.array([row[2] for row in rows], np.float64)
     return ShapeInstance(problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes)
-
-
-def prepare_no_fit(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> NoFit | None:
-    """Compute no-fit solids and fields; None after a stop."""
-    step = _step(instance, params, stop)
-    obstacles = _obstacles(instance, step, stop)
-    clearances = [instance.problem.clearance, *(obstacle.clearance for obstacle in obstacles)]
-    shapes = [shape.pieces for shape in instance.shapes]
-    pieces = no_fit_pieces(shapes, [obstacle.pieces for obstacle in obstacles], clearances, stop)
-    if pieces is None:
-        return None
-    fields = sample_fields(pieces, step, stop)
-    return None if fields is None else NoFit(pieces, fields, obstacles)
-
-
-def _step(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> float:
-    """Return the step of the fields: a fraction of the mean size, or greater so that they need less memory."""
-    step, size = params.step * instance.mean_size, instance.size
-    resting = np.concatenate([size, *(_extent(obstacle) for obstacle in _obstacles(instance, step, stop))])
-    together = size[:, None] + resting[None] + 2.0 * instance.problem.clearance
-    while 4.0 * np.prod(together / step + BORDER, axis=2).sum() > params.memory * 1e6:
-        step *= 1.1
-    return step
-
-
-def _extent(obstacle: ShapeObstacle) -> Floats:
-    return np.asarray(np.ptp(np.concatenate(obstacle.pieces), axis=0))[None]
 
 
 def _shapes_of(problem: PackingProblem, item: Item, most: int, stop: Stop) -> list[Shape]:
@@ -277,27 +210,3 @@ def _feasible_position(problem: PackingProblem, pieces: list[Floats]) -> Floats:
         if inside is not None and points[:, 2].max() <= space.hi[2] - space.lo[2] + space.slack:
             found = np.array([*inside, space.lo[2]])
     return np.full(3, np.nan) if found is None else found
-
-
-def _obstacles(instance: ShapeInstance, step: float, stop: Stop) -> tuple[ShapeObstacle, ...]:
-    """Return the forbidden zones and the fixed items; positions are multiples of two steps from the least position."""
-    problem, found = instance.problem, []
-    for lo, hi in zip(problem.space.zone_lo, problem.space.zone_hi, strict=True):
-        if (hi > lo).all():
-            found.append(([_corners(lo, hi)], EVERYWHERE, 0.0))
-    for fixed in problem.fixed:
-        pieces = convex_pieces_of(problem.items[fixed.item].volume, MOST_OF_FIXED, stop)
-        moved = [piece @ fixed.rotation.T + fixed.translation for piece in pieces]
-        found.append((moved, 0, problem.clearance))
-    obstacles = []
-    for pieces, build, clearance in found:
-        least = np.concatenate(pieces).min(axis=0)
-        position = instance.low + 2.0 * step * np.floor((least - instance.low) / (2.0 * step))
-        obstacles.append(
-            ShapeObstacle(tuple(piece - position for piece in pieces), position, build, clearance)
-        )
-    return tuple(obstacles)
-
-
-def _corners(lo: Floats, hi: Floats) -> Floats:
-    return np.array([[x, y, z] for x in (lo[0], hi[0]) for y in (lo[1], hi[1]) for z in (lo[2], hi[2])])

@@ -14,7 +14,8 @@ from amprep.kernels.no_fit.separate import separate
 from amprep.model.control import Progress, Stop, silent
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.bounds import build_room
-from amprep.plugins.packers.separation.shapes import NoFit, ShapeInstance
+from amprep.plugins.packers.separation.no_fit import NoFit
+from amprep.plugins.packers.separation.shapes import ShapeInstance
 
 CANDIDATES = 4
 """Number of cells of a scan from which a descent starts."""

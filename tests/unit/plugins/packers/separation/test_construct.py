@@ -6,7 +6,8 @@ import pytest
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.construct import best_constructed, by_size, construct, random_order
-from amprep.plugins.packers.separation.shapes import prepare_no_fit, prepare_shapes
+from amprep.plugins.packers.separation.no_fit import prepare_no_fit
+from amprep.plugins.packers.separation.shapes import prepare_shapes
 from amprep.plugins.packers.separation.state import Scene, WorkBudget
 
 SIZES = [(4, 2, 2), (2, 3, 1), (1, 1, 1)]

@@ -5,8 +5,9 @@ import pytest
 
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop
 from amprep.plugins.packers.params import SeparationParams
+from amprep.plugins.packers.separation.no_fit import prepare_no_fit
 from amprep.plugins.packers.separation.programs import compacted, height_of, is_exact, make_exact
-from amprep.plugins.packers.separation.shapes import prepare_no_fit, prepare_shapes
+from amprep.plugins.packers.separation.shapes import prepare_shapes
 from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget
 
 

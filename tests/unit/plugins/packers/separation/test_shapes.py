@@ -6,7 +6,8 @@ import pytest
 from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation.shapes import MOST_SHAPES, prepare_no_fit, prepare_shapes
+from amprep.plugins.packers.separation.no_fit import prepare_no_fit
+from amprep.plugins.packers.separation.shapes import MOST_SHAPES, prepare_shapes
 
 ALL_TURNS = Orientations(matrices=axis_rotations())
 
