@@ -13,7 +13,6 @@ from amprep.measures.objective import objective_reached
 from amprep.measures.removal_order import measure_removal_order
 from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Build, Stop, Unsupported
-from amprep.model.counting import counted
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
@@ -98,19 +97,10 @@ def run_record(
         notes=(
             *(f"{part.name}: {note}" for part in loaded.parts for note in part.notes),
             *loaded.notes,
-            *_moved(loaded, packed),
+            *packed.notes,
         ),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )
-
-
-def _moved(loaded: LoadedParts, packed: PackedParts) -> list[str]:
-    """Return a note on the parts that were locked into others and were placed elsewhere."""
-    if not packed.moved:
-        return []
-    names = sorted({loaded.parts[packed.problem.items[item].part].name for item in packed.moved})
-    count = counted(len(packed.moved), "part")
-    return [f"{count} placed elsewhere, because interlocking is forbidden: {', '.join(names)}"]
 
 
 def _volumes(packed: PackedParts, number: int) -> tuple[ShownVolume, ...]:

@@ -43,16 +43,19 @@ class MovableBody:
         ``(k, 4, 4)``, rigid motion of each shape.
     low, high
         ``(k, 3)`` mm, corners of the bounding box of each shape in the build.
+    is_boxes
+        Whether each shape is equal to its bounding box.
     """
 
     shapes: tuple[CollisionShape, ...]
     poses: Floats
     low: Floats
     high: Floats
+    is_boxes: bool = False
 
 
-def movable_body(placed: Sequence[tuple[CollisionShape, Floats]]) -> MovableBody:
-    """Return the body of one or more shapes, each with its pose ``(4, 4)``."""
+def movable_body(placed: Sequence[tuple[CollisionShape, Floats]], is_boxes: bool = False) -> MovableBody:
+    """Return the body of one or more shapes, each with its pose ``(4, 4)``; see `MovableBody`."""
     poses = np.array([pose for _, pose in placed], np.float64)
     corners = [shape.vertices @ pose[:3, :3].T + pose[:3, 3] for shape, pose in placed]
     return MovableBody(
@@ -60,4 +63,5 @@ def movable_body(placed: Sequence[tuple[CollisionShape, Floats]]) -> MovableBody
         frozen(poses, np.float64),
         frozen([points.min(axis=0) for points in corners], np.float64),
         frozen([points.max(axis=0) for points in corners], np.float64),
+        is_boxes,
     )

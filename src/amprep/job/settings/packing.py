@@ -14,6 +14,8 @@ class PackingSettings:
 
     Attributes
     ----------
+    even_layers
+        Whether parts are moved vertically, so that the cross-sections of layers become more equal.
     volumes
         Name of a volume maker, or names of several, each of which works on the result of the one before; None leaves
         the choice to the packer.
@@ -30,6 +32,7 @@ class PackingSettings:
     lift_mm: float = 0.0
     stacking: bool = False
     interlocking: Interlocking = "allow"
+    even_layers: bool = False
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     volume_params: Mapping[str, Any] = field(default_factory=dict)
@@ -37,6 +40,11 @@ class PackingSettings:
     def __post_init__(self) -> None:
         require_bounds(self, "clearance_mm", "lift_mm", at_least=0)
         require_bounds(self, "time_limit_s", above=0)
+        require(
+            self.stacking or not self.even_layers,
+            "even_layers = true must come with stacking = true",
+            "stacking = false",
+        )
         require(self.volumes != (), "volumes must name at least one volume maker", "none")
         for name, table in self.volume_params.items():
             require(

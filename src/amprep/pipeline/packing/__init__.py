@@ -23,8 +23,8 @@ from amprep.model import (
     TurnedVolume,
 )
 from amprep.model.summary import Summarised
+from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
-from amprep.pipeline.packing.interlocking import free_locked_items
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
@@ -65,14 +65,14 @@ class PackedParts(Summarised):
         The packing problem, and the packer's answer.
     builds
         Builds of placed parts; copies are in the order of the job.
-    moved
-        Items that were locked into others and were placed elsewhere, because interlocking is forbidden.
+    notes
+        What was changed after the packer's answer, one sentence each.
     """
 
     problem: PackingProblem
     packing: Packing
     builds: tuple[PackedBuild, ...]
-    moved: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Return one line per build, and one for the unplaced items."""
@@ -113,15 +113,12 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
             stop=stop.within(job.packing.time_limit_s),
             progress=progress,
         )
-        moved: tuple[int, ...] = ()
-        if problem.interlocking == "forbid":
-            freed = free_locked_items(problem, packing, stop)
-            packing, moved = freed.packing, freed.moved
+        packing, notes = adjusted(problem, packing, parts, job.packing, stop)
     builds = (
         PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
-    return PackedParts(problem, packing, tuple(builds), moved)
+    return PackedParts(problem, packing, tuple(builds), notes)
 
 
 def packing_problem(

@@ -7,12 +7,12 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.geometry.removal.blocking import Blocking
-from amprep.geometry.removal.bodies import CollisionShape, MovableBody, movable_body
+from amprep.geometry.removal.bodies import MovableBody
 from amprep.geometry.removal.insertion import box_drops, drop
 from amprep.geometry.removal.order import DIRECTIONS, find_removal_order
 from amprep.measures.objective import objective_reached
 from amprep.model import Item, Packing, PackingProblem, Placement, Stop, Unplaced
-from amprep.report.volume_meshes import box_mesh, meshes_of
+from amprep.pipeline.packing.volume_bodies import VolumeBodies
 
 # Strategy. A packing of one box per part, parallel to the axes, has no locked groups: the box with the highest lower
 # face is below no other, and leaves upwards. In other packings, the smallest part of each locked group is taken out
@@ -60,7 +60,7 @@ def free_locked_items(problem: PackingProblem, packing: Packing, stop: Stop) -> 
     stop
         Ends the search for better positions early: the items that are left are placed nowhere, ``out of time``.
     """
-    volumes = _Shapes(problem)
+    volumes = VolumeBodies(problem)
     fixed = {placement.item for placement in problem.fixed}
     builds = [list(build) for build in packing.builds]
     out = [
@@ -84,31 +84,8 @@ def free_locked_items(problem: PackingProblem, packing: Packing, stop: Stop) -> 
     return FreedPacking(freed, tuple(sorted(placement.item for placement in out)))
 
 
-class _Shapes:
-    """The bounding volumes of the items of a problem as bodies; items with one volume share their trees."""
-
-    def __init__(self, problem: PackingProblem) -> None:
-        self.problem = problem
-        self._shapes: dict[int, tuple[CollisionShape, ...]] = {}
-        pairs = zip(problem.space.zone_lo, problem.space.zone_hi, strict=True)
-        boxes = [CollisionShape(*box_mesh(lo, hi).arrays) for lo, hi in pairs]
-        self.zones = tuple(movable_body([(shape, np.eye(4))]) for shape in boxes)
-
-    def body(self, placement: Placement) -> MovableBody:
-        """Return the volume of an item at its place."""
-        volume = self.problem.items[placement.item].volume
-        if id(volume) not in self._shapes:
-            self._shapes[id(volume)] = tuple(CollisionShape(*mesh.arrays) for mesh in meshes_of(volume))
-        return movable_body([(shape, placement.matrix) for shape in self._shapes[id(volume)]])
-
-    def size(self, item: int) -> float:
-        """Return the volume of the bounding box of an item, mm3."""
-        body = self.body(Placement(item, np.eye(3), np.zeros(3)))
-        return float(np.prod(body.high.max(axis=0) - body.low.min(axis=0)))
-
-
 def _take_out(
-    volumes: _Shapes, builds: list[list[Placement]], number: int, fixed: set[int], stop: Stop
+    volumes: VolumeBodies, builds: list[list[Placement]], number: int, fixed: set[int], stop: Stop
 ) -> list[Placement]:
     """Take the smallest items of locked groups out of a build until none are locked, and return them."""
     kept = fixed if number == 0 else set()
@@ -128,7 +105,7 @@ def _take_out(
         builds[number] = [placement for index, placement in enumerate(build) if index not in smallest]
 
 
-def _put_in(volumes: _Shapes, builds: list[list[Placement]], old: Placement) -> bool:
+def _put_in(volumes: VolumeBodies, builds: list[list[Placement]], old: Placement) -> bool:
     """Put an item into the first build with a position for it, perhaps a new one; tell whether there is one."""
     problem = volumes.problem
     for build in builds:
@@ -142,7 +119,7 @@ def _put_in(volumes: _Shapes, builds: list[list[Placement]], old: Placement) -> 
     return placement is not None
 
 
-def _lowest(volumes: _Shapes, build: Sequence[Placement], old: Placement) -> Placement | None:
+def _lowest(volumes: VolumeBodies, build: Sequence[Placement], old: Placement) -> Placement | None:
     """Return the lowest placement of an item that is let down into a build; None if it is too high everywhere."""
     problem = volumes.problem
     others = [*(volumes.body(placement) for placement in build), *volumes.zones]
