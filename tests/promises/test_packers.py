@@ -22,6 +22,7 @@ BUDGETS: dict[str, dict[str, Any]] = {
     "ip": {"effort": 0.005},
     "ip-local-search": {"effort": 0.002, "steps": 4},
     "column-generation": {"effort": 0.001, "proof": 20.0},
+    "plates": {"work": 20.0, "failures": 3},
     "separation": {"work": 5.0},
 }
 """Smaller budgets of work for packers that solve programs or search long: their promise does not depend on it."""

@@ -12,6 +12,7 @@ from amprep.plugins.packers.params import (
     ExtremePointsParams,
     IpLocalSearchParams,
     IpParams,
+    PlatesParams,
     SeparationParams,
     SweepParams,
     TabuParams,
@@ -108,6 +109,22 @@ def amprep_packers() -> Iterable[Packer]:
             stacking=frozenset({True}),
         ),
         params=SeparationParams,
+        volumes="mesh",
+    )
+    yield Packer(
+        name="plates",
+        summary="True shadows of parts side by side, without stacking, by guided local search.",
+        run=later("amprep.plugins.packers.plates:pack_plates"),
+        accepts=PackerAccepts(
+            volumes=frozenset({"box", "boxes", "convex", "solid"}),
+            objectives=frozenset({"height", "builds", "fill"}),
+            orientations=_ANY_LIST | {"about-z"},
+            cylinder=True,
+            zones=True,
+            fixed=True,
+            stacking=frozenset({False}),
+        ),
+        params=PlatesParams,
         volumes="mesh",
     )
     yield Packer(

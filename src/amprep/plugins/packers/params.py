@@ -282,3 +282,46 @@ class SeparationParams:
         require_bounds(self, "workers", at_least=1, at_most=64)
         require_bounds(self, "shrink", above=0, at_most=0.5)
         require_bounds(self, "memory", "persistence", at_least=1)
+
+
+@dataclass(frozen=True)
+class PlatesParams:
+    """Parameters of `plates`; the budget counts work, so that the same job gives the same layout.
+
+    Attributes
+    ----------
+    step
+        Distance of the samples of the fields, as a fraction of the mean size of the shadows.
+    memory
+        Greatest size of the cache of fields in MB; where it is full, fields are computed again.
+    angle_step_deg
+        Step of the turns about z of a part that may be turned by any angle, degrees.
+    tolerance
+        Length (mm) by which the outline of a shadow may be simplified outwards.
+    scan_chance
+        Probability that a move scans plates when a descent leaves an overlap.
+    passes
+        Constructive passes before the search.
+    persistence
+        Spans of four rounds without progress after which a layout is given up and disturbed.
+    failures
+        Layouts given up one after another at which the search ends.
+    work
+        Millions of field values read or computed after which the search ends; some 500 to 1000 per second.
+    """
+
+    step: float = 0.025
+    memory: float = 400.0
+    angle_step_deg: float = 15.0
+    tolerance: float = 0.05
+    scan_chance: float = 0.5
+    passes: int = 5
+    persistence: int = 30
+    failures: int = 50
+    work: float = 30000.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "step", above=0, at_most=0.5)
+        require_bounds(self, "angle_step_deg", above=0, at_most=360)
+        require_bounds(self, "tolerance", "scan_chance", "work", "failures", at_least=0)
+        require_bounds(self, "memory", "passes", "persistence", at_least=1)

@@ -1,0 +1,1 @@
+"""Shadows of parts on the plate: as polygons with holes, and as convex pieces."""
