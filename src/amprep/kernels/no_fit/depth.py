@@ -59,13 +59,27 @@ def _depth_on_line(solid, k, origin, step, x, y, z0, z1, line):
 @helper
 def depth_at(fields: NoFitFields, a: int, b: int, x: float, y: float, z: float) -> float:
     """Return the depth (mm) at an offset of shape a from shape b, between samples; 0 outside or without a field."""
-    start, stride = fields.first[a, b], fields.stride[a, b]
-    if start < 0:
+    if fields.first[a, b] < 0:
         return 0.0
-    nx, ny, nz = fields.cells[a, b, 0], fields.cells[a, b, 1], fields.cells[a, b, 2]
+    cells = fields.cells[a, b]
+    field = (fields.first[a, b], fields.stride[a, b], cells[0], cells[1], cells[2])
     u = (x - fields.origin[a, b, 0]) / fields.step
     v = (y - fields.origin[a, b, 1]) / fields.step
     w = (z - fields.origin[a, b, 2]) / fields.step
+    return depth_between(fields.values, field, u, v, w) * fields.scale
+
+
+@helper
+def depth_between(values, field, u, v, w):
+    """Return the depth between the samples of a field, at (u, v, w) steps from the first one; 0 outside.
+
+    Parameters
+    ----------
+    field
+        Five ints: index of the first sample, stride, and numbers of samples in one phase.
+    """
+    start, stride = field[0], field[1]
+    nx, ny, nz = field[2], field[3], field[4]
     if not (0.0 <= u < 2 * nx - 1 and 0.0 <= v < 2 * ny - 1 and 0.0 <= w < 2 * nz - 1):
         return 0.0
     i, j, k = int(u), int(v), int(w)
@@ -77,10 +91,11 @@ def depth_at(fields: NoFitFields, a: int, b: int, x: float, y: float, z: float) 
         for dy in range(2):
             at = (((i + dx) & 1) * 4 + ((j + dy) & 1) * 2) * phase
             at += (((i + dx) >> 1) * ny + ((j + dy) >> 1)) * nz
-            one, other = start + stride * (at + lower), start + stride * (at + upper)
             share = (tx if dx else 1.0 - tx) * (ty if dy else 1.0 - ty)
-            depth += share * ((1.0 - tz) * fields.values[one] + tz * fields.values[other])
-    return max(depth * fields.scale, 0.0)
+            # Unsigned indices are not checked for being negative.
+            one, other = np.uint64(start + stride * (at + lower)), np.uint64(start + stride * (at + upper))
+            depth += share * ((1.0 - tz) * values[one] + tz * values[other])
+    return max(depth, 0.0)
 
 
 @helper

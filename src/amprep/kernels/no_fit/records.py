@@ -170,8 +170,11 @@ class SeparationState(NamedTuple):
         ``(4,)`` see `READ`.
     sums
         ``(g,)`` float32 weighted overlap at the cells of a scan.
-    near, order
-        ``(n,)`` items near the one that is moved, and the order of a round.
+    near, frame
+        ``(n, 5)`` and ``(n, 4)`` fields near the item that is moved: index of the first sample, stride and numbers of
+        samples in one phase; position (mm) of the first sample and weight of the overlap in units of the samples.
+    order
+        ``(items,)`` order of a round.
     cell, value
         ``(c,)`` candidate cells of a scan and their values.
     """
@@ -189,6 +192,7 @@ class SeparationState(NamedTuple):
     spent: Int64s
     sums: Float32s
     near: Int64s
+    frame: Floats
     order: Int64s
     cell: Int64s
     value: Floats

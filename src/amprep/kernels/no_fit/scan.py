@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Float32s, Floats, Int64s
-from amprep.kernels.helper import helper
+from amprep.kernels.helper import helper, inlined
 from amprep.kernels.no_fit.depth import depth_at, outside_circle
 from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, PositionRange, ShapeLayout
 
@@ -65,29 +65,30 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, si
                 to = (x * gy + y) * gz + z0
                 at = fields.first[shape, b] + stride * (base + ((x + sx) * ny + y + sy) * nz + z0 + sz)
                 if stride > 0:
-                    _add_line(sums[to : to + length], fields.values[at : at + length], factor)
+                    _add_line(sums, to, fields.values, at, length, factor)
                 else:
-                    _add_backwards(sums[to : to + length], fields.values[at - length + 1 : at + 1], factor)
+                    _add_backwards(sums, to, fields.values, at, length, factor)
     if within.radius > 0.0 and since == 0:
         _add_outside(within, shape, outside_weight, start, grid, 2.0 * step, sums)
     return read
 
 
-@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz"})
-def _add_line(sums, values, factor):
-    for k in range(sums.size):
-        value = np.float32(values[k])
-        sums[k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
+@inlined
+def _add_line(sums, to, values, at, length, factor):
+    """Add the positive values of a line; with unsigned indices, so that the loop is vectorised without a call."""
+    first, other = np.uint64(to), np.uint64(at)
+    for k in range(np.uint64(length)):
+        value = np.float32(values[other + k])
+        sums[first + k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
 
 
-@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz"})
-def _add_backwards(sums, values, factor):
-    last = np.uint64(
-        sums.size - 1
-    )  # unsigned, so that no index counts from the end and the loop is vectorised
-    for k in range(sums.size):
-        value = np.float32(values[last - np.uint64(k)])
-        sums[k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
+@inlined
+def _add_backwards(sums, to, values, at, length, factor):
+    """Add the positive values of a line that is read backwards from an index."""
+    first, other = np.uint64(to), np.uint64(at)
+    for k in range(np.uint64(length)):
+        value = np.float32(values[other - k])
+        sums[first + k] += factor * (value if value > np.float32(0.0) else np.float32(0.0))
 
 
 @helper

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from amprep.kernels.helper import helper
-from amprep.kernels.no_fit.depth import depth_at, outside_circle
+from amprep.kernels.no_fit.depth import depth_at, depth_between, outside_circle
 from amprep.kernels.no_fit.records import (
     EVERYWHERE,
     MOVES,
@@ -90,22 +90,30 @@ def _list(state, i, j):
 
 
 @helper
-def _find_near(fields, layout, i, x, y, z, reach, near):
-    """Write the items and obstacles that item i may overlap within a reach of a position; return their number."""
+def _find_near(fields, layout, state, i, x, y, z, reach):
+    """Write the fields that item i may be in within a reach of a position, and their weights; return their number."""
     count, a = 0, layout.shape[i]
+    width = 2.0 * fields.step
     for j in range(layout.shape.size):
         b = layout.shape[j]
         if j == i or fields.first[a, b] < 0 or not _together(layout, i, j):
             continue
         origin, position, cells = fields.origin[a, b], layout.position[j], fields.cells[a, b]
         u, v, w = x - position[0] - origin[0], y - position[1] - origin[1], z - position[2] - origin[2]
-        width = 2.0 * fields.step
         if (
             -reach <= u <= width * cells[0] + reach
             and -reach <= v <= width * cells[1] + reach
             and -reach <= w <= width * cells[2] + reach
         ):
-            near[count] = j
+            near, frame = state.near[count], state.frame[count]
+            near[0], near[1] = fields.first[a, b], fields.stride[a, b]
+            near[2], near[3], near[4] = cells[0], cells[1], cells[2]
+            frame[0], frame[1], frame[2] = (
+                position[0] + origin[0],
+                position[1] + origin[1],
+                position[2] + origin[2],
+            )
+            frame[3] = state.weight[i, j] * fields.scale
             count += 1
     return count
 
@@ -113,14 +121,15 @@ def _find_near(fields, layout, i, x, y, z, reach, near):
 @helper
 def _cost(fields, within, layout, state, i, count, x, y, z, limit):
     """Return the weighted overlap of item i at a position with the items near it, or any value above the limit."""
-    total = 0.0
+    total, scale = 0.0, 1.0 / fields.step
     if within.radius > 0.0:
         total = state.outside_weight[i] * outside_circle(within, layout.shape[i], x, y)
     for k in range(count):
         if total >= limit:
             break
-        j = state.near[k]
-        total += state.weight[i, j] * _depth_of(fields, layout, i, j, x, y, z)
+        near, frame = state.near[k], state.frame[k]
+        u, v, w = (x - frame[0]) * scale, (y - frame[1]) * scale, (z - frame[2]) * scale
+        total += frame[3] * depth_between(fields.values, near, u, v, w)
         state.spent[READ] += VALUES_A_DEPTH
     return total
 
@@ -144,7 +153,7 @@ def _descend(fields, within, layout, rules, state, i, x, y, z, step):
     a, reach = layout.shape[i], 4.0 * step
     lo, hi = within.lo[a], within.hi[a]
     x0, y0, z0 = x, y, z
-    count = _find_near(fields, layout, i, x, y, z, reach, state.near)
+    count = _find_near(fields, layout, state, i, x, y, z, reach)
     cost = _cost(fields, within, layout, state, i, count, x, y, z, np.inf)
     failures = 0
     while step > rules.finest and cost > NEGLIGIBLE:
