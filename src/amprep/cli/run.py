@@ -39,9 +39,9 @@ def run(
     It writes NAME.build-1.3mf and so on, NAME.report.html with a 3D view,
     NAME.report.json, and a picture of each build.
 
-    Exit codes: 0 if done, 1 if something is unplaced, unsupported or fails
-    verification, 2 for wrong input (nothing written), 130 if interrupted
-    (nothing written).
+    Exit codes: 0 if done, 1 if something is unplaced, unsupported, locked
+    although that is forbidden, or fails verification, 2 for wrong input
+    (nothing written), 130 if interrupted (nothing written).
     """
     named = None if volumes is None else [name.strip() for name in volumes.split(",")]
     build_and_report("run", inputs, options, {"packing.strategy": packer, "packing.volumes": named})

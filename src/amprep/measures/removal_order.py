@@ -10,6 +10,9 @@ from amprep.geometry.removal.bodies import CollisionShape, MovableBody, movable_
 from amprep.geometry.removal.order import DIRECTIONS, RemovalOrder, find_removal_order
 from amprep.model import Build
 
+MOST_TRIANGLES = 3_000_000
+"""Triangles of all trees together, which take 450 bytes each; the trees of single boxes are not needed."""
+
 
 def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False) -> RemovalOrder:
     """Return an order in which the parts of a build leave, by their indices.
@@ -22,11 +25,11 @@ def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False
     build
         Parts and supports.
     stop
-        Ends the search early; the parts that are left are unknown.
+        Ends the search early; the parts that are left are unknown. So does the number of triangles.
     """
     groups = _held_together(build)
     blocking = Blocking(_bodies(build, groups), DIRECTIONS)
-    found = find_removal_order(blocking, stop)
+    found = find_removal_order(blocking, lambda: stop() or blocking.triangles > MOST_TRIANGLES)
 
     def parts(bodies: tuple[int, ...]) -> tuple[int, ...]:
         return tuple(sorted(part for body in bodies for part in groups[body]))

@@ -97,4 +97,5 @@ def _labels(entry: BuildRecord, parts: Sequence[int]) -> list[str]:
 def _names(entry: BuildRecord, parts: Sequence[int]) -> str:
     labels = _labels(entry, parts[:MOST_NAMES])
     more = len(parts) - len(labels)
-    return ", ".join(labels) + (f" and {more} more" if more > 0 else "")
+    listed = [*labels, f"{more} more"] if more > 0 else labels
+    return " and ".join(filter(None, (", ".join(listed[:-1]), *listed[-1:])))

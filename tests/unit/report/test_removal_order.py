@@ -38,7 +38,7 @@ def entry():
 
 def test_the_terminal_names_locked_parts(entry):
     (line,) = hindrances_of(entry)
-    assert line.startswith("hook, ring are locked into each other")
+    assert line.startswith("hook and ring are locked into each other")
 
 
 def test_parts_that_wait_for_others_are_named(entry):
@@ -48,7 +48,7 @@ def test_parts_that_wait_for_others_are_named(entry):
 def test_rows_say_what_leaves_together_and_after_which_parts(entry):
     assert removal_rows(entry) == [
         ("lid", "upwards", ""),
-        ("hook, ring", "upwards", ""),
+        ("hook and ring", "upwards", ""),
         ("pot", "upwards", "lid"),
     ]
     assert removal_summary(entry) == "1 group of parts locked into each other"

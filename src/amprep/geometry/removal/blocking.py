@@ -29,6 +29,8 @@ class Blocking:
     ----------
     asked
         Number of queries on meshes so far.
+    triangles
+        Triangles of the trees that these needed.
     """
 
     def __init__(self, bodies: Sequence[MovableBody], directions: Floats) -> None:
@@ -37,6 +39,7 @@ class Blocking:
         self.low = np.array([body.low.min(axis=0) for body in bodies]).reshape(-1, 3)
         self.high = np.array([body.high.max(axis=0) for body in bodies]).reshape(-1, 3)
         self.asked = 0
+        self.triangles = 0
         self._known: dict[tuple[int, int, int], bool] = {}
 
     def candidates(self, body: int, others: Ints, k: int) -> Ints:
@@ -72,6 +75,9 @@ class Blocking:
             met = boxes_met(one.low[i] + moved, one.high[i] + moved, two.low, two.high, direction)
             for j in np.flatnonzero(met):
                 self.asked += 1
+                self.triangles += sum(
+                    len(each.triangles) for each in (shape, two.shapes[j]) if not each.is_built
+                )
                 found = directional_distances(shape.tree, two.shapes[j].tree, pose, two.poses[j], direction)
                 least = min(least, float(found[0]) - SETBACK)
         return max(least, 0.0)

@@ -25,6 +25,11 @@ class CollisionShape:
         self.vertices = vertices
         self.triangles = triangles if is_solid else np.concatenate([triangles, triangles[:, ::-1]])
 
+    @property
+    def is_built(self) -> bool:
+        """Whether the tree was needed before."""
+        return "tree" in vars(self)
+
     @cached_property
     def tree(self) -> CollisionMesh:
         """The mesh with its OBB tree."""

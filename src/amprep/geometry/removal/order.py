@@ -96,24 +96,21 @@ def find_removal_order(
     within: tuple[int, ...] = ()
     while waiting:
         rest = list(waiting.pop())
-        while rest:
+        while rest and not stop():
             rest = _leave_singly(blocking, rest, within, steps, stop)
-            if stop():
-                break
-            if not rest:
-                continue
-            group = _smallest_group(blocking, rest)
+            group = _smallest_group(blocking, rest, stop) if rest else None
             if group is not None:
                 steps.append(RemovalStep(group[0], (group[1],), within))
                 waiting.append(group[0])
                 rest = [body for body in rest if body not in group[0]]
                 continue
-            path = _first_path(blocking, rest, stop) if paths else None
-            if path is None:
+            path = _first_path(blocking, rest, stop) if rest and paths else None
+            if path is not None:
+                steps.append(RemovalStep((path[0],), path[1], within))
+                rest.remove(path[0])
+            elif rest and not stop():
                 locked.append(tuple(rest))
-                break
-            steps.append(RemovalStep((path[0],), path[1], within))
-            rest.remove(path[0])
+                rest = []
         if stop():
             return RemovalOrder(tuple(steps), tuple(locked), tuple(sorted({*rest, *sum(waiting, ())})))
         within = waiting[-1] if waiting else ()
@@ -134,10 +131,11 @@ def _leave_singly(
     directions = len(blocking.directions)
 
     def leaving(bodies: Sequence[int], ways: Sequence[int]) -> Iterator[tuple[int, int]]:
-        return ((body, k) for body in bodies for k in ways if _leaves(blocking, body, k, left, blockers))
+        tried = ((body, k) for body in bodies for k in ways)
+        return ((body, k) for body, k in tried if not stop() and _leaves(blocking, body, k, left, blockers))
 
     found = True
-    while left and found and not stop():
+    while left and found:
         ways = list(leaving(list(left), (0,)))
         ways = ways or list(
             islice(leaving(sorted(left, key=lambda body: float(size[body])), range(1, directions)), 1)
@@ -165,8 +163,13 @@ def _leaves(
     return True
 
 
-def _smallest_group(blocking: Blocking, rest: Sequence[int]) -> tuple[tuple[int, ...], Motion] | None:
-    """Return the smallest group of fewer than all bodies that can leave in a direction, and its motion; or None."""
+def _smallest_group(
+    blocking: Blocking, rest: Sequence[int], stop: Callable[[], bool]
+) -> tuple[tuple[int, ...], Motion] | None:
+    """Return the smallest group of fewer than all bodies that can leave in a direction, and its motion; or None.
+
+    Of many bodies, a group of at most a quarter is small enough, so that further directions are not asked for.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -177,9 +180,12 @@ def _smallest_group(blocking: Blocking, rest: Sequence[int]) -> tuple[tuple[int,
         arcs = [
             (place[body], place[other])
             for body in rest
+            if not stop()
             for other in blocking.candidates(body, bodies, k).tolist()
             if blocking.is_blocked(body, other, k)
         ]
+        if stop():
+            return None
         tails, heads = np.array(arcs, np.int64).reshape(-1, 2).T
         graph = coo_array((np.ones(len(arcs)), (tails, heads)), shape=(len(rest), len(rest)))
         count, component = connected_components(graph, directed=True, connection="strong")
@@ -189,7 +195,7 @@ def _smallest_group(blocking: Blocking, rest: Sequence[int]) -> tuple[tuple[int,
         if sizes[chosen] < (len(rest) if best is None else len(best[0])):
             group = tuple(bodies[component == chosen].tolist())
             best = group, _without_end(direction)
-        if best is not None and len(best[0]) <= 2:
+        if best is not None and len(best[0]) <= max(2, len(rest) // 4):
             break
     return best
 

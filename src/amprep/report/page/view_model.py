@@ -29,11 +29,23 @@ from amprep.report.volume_meshes import meshes_of
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
     """Return the model as plain values, and the geometry in base64, of the 3D view."""
     pack = GeometryPack()
-    builds = [_build(entry.build, pack) | {"volumes": _packed(entry, pack)} for entry in record.builds]
+    builds = [
+        _build(entry.build, _locks(entry), pack) | {"volumes": _packed(entry, pack)}
+        for entry in record.builds
+    ]
     return {"builds": builds, "meshes": pack.entries}, pack.base64()
 
 
-def _build(build: Build, pack: GeometryPack) -> dict[str, Any]:
+def _locks(entry: BuildRecord) -> dict[int, str]:
+    """Return the names of the parts with which a part is locked, by its index."""
+    return {
+        part: ", ".join(entry.build.parts[other].label for other in group if other != part)
+        for group in entry.removal_order.locked
+        for part in group
+    }
+
+
+def _build(build: Build, locks: dict[int, str], pack: GeometryPack) -> dict[str, Any]:
     space = build.settings.space
     return {
         "id": build.settings.build_id,
@@ -45,8 +57,8 @@ def _build(build: Build, pack: GeometryPack) -> dict[str, Any]:
         },
         "supportColour": SUPPORT,
         "parts": [
-            _part(placed, colour, pack)
-            for placed, colour in zip(build.parts, part_colours(build), strict=True)
+            _part(placed, colour, locks.get(index, ""), pack)
+            for index, (placed, colour) in enumerate(zip(build.parts, part_colours(build), strict=True))
         ],
         "supports": [_support(body, build, pack) for body in build.supports],
         "unsupported": [_unsupported(region, pack) for region in build.unsupported],
@@ -105,7 +117,7 @@ def _counted(volume: BoundingVolume) -> list[str]:
     return [f"solid of {len(volume.mesh.triangles)} triangles"]
 
 
-def _part(placed: PlacedPart, colour: str, pack: GeometryPack) -> dict[str, Any]:
+def _part(placed: PlacedPart, colour: str, locked_with: str, pack: GeometryPack) -> dict[str, Any]:
     low, high = placed.mesh.bounds
     facts = [
         " × ".join(f"{size:.1f}" for size in high - low) + f" mm, {part_volume(placed) / 1000:.2f} cm³",
@@ -113,6 +125,8 @@ def _part(placed: PlacedPart, colour: str, pack: GeometryPack) -> dict[str, Any]
     ]
     if placed.part.part_number:
         facts.append(f"part number {placed.part.part_number}")
+    if locked_with:
+        facts.append(f"locked with {locked_with}")
     return {
         "name": placed.label,
         "colour": colour,
