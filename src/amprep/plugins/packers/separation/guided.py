@@ -32,10 +32,12 @@ def separated(
     within: PositionRange,
     builds: int,
     useless: Callable[[], bool] = lambda: False,
+    room: PositionRange | None = None,
 ) -> Attempt:
     """Move overlapping items until nothing overlaps, or until there is no progress for a while.
 
-    `useless` tells after each span whether the attempt has become pointless, because a better layout is known.
+    `useless` tells after each span whether the attempt has become pointless, because a better layout is known. The
+    programs that make a layout exact may use the positions of `room` as well, which contain those `within`.
     """
     layout = scene.layout(_clipped(scene, start, within))
     best = scene.layout(start)
@@ -49,9 +51,11 @@ def separated(
         if overlap < least:
             least, nearest = overlap, placed_from(best, items)
         if overlap < residue and (overlap < SMALL or overlap <= least):
-            exact = _exact(scene, placed_from(best, items), within)
+            exact = _exact(scene, placed_from(best, items), within if room is None else room)
             if exact is not None:
                 return Attempt(0.0, nearest, exact)
+            if overlap <= rules.enough:
+                break
     return Attempt(least, nearest, None)
 
 

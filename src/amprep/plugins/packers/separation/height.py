@@ -20,6 +20,8 @@ SLOWER, LEAST = 0.7, 0.1
 FASTER, MOST = 1.5, 0.1
 """Factor of the reduction after each success in a row, and the greatest one."""
 
+LEAST_GAIN = 1e-3
+"""Fraction by which a layout must at least be lower: programs may use this height, the guided search a lower one."""
 
 MISSING = 1e12
 """Value (mm) of an item that is not placed."""
@@ -53,14 +55,15 @@ def _search(worker: SearchWorker) -> None:
             start, failures, pool, reduction = best, 0, AttemptPool(), params.shrink
         scene.progress(scene.budget.fraction, f"height {height:.6g} mm")
         within = instance.positions(max(bound, height * (1.0 - reduction)))
-        attempt = separated(scene, start, within, 1, partial(worker.knows_better, height))
+        room = instance.positions(max(bound, height * (1.0 - LEAST_GAIN)))
+        attempt = separated(scene, start, within, 1, partial(worker.knows_better, height), room)
         if attempt.exact is None:
             failures += 1
             reduction = params.shrink * max(LEAST, SLOWER**failures)
             pool.add(attempt)
             start = disturbed(scene, pool.choose(scene, best))
             continue
-        best = compacted(scene, attempt.exact, within)
+        best = compacted(scene, attempt.exact, room)
         height = height_of(scene, best)
         worker.publish(height, best)
         reduction = min(reduction * FASTER, MOST) if failures == 0 else params.shrink

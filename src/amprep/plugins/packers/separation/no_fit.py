@@ -12,11 +12,7 @@ from amprep.geometry.no_fit.voxels import sample_from_voxels
 from amprep.kernels.no_fit.records import EVERYWHERE, ContactShapes, NoFitFields
 from amprep.model.control import Stop
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation.pieces import convex_pieces_of
 from amprep.plugins.packers.separation.shapes import ShapeInstance
-
-MOST_OF_FIXED = 12
-"""Number of pieces of a fixed item."""
 
 MOST_CORNER_PAIRS = 1_000_000
 """Number of pairs of corners of pieces up to which fields are sampled from exact no-fit solids, in a few seconds."""
@@ -67,11 +63,11 @@ def prepare_no_fit(instance: ShapeInstance, params: SeparationParams, stop: Stop
     """
     step = params.step * instance.mean_size
     moving = [convex_shape(shape.pieces) for shape in instance.shapes]
-    shapes = _with_obstacles(instance, moving, _obstacles(instance, step, stop))
+    shapes = _with_obstacles(instance, moving, _obstacles(instance, step))
     exact = corner_pairs(shapes) <= MOST_CORNER_PAIRS
     while (4.0 if exact else 1.0) * samples(shapes, step) > params.memory * 1e6:
         step *= 1.05
-    obstacles = _obstacles(instance, step, stop)
+    obstacles = _obstacles(instance, step)
     shapes = _with_obstacles(instance, moving, obstacles)
     fields = (sample_fields if exact else sample_from_voxels)(shapes, step, stop)
     return None if fields is None else NoFit(contact_shapes(shapes), fields, obstacles, exact)
@@ -84,15 +80,14 @@ def _with_obstacles(
     return with_obstacles(moving, [obstacle.pieces for obstacle in obstacles], clearances)
 
 
-def _obstacles(instance: ShapeInstance, step: float, stop: Stop) -> tuple[ShapeObstacle, ...]:
+def _obstacles(instance: ShapeInstance, step: float) -> tuple[ShapeObstacle, ...]:
     """Return the forbidden zones and the fixed items; positions are multiples of two steps from the least position."""
     problem, found = instance.problem, []
     for lo, hi in zip(problem.space.zone_lo, problem.space.zone_hi, strict=True):
         if (hi > lo).all():
             found.append(([_corners(lo, hi)], EVERYWHERE, 0.0))
     for fixed in problem.fixed:
-        pieces = convex_pieces_of(problem.items[fixed.item].volume, MOST_OF_FIXED, stop)
-        moved = [piece @ fixed.rotation.T + fixed.translation for piece in pieces]
+        moved = [piece @ fixed.rotation.T + fixed.translation for piece in instance.pieces[fixed.item]]
         found.append((moved, 0, problem.clearance))
     obstacles = []
     for pieces, build, clearance in found:

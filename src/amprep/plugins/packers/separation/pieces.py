@@ -23,12 +23,6 @@ from amprep.model.control import Stop
 MOST_EXACT = 20
 """Number of exact pieces up to which a solid is packed exactly; work grows with the square of the number."""
 
-MOST_CURVED = 12
-"""Largest number of pieces of a solid with many faces."""
-
-MOST_POLYHEDRA = 60_000
-"""Number of pairs of pieces that the shapes of a problem may have together; each takes some 2 kB and 0.1 ms."""
-
 LEAST_GAIN = 2e-3
 """Volume that another piece must save, as a fraction of the volume of the solid."""
 
@@ -58,22 +52,6 @@ class Decomposition:
 
     sets: tuple[PieceSet, ...]
     work: float
-
-
-def most_pieces(shapes: int) -> int:
-    """Return how many pieces each of some shapes may have, so that all have at most `MOST_POLYHEDRA` pairs."""
-    return max(1, int(np.sqrt(2.0 * MOST_POLYHEDRA) / max(shapes, 1)))
-
-
-def convex_pieces_of(volume: BoundingVolume, most: int, stop: Stop) -> list[Floats]:
-    """Return for each convex piece of a volume its corners ``(k, 3)`` mm; the pieces contain the volume.
-
-    `most` is the number of pieces that a solid may have. A solid of few faces and pieces is decomposed exactly, another
-    one into pieces that contain it.
-    """
-    given = _given_or_exact(volume, most, stop)
-    found = given or decompose_volumes([volume], [1], min(most, MOST_CURVED), stop).sets[0]
-    return list(found.pieces)
 
 
 def decompose_volumes(

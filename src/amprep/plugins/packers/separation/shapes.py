@@ -1,5 +1,7 @@
 """Prepare a packing problem for the separation search: the shapes of its items and their positions."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,10 +15,13 @@ from amprep.measures.bounding_volume import volume_of
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
-from amprep.plugins.packers.separation.pieces import convex_pieces_of, most_pieces
+from amprep.plugins.packers.separation.pieces import PieceSet, decompose_volumes
 
 MOST_SHAPES = 150
 """Number of shapes above which types with several orientations keep only some, those of least height."""
+
+MOST_PIECES, MOST_OF_VOLUME = 2500, 40
+"""Number of convex pieces of all volumes together, and for each volume where there are few."""
 
 SAME = 1e-6
 """Difference (mm) of points up to which two rotations of a volume are the same shape."""
@@ -75,6 +80,8 @@ class ShapeInstance:
         ``(n,)`` items without a known position in an empty build.
     volumes
         ``(n,)`` mm3.
+    pieces
+        For each item the convex pieces of its volume, not turned.
     """
 
     problem: PackingProblem
@@ -84,6 +91,7 @@ class ShapeInstance:
     free: Bools
     too_large: Bools
     volumes: Floats
+    pieces: tuple[tuple[Floats, ...], ...]
 
     @cached_property
     def size(self) -> Floats:
@@ -132,28 +140,37 @@ class ShapeInstance:
 def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
     """Return the shapes of a problem; copies share theirs."""
     require_values(problem)
+    found = _pieces(problem, stop)
     known: dict[tuple[int, bytes], tuple[int, int, float]] = {}
     shapes: list[Shape] = []
     rows = []
-    most = most_pieces(_count_shapes(problem))
     for item in problem.items:
         key = _type_of(item)
         if key not in known:
-            found = _shapes_of(problem, item, most, stop)
-            known[key] = (len(shapes), len(shapes) + len(found), volume_of(item.volume))
-            shapes += found
+            turned = _shapes_of(problem, item, found[id(item.volume)].pieces)
+            known[key] = (len(shapes), len(shapes) + len(turned), volume_of(item.volume))
+            shapes += turned
         rows.append(known[key])
     first, end = np.array([row[:2] for row in rows], np.int64).reshape(-1, 2).T
     fits = np.array([any(shape.fits for shape in shapes[a:b]) for a, b, _ in rows], bool)
     free = np.ones(len(rows), bool)
     free[[placement.item for placement in problem.fixed]] = False
     volumes = np.array([row[2] for row in rows], np.float64)
-    return ShapeInstance(problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes)
+    pieces = tuple(found[id(item.volume)].pieces for item in problem.items)
+    return ShapeInstance(problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes, pieces)
 
 
-def _shapes_of(problem: PackingProblem, item: Item, most: int, stop: Stop) -> list[Shape]:
+def _pieces(problem: PackingProblem, stop: Stop) -> dict[int, PieceSet]:
+    """Return the convex pieces of each volume, by its id; more of them for volumes of which there are many copies."""
+    volumes = {id(item.volume): item.volume for item in problem.items}
+    copies = Counter(id(item.volume) for item in problem.items)
+    total = min(MOST_PIECES, MOST_OF_VOLUME * len(volumes))
+    sets = decompose_volumes(list(volumes.values()), [copies[key] for key in volumes], total, stop).sets
+    return dict(zip(volumes, sets, strict=True))
+
+
+def _shapes_of(problem: PackingProblem, item: Item, pieces: Sequence[Floats]) -> list[Shape]:
     """Return one shape for each rotation of an item that gives a different one and fits an empty build."""
-    pieces = convex_pieces_of(item.volume, most, stop)
     matrices = item.orientations.matrices if item.orientations.freedom == "list" else np.eye(3)[None]
     found: dict[bytes, Shape] = {}
     for rotation in matrices:
@@ -177,16 +194,6 @@ def _type_of(item: Item) -> tuple[int, bytes]:
 def _most_orientations(problem: PackingProblem) -> int:
     """Return how many orientations each type may keep, so that there are at most about `MOST_SHAPES` shapes."""
     return max(1, MOST_SHAPES // max(len({_type_of(item) for item in problem.items}), 1))
-
-
-def _count_shapes(problem: PackingProblem) -> int:
-    """Return the greatest number of shapes that the types of a problem may have."""
-    orientations = dict(map(_orientations_of, problem.items))
-    return sum(min(count, _most_orientations(problem)) for count in orientations.values())
-
-
-def _orientations_of(item: Item) -> tuple[tuple[int, bytes], int]:
-    return _type_of(item), len(item.orientations.matrices) if item.orientations.freedom == "list" else 1
 
 
 def _digest(pieces: list[Floats]) -> bytes:
