@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.bodies import CollisionShape, MovableBody, movable_body
-from amprep.geometry.removal.order import DIRECTIONS, RemovalOrder, find_removal_order
+from amprep.geometry.removal.order import DIRECTIONS, RemovalOrder, find_removal_order, with_blockers
 from amprep.model import Build
 
 MOST_TRIANGLES = 3_000_000
@@ -18,7 +18,8 @@ def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False
     """Return an order in which the parts of a build leave, by their indices.
 
     A part leaves together with its supports; parts that share a support leave together. Walls of the build volume block
-    no motion. Parts are moved without turning.
+    no motion. Parts are moved without turning. Where all parts are beside each other, as on a metal plate, the order
+    states for each part which others must leave before.
 
     Parameters
     ----------
@@ -30,6 +31,8 @@ def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False
     groups = _held_together(build)
     blocking = Blocking(_bodies(build, groups), DIRECTIONS)
     found = find_removal_order(blocking, lambda: stop() or blocking.triangles > MOST_TRIANGLES)
+    if _is_flat(build) and not found.unknown:
+        found = with_blockers(blocking, found)
 
     def parts(bodies: tuple[int, ...]) -> tuple[int, ...]:
         return tuple(sorted(part for body in bodies for part in groups[body]))
@@ -44,6 +47,12 @@ def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False
         for step in found.steps
     )
     return RemovalOrder(tuple(steps), tuple(map(parts, found.locked)), parts(found.unknown))
+
+
+def _is_flat(build: Build) -> bool:
+    """Tell whether all parts are beside each other: a horizontal plane cuts each of them."""
+    bounds = [placed.mesh.bounds for placed in build.parts]
+    return max((low[2] for low, _ in bounds), default=0.0) < min((high[2] for _, high in bounds), default=1.0)
 
 
 def _held_together(build: Build) -> list[tuple[int, ...]]:

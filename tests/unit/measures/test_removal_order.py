@@ -30,7 +30,7 @@ def test_a_part_below_an_arm_is_lifted_off_after_it():
 
 def test_supports_move_with_their_parts_and_block_others():
     cube = placed("cube", box_mesh([0, 0, 0], [10, 10, 10]), at=(20, 0, 0))
-    shelf = placed("shelf", box_mesh([0, 0, 20], [10, 10, 25]))
+    shelf = placed("shelf", box_mesh([0, 0, 5], [10, 10, 25]))
     leaning = SupportBody("s", box_mesh([5, 2, 15], [30, 8, 18]), (1,))
     order = measure_removal_order(Build(SETTINGS, (cube, shelf), (leaning,)))
     assert [step.bodies for step in order.steps] == [(1,), (0,)]

@@ -114,7 +114,7 @@ def find_removal_order(
         if stop():
             return RemovalOrder(tuple(steps), tuple(locked), tuple(sorted({*rest, *sum(waiting, ())})))
         within = waiting[-1] if waiting else ()
-    return RemovalOrder(_with_blockers(blocking, steps), tuple(locked))
+    return RemovalOrder(tuple(steps), tuple(locked))
 
 
 def _leave_singly(
@@ -200,8 +200,12 @@ def _smallest_group(
     return best
 
 
-def _with_blockers(blocking: Blocking, steps: Sequence[RemovalStep]) -> tuple[RemovalStep, ...]:
-    """Return the steps out of the build with the bodies after which they are possible, unless these are many pairs."""
+def with_blockers(blocking: Blocking, order: RemovalOrder) -> RemovalOrder:
+    """Return an order in which each step of one motion out of the build has the bodies after which it is possible.
+
+    The order is returned as it is if there are more than `MOST_PAIRS` pairs of bodies to compare.
+    """
+    steps = order.steps
     gone: list[int] = []
     met: dict[int, list[int]] = {}
     for number, step in enumerate(steps):
@@ -211,11 +215,12 @@ def _with_blockers(blocking: Blocking, steps: Sequence[RemovalStep]) -> tuple[Re
             ).tolist()
         gone += () if step.within else step.bodies
     if sum(map(len, met.values())) > MOST_PAIRS:
-        return tuple(steps)
-    return tuple(
+        return order
+    completed = (
         replace(step, after=_blockers(blocking, step, met[number])) if number in met else step
         for number, step in enumerate(steps)
     )
+    return replace(order, steps=tuple(completed))
 
 
 def _blockers(blocking: Blocking, step: RemovalStep, others: Sequence[int]) -> tuple[int, ...]:

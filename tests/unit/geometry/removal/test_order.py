@@ -19,14 +19,15 @@ from tests.shared.removal import (
 )
 
 from amprep.checks.packing.removal import check_removal_order
-from amprep.geometry.removal.order import find_removal_order
+from amprep.geometry.removal.order import find_removal_order, with_blockers
 
 UP = (((0.0, 0.0, 1.0), np.inf),)
 
 
 def judged(solids):
     """Return the order, after the independent judge has accepted it."""
-    order = find_removal_order(blocking_of(solids))
+    blocking = blocking_of(solids)
+    order = with_blockers(blocking, find_removal_order(blocking))
     assert check_removal_order(solids, [str(body) for body in range(len(solids))], order, 0.7) == []
     return order
 
