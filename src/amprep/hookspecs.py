@@ -12,7 +12,7 @@ yields offers; a job chooses an offer by name::
         yield Packer("my-packer", "Does something.", run=my_run, accepts=PackerAccepts())
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -180,7 +180,15 @@ class VolumeMaker:
 
 @dataclass(frozen=True)
 class Packer:
-    """Offer of a packing algorithm; `volumes` names the volume maker of jobs that choose none."""
+    """Offer of a packing algorithm.
+
+    Attributes
+    ----------
+    volumes
+        Name of the volume maker of jobs that choose none.
+    efforts
+        Parameters by the levels ``fast`` and ``thorough`` of ``packing.effort``; ``normal`` means the defaults.
+    """
 
     name: str
     summary: str
@@ -188,6 +196,7 @@ class Packer:
     accepts: PackerAccepts = field(default_factory=PackerAccepts)
     params: type = NoParams
     volumes: str = "box"
+    efforts: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

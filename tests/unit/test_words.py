@@ -56,7 +56,6 @@ ALLOWED = {
     ("docs/glossary.md", "white cube"): "the thesis's word",
     ("docs/glossary.md", "black cube"): "the thesis's word",
     ("docs/map.md", "black cubes"): "the thesis's word",
-    ("docs/packing.md", "worth"): "worth the time, not a value",
     ("src/amprep/checks/supports/bodies.py", "standing"): "the promise that supports stand on the plate",
     ("src/amprep/checks/supports/bodies.py", "STANDING"): "the promise that supports stand on the plate",
     ("src/amprep/pipeline/verify.py", "STANDING"): "the promise that supports stand on the plate",

@@ -96,7 +96,7 @@ def pack(
     parts
         Parts from `load`.
     packer
-        Packer by name, for example ``auto``; default: the job's, else ``extreme-points``.
+        Packer by name, for example ``auto``; default: the job's, else ``auto``.
     params
         Parameters of the packer.
     stop
@@ -105,7 +105,7 @@ def pack(
         Called with the fraction that is done and a message.
     settings
         Keys of the section ``[packing]`` of a job file: ``clearance_mm``, ``lift_mm``, ``objective``,
-        ``time_limit_s`` and so on.
+        ``effort``, ``time_limit_s`` and so on.
 
     Returns
     -------

@@ -31,6 +31,14 @@ def run(
             rich_help_panel="Settings of the job",
         ),
     ] = None,
+    effort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LEVEL",
+            help="How long the packer works: fast, normal or thorough.",
+            rich_help_panel="Settings of the job",
+        ),
+    ] = None,
     *,
     options: BuildOptions,
 ) -> None:
@@ -44,4 +52,5 @@ def run(
     (nothing written), 130 if interrupted (nothing written).
     """
     named = None if volumes is None else [name.strip() for name in volumes.split(",")]
-    build_and_report("run", inputs, options, {"packing.strategy": packer, "packing.volumes": named})
+    changes = {"packing.strategy": packer, "packing.volumes": named, "packing.effort": effort}
+    build_and_report("run", inputs, options, changes)

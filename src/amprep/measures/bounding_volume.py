@@ -1,5 +1,6 @@
 """Measure bounding volumes: volume of the union, highest point, and number of elements."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,6 +46,15 @@ def is_part_itself(volume: BoundingVolume, part: Part) -> bool:
     if isinstance(volume, Boxes):
         return part.is_solid and volume_of(volume) <= part.volume_mm3 * (1.0 + EQUAL_VOLUME)
     return isinstance(volume, Solid) and volume.mesh is part.mesh and part.is_solid
+
+
+def kind_of_volumes(volumes: Iterable[BoundingVolume]) -> str:
+    """Return what volumes are, in words: ``enclosing boxes``, ``boxes``, ``convex pieces``, ``bounding volumes``."""
+    kinds = {(type(volume), count_pieces(volume) > 1) for volume in volumes}
+    if kinds == {(Boxes, False)}:
+        return "enclosing boxes"
+    types = {kind for kind, _ in kinds}
+    return "boxes" if types == {Boxes} else "convex pieces" if types == {ConvexPieces} else "bounding volumes"
 
 
 def count_pieces(volume: BoundingVolume) -> int:

@@ -132,6 +132,28 @@ class Unplaced:
     reason: str
 
 
+@dataclass(frozen=True)
+class PackingStep:
+    """A step of a packer that has several, and what the packing reaches after it.
+
+    Attributes
+    ----------
+    method
+        What was packed, and how, in a few words.
+    reached
+        Value of the objective: number of builds, total value, or height (mm).
+    height
+        Height (mm) of the highest build.
+    seconds
+        Duration of the step.
+    """
+
+    method: str
+    reached: float
+    height: float
+    seconds: float
+
+
 @dataclass(frozen=True, eq=False)
 class Packing:
     """Builds of placements; every item is in exactly one build or in `unplaced`.
@@ -143,6 +165,8 @@ class Packing:
     bound_for
         What `bound` applies to: ``volumes``, packings of the bounding volumes in the orientations that the packer was
         offered; or ``shapes``, any packing of the parts themselves.
+    steps
+        Steps of a packer that has several; empty for others.
     found_by
         The method that found the packing, where the packer has several: `ip` names its solver, or the heuristic that
         the solver started from. Else empty.
@@ -155,3 +179,4 @@ class Packing:
     stop_reason: str = "finished"
     found_by: str = ""
     bound_for: BoundFor = "volumes"
+    steps: tuple[PackingStep, ...] = ()

@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
+from amprep.measures.bounding_volume import kind_of_volumes
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.height_profile import measure_profile
 from amprep.measures.objective import objective_reached
@@ -93,6 +94,9 @@ def run_record(
         reached=objective_reached(packed.problem, packing) if packed.problem.items else None,
         bound=packing.bound,
         bound_for=packing.bound_for,
+        parts_bound=packed.parts_bound,
+        packed_as=kind_of_volumes(item.volume for item in items),
+        steps=packing.steps,
         warnings=(*loaded.resolved.host.warnings, *left, *advice),
         notes=(
             *(f"{part.name}: {note}" for part in loaded.parts for note in part.notes),

@@ -10,7 +10,7 @@ from amprep.cells import cell_offer, read_cell
 from amprep.errors import InputError, JobError, MeshError
 from amprep.hookspecs import CellEmitter, Packer, SupportRouter, VolumeMaker
 from amprep.host import Chosen, Host, Listed, choose
-from amprep.job import Job, apply_sets, as_names, job_from_inputs, override
+from amprep.job import Job, PackingSettings, apply_sets, as_names, job_from_inputs, override
 from amprep.model import CellRequest, Cells, DeclaredCell, Mesh, Part, Progress, Stop, silent
 
 
@@ -63,6 +63,8 @@ class ResolvedJob:
             When the part names a volume maker that does not exist or cannot be in this place.
         """
         names = part.overrides.volumes or (None if part.boxes is None else ("boxes",))
+        if names is None and self.job.packing.volumes is None and not part.is_solid:
+            names = ("box",)  # a surface has no inside: of what packers choose, only its box is certain
         return self.volumes if names is None else choose_volumes(self.host, self.job, names)
 
     def changed(self, changes: Mapping[str, Any]) -> "ResolvedJob":
@@ -90,7 +92,7 @@ def resolve(job: Job, host: Host) -> ResolvedJob:
         When the file that is to declare the lattice cell declares none.
     """
     packing, supports = job.packing, job.supports
-    packer: Chosen[Packer] = choose(host, "packer", packing.strategy, packing.params)
+    packer = choose_packer(host, packing)
     for entry in job.parts:
         if entry.volumes is not None:
             choose_volumes(host, job, as_names(entry.volumes))
@@ -104,6 +106,27 @@ def resolve(job: Job, host: Host) -> ResolvedJob:
         cell=choose_cell(host, job),
         volumes=choose_volumes(host, job, as_names(packing.volumes or packer.listed.offer.volumes)),
     )
+
+
+def choose_packer(host: Host, packing: PackingSettings) -> Chosen[Packer]:
+    """Return the packer of a job, with the parameters of its level of effort and those of the job.
+
+    Raises
+    ------
+    PluginError
+        When no packer has that name.
+    JobError
+        When a parameter is wrong, or the packer has no such level of effort.
+    """
+    listed: Listed[Packer] = host.choose("packer", packing.strategy)
+    level = listed.offer.efforts.get(packing.effort)
+    if level is None and packing.effort != "normal":
+        known = ", ".join(["normal", *listed.offer.efforts])
+        raise JobError(
+            f"packing.effort: the packer {packing.strategy!r} has the levels {known}, got {packing.effort!r}; set its "
+            "budget in [packing.params] instead"
+        )
+    return Chosen.of(host, listed, {**(level or {}), **packing.params})
 
 
 def choose_volumes(host: Host, job: Job, names: Sequence[str]) -> tuple[Chosen[VolumeMaker], ...]:

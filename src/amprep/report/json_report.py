@@ -8,6 +8,7 @@ from amprep.measures.density import part_volume
 from amprep.measures.height_profile import HeightProfile
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
+from amprep.model.packing import PackingStep
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
@@ -45,6 +46,9 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "reached": record.reached,
         "bound": record.bound,
         "bound_for": record.bound_for,
+        "parts_bound": record.parts_bound,
+        "packed_as": record.packed_as,
+        "steps": [_step(step) for step in record.steps],
         "gap": gap_of(record),
         "total_value": total_value(record) if fill else None,
         "builds": [_build(entry, fill) for entry in record.builds],
@@ -61,6 +65,15 @@ def to_json(record: RunRecord) -> dict[str, Any]:
 def write_json(record: RunRecord, path: Path) -> None:
     """Write the report; the file appears complete, or not at all."""
     write_json_file(to_json(record), path)
+
+
+def _step(step: PackingStep) -> dict[str, Any]:
+    return {
+        "method": step.method,
+        "reached": step.reached,
+        "height_mm": step.height,
+        "seconds": step.seconds,
+    }
 
 
 def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:

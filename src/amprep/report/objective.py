@@ -7,6 +7,9 @@ from amprep.measures.objective import relative_gap
 from amprep.model.counting import counted
 from amprep.report.record import RunRecord
 
+ROUNDING = 1e-9
+"""Gap that is rounding."""
+
 
 @dataclass(frozen=True)
 class PartValue:
@@ -46,21 +49,43 @@ def status_words(record: RunRecord) -> str:
     """Return the status of the packing; why it ended, unless it is optimal; and for what it is optimal."""
     if record.status != "optimal":
         return f"packing {record.status} ({record.stop_reason})"
-    return "packing optimal" if record.bound_for == "shapes" else "packing optimal for the bounding volumes"
+    parts = record.bound_for == "shapes" or _is_best_of_parts(record)
+    return "packing optimal" if parts else f"packing optimal for the {record.packed_as}"
+
+
+def step_words(record: RunRecord) -> str:
+    """Return what each step of the packer reached, and how long it took; empty for a packer without steps."""
+    return "; ".join(
+        f"{method}: {reached}{'' if record.objective == 'height' else f', {height} high'} in {seconds}"
+        for method, reached, height, seconds in step_rows(record)
+    )
+
+
+def step_rows(record: RunRecord) -> list[tuple[str, str, str, str]]:
+    """Return what the steps of the packer did, what they reached, the height, and the duration, in words."""
+    return [
+        (step.method, _amount_reached(record, step.reached), f"{step.height:.1f} mm", f"{step.seconds:.1f} s")
+        for step in record.steps
+    ]
 
 
 def objective_words(record: RunRecord) -> str:
     """Return what the packing reached and what its bound bounds; empty if nothing was packed."""
     if record.reached is None:
         return ""
+    gap = "" if record.objective == "builds" or _is_best_of_parts(record) else _gap(record)
+    return f"{_amount_reached(record, record.reached)}, {_bound(record)}{gap}"
+
+
+def _amount_reached(record: RunRecord, reached: float) -> str:
+    """Return a value of the objective in words."""
     match record.objective:
         case "fill":
-            reached = f"value {amount(record.reached)} of {amount(total_value(record))}"
+            return f"value {amount(reached)} of {amount(total_value(record))}"
         case "height":
-            reached = f"height {record.reached:.2f} mm"
+            return f"height {reached:.2f} mm"
         case _:
-            return f"{counted(round(record.reached), 'build')}, {_bound(record)}"
-    return f"{reached}, {_bound(record)}{_gap(record)}"
+            return counted(round(reached), "build")
 
 
 def amount(value: float) -> str:
@@ -69,17 +94,40 @@ def amount(value: float) -> str:
 
 
 def _bound(record: RunRecord) -> str:
-    """Return what the bound bounds, and for which packings."""
-    if record.bound is None:
-        return "no bound known"
-    packing = f"no packing of the {'parts' if record.bound_for == 'shapes' else 'bounding volumes'}"
+    """Return what the bounds bound, and for which packings."""
+    if _is_best_of_parts(record):
+        return "optimal: no packing of the parts " + {"fill": "has more", "height": "is lower"}.get(
+            record.objective, "has fewer"
+        )
+    words = []
+    if record.bound is not None and record.bound_for == "volumes":
+        optimal = record.status == "optimal"
+        own = _none_better(record, record.packed_as, record.bound)
+        words.append(f"optimal for the {record.packed_as}" if optimal else own)
+    parts = record.bound if record.bound_for == "shapes" else record.parts_bound
+    if parts is not None:
+        words.append(_none_better(record, "parts", parts))
+    return "; ".join(words) or "no bound known"
+
+
+def _none_better(record: RunRecord, packed: str, bound: float) -> str:
+    """Return what a bound bounds."""
     match record.objective:
         case "fill":
-            return f"{packing} has more than {amount(record.bound)}"
+            return f"no packing of the {packed} has more than {amount(bound)}"
         case "height":
-            return f"{packing} is lower than {record.bound:.2f} mm"
+            return f"no packing of the {packed} is lower than {bound:.2f} mm"
         case _:
-            return f"{packing} has fewer than {record.bound:g}"
+            return f"no packing of the {packed} has fewer than {bound:g}"
+
+
+def _is_best_of_parts(record: RunRecord) -> bool:
+    """Return whether the packing is complete and meets the bound for the parts themselves."""
+    bound = record.bound if record.bound_for == "shapes" else record.parts_bound
+    if bound is None or record.reached is None or (record.unplaced and record.objective != "fill"):
+        return False
+    gap = relative_gap(record.objective, record.reached, bound)
+    return gap is not None and gap <= ROUNDING
 
 
 def _gap(record: RunRecord) -> str:

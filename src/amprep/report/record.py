@@ -13,7 +13,7 @@ from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
 from amprep.model.counting import counted
-from amprep.model.packing import BoundFor, Objective
+from amprep.model.packing import BoundFor, Objective, PackingStep
 from amprep.model.summary import Summarised
 
 
@@ -210,6 +210,12 @@ class RunRecord(Summarised):
         Bound on it: no packing has fewer builds, more value, or less height; None if not known.
     bound_for
         What `bound` applies to: packings of the bounding ``volumes``, or of the ``shapes`` of the parts.
+    parts_bound
+        Bound for any packing of the parts themselves; None if it is not known.
+    packed_as
+        What was packed: ``enclosing boxes``, ``boxes``, ``convex pieces`` or ``bounding volumes``.
+    steps
+        Steps of the packer, where it has several.
     warnings, notes
         One sentence each: what needs attention; what was repaired or found in an input.
     settings
@@ -238,6 +244,9 @@ class RunRecord(Summarised):
     reached: float | None = None
     found_by: str = ""
     bound_for: BoundFor = "volumes"
+    parts_bound: float | None = None
+    packed_as: str = "bounding volumes"
+    steps: tuple[PackingStep, ...] = ()
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -31,7 +31,7 @@ def test_a_job_that_says_nothing_but_its_input_gets_the_defaults_of_metal(job_fi
     assert job.printer.name == "EOS M290"
     assert job.printer_is_default
     assert (job.packing.strategy, job.packing.volumes, job.packing.objective) == (
-        "extreme-points",
+        "auto",
         None,
         "builds",
     )

@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from amprep.model.packing import Interlocking, Objective
 from amprep.validation import require, require_bounds
+
+Effort = Literal["fast", "normal", "thorough"]
+"""How long packers work; each packer states its budgets."""
 
 
 @dataclass(frozen=True)
@@ -19,13 +22,15 @@ class PackingSettings:
     volumes
         Name of a volume maker, or names of several, each of which works on the result of the one before; None leaves
         the choice to the packer.
+    effort
+        How long the packer works; `params` take precedence over the budgets of the level.
     params
         Parameters of the packer.
     volume_params
         Parameters of volume makers by name.
     """
 
-    strategy: str = "extreme-points"
+    strategy: str = "auto"
     volumes: str | tuple[str, ...] | None = None
     objective: Objective = "builds"
     clearance_mm: float = 2.0
@@ -33,6 +38,7 @@ class PackingSettings:
     stacking: bool = False
     interlocking: Interlocking = "allow"
     even_layers: bool = False
+    effort: Effort = "normal"
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     volume_params: Mapping[str, Any] = field(default_factory=dict)

@@ -8,7 +8,7 @@ import numpy as np
 
 from amprep.errors import AmprepError
 from amprep.hookspecs import PackerAccepts
-from amprep.job import PackingSettings
+from amprep.job import Job, PackingSettings
 from amprep.measures.bounding_volume import is_part_itself
 from amprep.model import (
     BuildVolume,
@@ -25,6 +25,7 @@ from amprep.model import (
 from amprep.model.summary import Summarised
 from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
+from amprep.pipeline.packing.parts import bound_for_parts
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
@@ -67,12 +68,15 @@ class PackedParts(Summarised):
         Builds of placed parts; copies are in the order of the job.
     notes
         What was changed after the packer's answer, one sentence each.
+    parts_bound
+        Bound on the objective for any packing of the parts themselves; None if it is not known.
     """
 
     problem: PackingProblem
     packing: Packing
     builds: tuple[PackedBuild, ...]
     notes: tuple[str, ...] = ()
+    parts_bound: float | None = None
 
     def __str__(self) -> str:
         """Return one line per build, and one for the unplaced items."""
@@ -110,15 +114,23 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
         packing: Packing = resolved.packer.call(
             problem,
             rng=np.random.default_rng(job.seed),
-            stop=stop.within(job.packing.time_limit_s),
+            stop=packing_stop(stop, job),
             progress=progress,
         )
         packing, notes = adjusted(problem, packing, parts, job.packing, stop)
+        known = bound_for_parts(parts, problem, packing)
     builds = (
         PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
-    return PackedParts(problem, packing, tuple(builds), notes)
+    return PackedParts(problem, packing, tuple(builds), notes, known)
+
+
+def packing_stop(stop: Stop, job: Job) -> Stop:
+    """Return the stop of the packer: with its own time limit, else half of the time if supports follow."""
+    if job.packing.time_limit_s is None and stop.deadline is not None and job.supports.enabled:
+        return stop.within(stop.remaining() / 2.0)
+    return stop.within(job.packing.time_limit_s)
 
 
 def packing_problem(

@@ -23,6 +23,7 @@ amprep_api = 1
 
 _BOXES = PackerAccepts(volumes=frozenset({"box", "boxes"}), orientations=frozenset({"fixed", "axis"}))
 _BUILDS, _FILL, _HEIGHT = frozenset({"builds"}), frozenset({"fill"}), frozenset({"height"})
+_ANY_VOLUME = frozenset({"box", "boxes", "convex", "solid"})
 _ANY_LIST = frozenset({"fixed", "axis", "list"})
 _ALL = replace(
     _BOXES,
@@ -43,13 +44,19 @@ def amprep_packers() -> Iterable[Packer]:
         run=later("amprep.plugins.packers.extreme_points:pack_extreme_points"),
         accepts=_ALL,
         params=ExtremePointsParams,
+        efforts={"fast": {"work": 20.0}, "thorough": {"restarts": 2000, "work": 2000.0}},
     )
     yield Packer(
         name="auto",
-        summary="Extreme points first, then ruin and recreate over builds, with a proven bound.",
+        summary="Enclosing boxes at once, then the true shapes; of boxes alone, few builds with a proven bound.",
         run=later("amprep.plugins.packers.auto:pack_auto"),
-        accepts=_ALL,
+        accepts=replace(_ALL, volumes=_ANY_VOLUME),
         params=AutoParams,
+        efforts={
+            "fast": {"work": 20.0, "proof": 40.0, "separation": 600.0},
+            "thorough": {"work": 1000.0, "proof": 4000.0, "separation": 60_000.0},
+        },
+        volumes="mesh",
     )
     yield Packer(
         name="block-building",
@@ -59,6 +66,7 @@ def amprep_packers() -> Iterable[Packer]:
             _BOXES, volumes=frozenset({"box"}), objectives=_FILL | _HEIGHT, zones=True, fixed=True
         ),
         params=BlockBuildingParams,
+        efforts={"fast": {"work": 100.0}, "thorough": {"work": 5000.0}},
     )
     yield Packer(
         name="sweep",
@@ -73,6 +81,7 @@ def amprep_packers() -> Iterable[Packer]:
         run=later("amprep.plugins.packers.tabu:pack_tabu"),
         accepts=replace(_BOXES, orientations=_ANY_LIST, zones=True),
         params=TabuParams,
+        efforts={"fast": {"work": 20.0}, "thorough": {"work": 1000.0, "patience": 30}},
     )
     yield Packer(
         name="ip",
@@ -100,7 +109,7 @@ def amprep_packers() -> Iterable[Packer]:
         summary="True shapes: overlapping layouts are separated by guided local search on no-fit solids.",
         run=later("amprep.plugins.packers.separation:pack_separation"),
         accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes", "convex", "solid"}),
+            volumes=_ANY_VOLUME,
             objectives=frozenset({"height", "builds", "fill"}),
             orientations=_ANY_LIST,
             cylinder=True,
@@ -109,6 +118,7 @@ def amprep_packers() -> Iterable[Packer]:
             stacking=frozenset({True}),
         ),
         params=SeparationParams,
+        efforts={"fast": {"work": 600.0}, "thorough": {"work": 60_000.0}},
         volumes="mesh",
     )
     yield Packer(
@@ -132,7 +142,7 @@ def amprep_packers() -> Iterable[Packer]:
         summary="Simulated annealing of the meshes themselves, which never intersect (thesis 2.6).",
         run=later("amprep.plugins.packers.annealing.pack:pack_annealing"),
         accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes", "convex", "solid"}),
+            volumes=_ANY_VOLUME,
             objectives=_BUILDS | _FILL | {"height"},
             orientations=_ANY_LIST | {"about-z", "free"},
             cylinder=True,
@@ -140,5 +150,6 @@ def amprep_packers() -> Iterable[Packer]:
             fixed=True,
         ),
         params=AnnealingParams,
+        efforts={"fast": {"moves": 400}, "thorough": {"moves": 20_000}},
         volumes="mesh",
     )

@@ -87,6 +87,10 @@ class AutoParams:
         Millions of comparisons after which the search ends; some 40 per second.
     proof
         Millions of comparisons spent on the bound, in a second thread; some 170 per second.
+    boxes
+        Fraction of both budgets for the enclosing boxes, where true shapes are packed after them.
+    separation
+        Millions of field values that `separation` reads; some 300 to 1000 per second. 0: boxes alone.
     """
 
     ruin_size: int = 3
@@ -94,10 +98,13 @@ class AutoParams:
     patience: int = 1000
     work: float = 100.0
     proof: float = 400.0
+    boxes: float = 0.2
+    separation: float = 4000.0
 
     def __post_init__(self) -> None:
         require_bounds(self, "ruin_size", at_least=1)
-        require_bounds(self, "temperature", "patience", "work", "proof", at_least=0)
+        require_bounds(self, "temperature", "patience", "work", "proof", "separation", at_least=0)
+        require_bounds(self, "boxes", at_least=0, at_most=1)
 
 
 @dataclass(frozen=True)

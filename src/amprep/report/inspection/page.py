@@ -22,9 +22,9 @@ from amprep.report.inspection.words import (
     volume_words,
     wall_words,
 )
+from amprep.report.page.cells import Cell, table
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.page.html import VIEWER, page_text
-from amprep.report.page.tables import Cell, table
 from amprep.report.page.view_model import volume_model
 from amprep.report.picture.colours import SUPPORT
 

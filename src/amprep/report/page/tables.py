@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 from textwrap import dedent
 
@@ -11,28 +11,13 @@ from amprep.measures.density import part_volume
 from amprep.model import PlacedPart
 from amprep.model.counting import counted
 from amprep.report.json_values import plain
-from amprep.report.objective import (
-    amount,
-    gap_of,
-    objective_words,
-    part_values,
-    status_words,
-    total_value,
-)
+from amprep.report.objective import status_words
+from amprep.report.page.cells import Cell, table
+from amprep.report.page.packing import objective_figures, packing_section, values_section
 from amprep.report.page.profile_chart import profile_chart
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
-
-Cell = str | float | tuple[str, str]
-"""Text that is escaped; a number, aligned to the right; or a CSS class and HTML, used as it is."""
-
-_BOUNDS = {
-    "fill": "Bound on the value",
-    "height": "Bound on the height",
-    "builds": "Bound on the builds",
-}
-"""Objective -> heading of its bound."""
 
 
 def header(record: RunRecord) -> str:
@@ -65,7 +50,8 @@ def body_sections(record: RunRecord) -> str:
     numbered = list(enumerate(record.builds, start=1))
     sections = [
         ("Builds", _builds(record)),
-        ("Values", _values(record)),
+        ("Packing", packing_section(record)),
+        ("Values", values_section(record)),
         ("Unplaced copies", _unplaced(record)),
         ("Unsupported regions", _unsupported(record)),
         ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
@@ -90,24 +76,6 @@ def body_sections(record: RunRecord) -> str:
     return f"{body}<footer>{footer}</footer>\n"
 
 
-def table(headings: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table; a heading that ends with ``|`` is that of a column of numbers."""
-    head = "".join(
-        f"<th{' class=number' if heading.endswith('|') else ''}>{escape(heading.rstrip('|'))}</th>"
-        for heading in headings
-    )
-    body = "".join("<tr>" + "".join(map(_cell, row)) + "</tr>\n" for row in rows)
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>\n'
-
-
-def _cell(value: Cell) -> str:
-    if isinstance(value, tuple):
-        return f'<td class="{value[0]}">{value[1]}</td>'
-    if isinstance(value, str):
-        return f"<td>{escape(value)}</td>"
-    return f'<td class="number">{value:,}</td>'
-
-
 def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     """Return the name of each key figure, its value as HTML, and whether it is a fault."""
     builds = record.builds
@@ -120,7 +88,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     density = sum(entry.density for entry in builds) / max(len(builds), 1)
     return [
         *([("Builds", str(len(builds)), False)] if record.objective == "builds" else []),
-        *_objective_figures(record),
+        *objective_figures(record),
         ("Parts placed", str(placed), False),
         ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
@@ -130,41 +98,6 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         ("Violations", violations, bool(broken)),
         ("Run time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
     ]
-
-
-def _objective_figures(record: RunRecord) -> list[tuple[str, str, bool]]:
-    """Return the objective that was reached, its bound and the gap."""
-    if record.reached is None:
-        return []
-    unit = {"fill": "", "height": " <small>mm</small>", "builds": ""}[record.objective]
-    bound = "unknown" if record.bound is None else amount(record.bound) + unit
-    found = {
-        "fill": [
-            ("Value placed", f"{amount(record.reached)} <small>of {amount(total_value(record))}</small>")
-        ],
-        "height": [("Packing height", f"{amount(record.reached)}{unit}")],
-        "builds": [],
-    }[record.objective]
-    found.append((_BOUNDS[record.objective], bound))
-    gap = gap_of(record)
-    if gap is not None and record.objective != "builds":
-        found.append(("Gap to the bound", f"{100 * gap:.1f} <small>%</small>"))
-    return [(name, value, False) for name, value in found]
-
-
-def _values(record: RunRecord) -> str:
-    rows = [
-        (
-            each.name,
-            ("number", amount(each.value)),
-            each.placed,
-            each.copies,
-            ("number", amount(each.value * each.placed)),
-        )
-        for each in part_values(record)
-    ]
-    headings = ("Part", "Value of a copy|", "Copies placed|", "Copies|", "Value placed|")
-    return f"<p>{escape(objective_words(record))}.</p>{table(headings, rows)}" if rows else ""
 
 
 def _builds(record: RunRecord) -> str:

@@ -72,8 +72,15 @@ def bar(**fields):
 
 def test_the_packer_chooses_the_volume_maker_of_a_job_that_names_none(host):
     (made,) = bound_parts(loaded(host, [bar()]), Stop(), silent)
+    assert isinstance(made.volume, Solid)
+    (made,) = bound_parts(loaded(host, [bar()], "packing.strategy=extreme-points"), Stop(), silent)
     assert isinstance(made.volume, Boxes)
     np.testing.assert_array_equal(made.rotation, np.eye(3))
+
+
+def test_a_surface_is_bounded_by_its_box_where_the_job_names_no_volume_maker(host):
+    (made,) = bound_parts(loaded(host, [replace(bar(), is_solid=False)]), Stop(), silent)
+    assert isinstance(made.volume, Boxes)
 
 
 def test_a_volume_maker_bounds_the_solid_of_the_one_before(host):

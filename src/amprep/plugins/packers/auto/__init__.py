@@ -1,4 +1,7 @@
-"""The packer `auto`: a packing at once, then better ones until the bound is met or the budget is used up."""
+"""The packer `auto`: boxes at once, then better packings until the bound is met or the budget is used up.
+
+Where the volumes are not made of boxes, the packing of enclosing boxes is improved with the true shapes.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,6 +9,7 @@ from threading import Thread
 
 import numpy as np
 
+from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.auto.fill import fill_build
@@ -26,9 +30,27 @@ def pack_auto(
 
     The first pass is always begun, so that a late stop still gives a result.
     """
-    instance = prepare(problem)
-    pack = {"fill": fill_build, "height": lower_build, "builds": pack_builds}[problem.objective]
-    return as_packing(instance, pack(instance, params=params, rng=rng, stop=stop, progress=progress))
+    if all(isinstance(item.volume, Boxes) for item in problem.items):
+        instance = prepare(problem)
+        return as_packing(
+            instance, pack_boxes(instance, params=params, rng=rng, stop=stop, progress=progress)
+        )
+    from amprep.plugins.packers.auto.true_shapes import pack_true_shapes
+
+    return pack_true_shapes(problem, pack_boxes, params=params, rng=rng, stop=stop, progress=progress)
+
+
+def pack_boxes(
+    instance: PreparedInstance,
+    *,
+    params: AutoParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> PackerResult:
+    """Pack boxes for any objective."""
+    pack = {"fill": fill_build, "height": lower_build, "builds": pack_builds}[instance.problem.objective]
+    return pack(instance, params=params, rng=rng, stop=stop, progress=progress)
 
 
 def pack_builds(

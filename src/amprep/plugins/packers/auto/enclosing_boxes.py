@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.kernels.boxes.records import Arrangement
 from amprep.model.bounding_volume import Boxes
-from amprep.plugins.packers.instance.prepare import PreparedInstance, boxes_of, prepare
+from amprep.plugins.packers.instance.prepare import PreparedInstance, prepare
 
 DECIMALS = 6
 """Decimals of sizes in mm, as many as the resolution of block building has."""
@@ -21,7 +21,7 @@ def enclosing_instance(instance: PreparedInstance) -> PreparedInstance | None:
     problem = instance.problem
     if problem.fixed or instance.space.radius:
         return None
-    boxes = (boxes_of(item.volume).enclosing() for item in problem.items)
+    boxes = (item.volume.enclosing() for item in problem.items)
     items = (
         replace(item, volume=Boxes(lo[None], (lo + np.round(hi - lo, DECIMALS))[None]))
         for item, (lo, hi) in zip(problem.items, boxes, strict=True)

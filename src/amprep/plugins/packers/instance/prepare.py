@@ -1,6 +1,6 @@
 """Prepare a packing problem as arrays, once for all packers."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,8 +10,12 @@ from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.errors import AmprepError
 from amprep.geometry.boxes.build_space import Space, find_feasible_position, rotated_boxes
 from amprep.kernels.boxes.records import PAIR_SLACK, BoxInstance
+from amprep.measures.bounding_volume import points_of
 from amprep.model.bounding_volume import BoundingVolume, Boxes
 from amprep.model.packing import Item, Objective, PackingProblem, require_values
+
+BoxesAt = Callable[[BoundingVolume, Floats], tuple[Floats, Floats]]
+"""Function of a volume and a rotation ``(3, 3)`` that returns corners of boxes, each ``(k, 3)`` mm."""
 
 SAME = 1e-8
 """Difference (mm) up to which the boxes of two orientations count as equal."""
@@ -122,32 +126,42 @@ class PreparedInstance:
         return np.bincount(self.type_of[self.free], minlength=len(self.types))
 
 
-def prepare(problem: PackingProblem) -> PreparedInstance:
+def prepare(problem: PackingProblem, *, enclosing: bool = False) -> PreparedInstance:
     """Return the problem as arrays.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    enclosing
+        Whether volumes that are no boxes are packed as their enclosing boxes, in each orientation its own.
 
     Raises
     ------
     AmprepError
-        If a volume is not made of boxes, or a value is negative or not finite.
+        If a volume is not made of boxes and `enclosing` is false, or a value is negative or not finite.
     """
     require_values(problem)
+    if enclosing:
+        problem = replace(problem, items=tuple(replace(item, exact=False) for item in problem.items))
+    boxes_at = enclosing_box_at if enclosing else boxes_of_at
     space = empty_space(problem)
     known: dict[tuple[bytes, ...], int] = {}
     types: list[ItemType] = []
     type_of = np.empty(len(problem.items), dtype=np.int64)
     for i, item in enumerate(problem.items):
-        boxes = boxes_of(item.volume)
-        key = (boxes.lo.tobytes(), boxes.hi.tobytes(), _rotations(item).tobytes())
+        key = (*_content(item.volume, enclosing), _rotations(item).tobytes())
         if key not in known:
             known[key] = len(types)
-            types.append(_orientations(boxes, _rotations(item), space))
+            types.append(
+                _orientations([boxes_at(item.volume, r) for r in _rotations(item)], _rotations(item), space)
+            )
         type_of[i] = known[key]
     fits = np.array([any(o.fits for o in item_type) for item_type in types], dtype=bool)[type_of]
     free = np.ones(len(type_of), dtype=bool)
     free[[placement.item for placement in problem.fixed]] = False
-    return PreparedInstance(
-        problem, space, type_of, tuple(types), free & fits, free & ~fits, *_fixed_boxes(problem)
-    )
+    fixed = _fixed_boxes(problem, boxes_at)
+    return PreparedInstance(problem, space, type_of, tuple(types), free & fits, free & ~fits, *fixed)
 
 
 def restrict(
@@ -210,19 +224,40 @@ def boxes_of(volume: BoundingVolume) -> Boxes:
     )
 
 
+def boxes_of_at(volume: BoundingVolume, rotation: Floats) -> tuple[Floats, Floats]:
+    """Return corners ``(k, 3)`` mm of the boxes of a volume after a rotation; see `boxes_of`."""
+    boxes = boxes_of(volume)
+    return rotated_boxes(boxes.lo, boxes.hi, rotation)
+
+
+def enclosing_box_at(volume: BoundingVolume, rotation: Floats) -> tuple[Floats, Floats]:
+    """Return corners ``(k, 3)`` mm of the boxes, or of the enclosing box of another volume, after a rotation."""
+    if isinstance(volume, Boxes):
+        return rotated_boxes(volume.lo, volume.hi, rotation)
+    points = points_of(volume) @ rotation.T
+    return points.min(axis=0)[None], points.max(axis=0)[None]
+
+
+def _content(volume: BoundingVolume, enclosing: bool) -> tuple[bytes, ...]:
+    """Return what equal volumes have in common."""
+    if enclosing and not isinstance(volume, Boxes):
+        return (str(id(volume)).encode(),)
+    boxes = boxes_of(volume)
+    return boxes.lo.tobytes(), boxes.hi.tobytes()
+
+
 def _rotations(item: Item) -> Floats:
     """Return the allowed rotations ``(k, 3, 3)``; for a continuous freedom the present orientation alone."""
     return item.orientations.matrices if item.orientations.freedom == "list" else np.eye(3)[None]
 
 
-def _orientations(boxes: Boxes, rotations: Floats, space: Space) -> ItemType:
-    """Return one orientation for each rotation that gives different boxes."""
+def _orientations(turned: Sequence[tuple[Floats, Floats]], rotations: Floats, space: Space) -> ItemType:
+    """Return one orientation for each rotation that gives different boxes, from the corners after each rotation."""
     found: list[Orientation] = []
     seen: set[bytes] = set()
-    for rotation in rotations:
-        lo, hi = rotated_boxes(boxes.lo, boxes.hi, rotation)
-        least = lo.min(axis=0)
-        lo, hi = lo - least, hi - least
+    for rotation, (low, high) in zip(rotations, turned, strict=True):
+        least = low.min(axis=0)
+        lo, hi = low - least, high - least
         key = np.round(np.concatenate((lo, hi)) / SAME).astype(np.int64).tobytes()
         if key in seen:
             continue
@@ -234,12 +269,12 @@ def _orientations(boxes: Boxes, rotations: Floats, space: Space) -> ItemType:
     return tuple(found)
 
 
-def _fixed_boxes(problem: PackingProblem) -> tuple[Floats, Floats]:
+def _fixed_boxes(problem: PackingProblem, boxes_at: BoxesAt) -> tuple[Floats, Floats]:
     """Return the boxes of the fixed placements in build coordinates, each ``(m, 3)`` mm."""
     corners = [np.empty((0, 3))], [np.empty((0, 3))]
     for placement in problem.fixed:
-        boxes = boxes_of(problem.items[placement.item].volume)
-        for side, corner in zip(corners, rotated_boxes(boxes.lo, boxes.hi, placement.rotation), strict=True):
+        boxes = boxes_at(problem.items[placement.item].volume, placement.rotation)
+        for side, corner in zip(corners, boxes, strict=True):
             side.append(corner + placement.translation)
     return np.concatenate(corners[0]), np.concatenate(corners[1])
 

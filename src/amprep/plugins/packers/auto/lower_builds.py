@@ -1,0 +1,107 @@
+"""Low builds as the second aim of a builds problem: each build of a packing is packed again, as low as possible."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from amprep.measures.bounding_volume import points_of
+from amprep.measures.parts_bound import parts_bound
+from amprep.model.control import Stop, silent
+from amprep.model.packing import Packing, PackingProblem, Placement
+from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.params import AutoParams, SeparationParams
+
+BOXES_FRACTION = 0.05
+"""Fraction of the work for boxes that each build gets."""
+
+NEAR = 0.02
+"""Fraction of the height above its bound up to which a build is low enough."""
+
+LOWER = 1e-6
+"""Height (mm) by which a build must be lower to replace another."""
+
+
+def lower_builds(
+    problem: PackingProblem,
+    packing: Packing,
+    pack_boxes: Callable[..., PackerResult],
+    params: AutoParams,
+    rng: np.random.Generator,
+    stop: Stop,
+) -> Packing:
+    """Return a packing with the same items in each build, and lower builds; the last one, which is least full, first.
+
+    Each build is packed as enclosing boxes, and if that leaves it higher than its bound, as true shapes.
+    """
+    builds = list(packing.builds)
+    share = 0.3 * params.separation / max(len(builds), 1)
+    for number in reversed(range(len(builds))):
+        if stop():
+            break
+        part = stop.within(stop.remaining() / (number + 1)) if stop.deadline is not None else stop
+        builds[number] = _lowered(problem, builds[number], number, pack_boxes, params, share, rng, part)
+    return replace(packing, builds=tuple(builds))
+
+
+def heights_of(problem: PackingProblem, packing: Packing) -> list[float]:
+    """Return the height (mm) of each build."""
+    return [_height(problem, build) for build in packing.builds] or [0.0]
+
+
+def _lowered(
+    problem: PackingProblem,
+    build: tuple[Placement, ...],
+    number: int,
+    pack_boxes: Callable[..., PackerResult],
+    params: AutoParams,
+    work: float,
+    rng: np.random.Generator,
+    stop: Stop,
+) -> tuple[Placement, ...]:
+    """Return the lowest placements of the items of a build that are found."""
+    items = [placement.item for placement in build]
+    own = _alone(problem, items, number)
+    bound, height = parts_bound(own), _height(problem, build)
+    if height <= bound * (1.0 + NEAR):
+        return build
+    instance = prepare(own, enclosing=True)
+    budget = replace(params, work=BOXES_FRACTION * params.work, patience=0)
+    found = pack_boxes(instance, params=budget, rng=rng, stop=stop, progress=silent)
+    build, height = _better(problem, build, items, as_packing(instance, found))
+    if height <= bound * (1.0 + NEAR) or work <= 0.0 or stop():
+        return build
+    from amprep.plugins.packers.separation import pack_separation
+
+    shaped = pack_separation(own, params=SeparationParams(work=work), rng=rng, stop=stop, progress=silent)
+    return _better(problem, build, items, shaped)[0]
+
+
+def _alone(problem: PackingProblem, items: list[int], number: int) -> PackingProblem:
+    """Return the height problem of some items, which are counted anew; fixed ones are in the first build."""
+    new = {item: index for index, item in enumerate(items)}
+    fixed = tuple(replace(placed, item=new[placed.item]) for placed in problem.fixed) if number == 0 else ()
+    own = tuple(problem.items[item] for item in items)
+    return replace(problem, items=own, objective="height", fixed=fixed)
+
+
+def _better(
+    problem: PackingProblem, build: tuple[Placement, ...], items: list[int], found: Packing
+) -> tuple[tuple[Placement, ...], float]:
+    """Return the lower one of a build and a packing of its items, and its height (mm)."""
+    height = _height(problem, build)
+    if found.unplaced or len(found.builds) != 1:
+        return build, height
+    placed = tuple(replace(each, item=items[each.item]) for each in found.builds[0])
+    lower = _height(problem, placed)
+    return (placed, lower) if lower < height - LOWER else (build, height)
+
+
+def _height(problem: PackingProblem, build: tuple[Placement, ...]) -> float:
+    """Return the height (mm) of a build."""
+    tops = (
+        float((points_of(problem.items[each.item].volume) @ each.rotation[2]).max() + each.translation[2])
+        for each in build
+    )
+    return max(tops, default=0.0)

@@ -1,0 +1,162 @@
+"""True shapes after boxes: the packing of enclosing boxes first, then what packers of true shapes gain."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from amprep.measures.objective import objective_reached
+from amprep.measures.parts_bound import parts_bound
+from amprep.model.control import Progress, Stop
+from amprep.model.packing import Packing, PackingProblem, PackingStep, Status
+from amprep.plugins.packers.auto.lower_builds import heights_of, lower_builds
+from amprep.plugins.packers.extreme_points import construct
+from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
+from amprep.plugins.packers.instance.prepare import prepare
+from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, SeparationParams
+
+PackBoxes = Callable[..., PackerResult]
+"""`amprep.plugins.packers.auto.pack_boxes`."""
+
+BOXES_FRACTION = 0.2
+"""Fraction of the time for the enclosing boxes."""
+
+BUILDS_FRACTION = 0.7
+"""Fraction of the work and time for few builds; the rest is for low ones."""
+
+UNLIMITED = 1e9
+"""Work where a time limit is given, which is then used."""
+
+MET = 1e-9
+"""Fraction of the objective that is rounding."""
+
+# Strategy. Boxes take milliseconds and are often proved best for the true shapes too: one build is, and a height that
+# is that of the highest part. Then nothing else is done, and no kernel for true shapes is compiled. Else `separation`
+# packs the true shapes, and the better packing counts. With stacking, low builds are the second aim of few builds.
+
+
+def pack_true_shapes(
+    problem: PackingProblem,
+    pack_boxes: PackBoxes,
+    *,
+    params: AutoParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> Packing:
+    """Pack enclosing boxes, then the true shapes, and return the better packing with a record of the steps."""
+    if stop.deadline is not None:
+        params = replace(params, separation=UNLIMITED if params.separation > 0.0 else 0.0)
+    improved = Improvement(problem, stop, progress)
+    improved.add("enclosing boxes", lambda: _of_boxes(problem, pack_boxes, params, rng, stop, progress))
+    lowering = problem.objective == "builds" and problem.stacking
+    if problem.stacking and params.separation > 0.0 and not improved.ends():
+        fraction = BUILDS_FRACTION if lowering else 1.0
+        work = SeparationParams(work=fraction * params.separation)
+        improved.add("true shapes", lambda: _separated(problem, work, rng, _part(stop, fraction), progress))
+    if lowering and not stop():
+        improved.add(
+            "lower builds", lambda: lower_builds(problem, improved.best, pack_boxes, params, rng, stop)
+        )
+    return improved.packing()
+
+
+class Improvement:
+    """The best packing so far, its bound for the true shapes, and the steps that led to it."""
+
+    def __init__(self, problem: PackingProblem, stop: Stop, progress: Progress) -> None:
+        self.problem, self.stop, self.progress = problem, stop, progress
+        self.best = Packing(())
+        self.bound = np.nan
+        self.steps: list[PackingStep] = []
+
+    def add(self, method: str, step: Callable[[], Packing]) -> None:
+        """Do a step; its packing counts if it is better."""
+        begun = time.monotonic()
+        self.progress(0.0, method)
+        found = step()
+        if not self.steps:
+            too_large = [each.item for each in found.unplaced if each.reason == "too large"]
+            self.bound = parts_bound(self.problem, too_large)
+        if not self.steps or self._rank(found) < self._rank(self.best):
+            self.best = found
+        reached, height = objective_reached(self.problem, self.best), max(heights_of(self.problem, self.best))
+        self.steps.append(PackingStep(method, reached, height, time.monotonic() - begun))
+
+    def ends(self) -> bool:
+        """Return whether the best packing cannot be better, or there is no time to make it better."""
+        return self._is_optimal() or self.stop()
+
+    def packing(self) -> Packing:
+        """Return the best packing with the bound for true shapes and all steps."""
+        optimal = self._is_optimal()
+        left: Status = "infeasible" if self.best.status == "infeasible" else "feasible"
+        reason = "bound met" if optimal else self.stop.reason if self.stop() else "finished"
+        return replace(
+            self.best,
+            bound=self.bound,
+            bound_for=self.problem.bound_for,
+            status="optimal" if optimal else left,
+            stop_reason=reason,
+            steps=tuple(self.steps),
+        )
+
+    def _is_optimal(self) -> bool:
+        """Return whether all items are placed (or all that have a value) and the bound is met."""
+        reached = objective_reached(self.problem, self.best)
+        slack = MET * max(1.0, abs(reached))
+        if self.problem.objective == "fill":
+            return reached >= self.bound - slack
+        return not self.best.unplaced and reached <= self.bound + slack
+
+    def _rank(self, packing: Packing) -> tuple[float, ...]:
+        """Return a rank, smaller for a better packing: all placed, the objective, the sum of heights."""
+        reached, total = objective_reached(self.problem, packing), sum(heights_of(self.problem, packing))
+        if self.problem.objective == "fill":
+            return (-reached, total)
+        return (float(len(packing.unplaced)), reached, total)
+
+
+def _of_boxes(
+    problem: PackingProblem,
+    pack_boxes: PackBoxes,
+    params: AutoParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> Packing:
+    """Return a packing of the enclosing boxes: by `extreme-points`, and where it has many builds, by searching on."""
+    instance = prepare(problem, enclosing=True)
+    early = _part(stop, BOXES_FRACTION)
+    found = None
+    if problem.objective == "builds":
+        plain = ExtremePointsParams()
+        found = as_packing(
+            instance, construct(instance, params=plain, rng=rng, stop=early, progress=progress)
+        )
+        if found.status != "feasible" or early():
+            return found
+    budget = replace(params, work=params.boxes * params.work, proof=params.boxes * params.proof)
+    searched = as_packing(
+        instance, pack_boxes(instance, params=budget, rng=rng, stop=early, progress=progress)
+    )
+    return found if found is not None and len(searched.builds) >= len(found.builds) else searched
+
+
+def _separated(
+    problem: PackingProblem,
+    params: SeparationParams,
+    rng: np.random.Generator,
+    stop: Stop,
+    progress: Progress,
+) -> Packing:
+    """Return a packing of the true shapes."""
+    from amprep.plugins.packers.separation import pack_separation
+
+    return pack_separation(problem, params=params, rng=rng, stop=stop, progress=progress)
+
+
+def _part(stop: Stop, fraction: float) -> Stop:
+    """Return a stop for a fraction of the time that is left."""
+    return stop if stop.deadline is None else stop.within(fraction * stop.remaining())
