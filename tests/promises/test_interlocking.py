@@ -12,8 +12,8 @@ from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.order import DIRECTIONS, find_removal_order
 from amprep.host import Host
 from amprep.model import Boxes, BuildVolume, Item, Mesh, Packing, PackingProblem, Solid, Stop, silent
-from amprep.pipeline.packing.interlocking import free_locked_items
-from amprep.pipeline.packing.volume_bodies import VolumeBodies
+from amprep.repacking.interlocking import free_locked_items
+from amprep.repacking.volume_bodies import VolumeBodies
 
 HOST = Host.load()
 PACKERS = sorted(HOST.offers("packer"))

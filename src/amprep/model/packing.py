@@ -89,8 +89,8 @@ class PackingProblem:
     stacking
         Whether parts may be above one another; if not, all of them are at `lift`.
     interlocking
-        Whether parts may be locked into each other. A packer may ignore it: `amprep.pipeline.packing` puts locked parts
-        elsewhere.
+        Whether parts may be locked into each other. A packer may ignore it: `amprep.repacking` then
+        places locked parts elsewhere.
     """
 
     items: tuple[Item, ...]

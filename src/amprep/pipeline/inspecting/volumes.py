@@ -12,10 +12,10 @@ from amprep.hookspecs import VolumeMaker
 from amprep.host import Chosen
 from amprep.measures.bounding_volume import volume_of
 from amprep.model import Part, Progress, Stop
+from amprep.model.volume_meshes import box_mesh, meshes_of
 from amprep.pipeline.packing.bounding import bound_part
 from amprep.pipeline.resolve import ResolvedJob, choose_volumes
 from amprep.report.inspection.record import InspectedPart, InspectedVolume
-from amprep.report.volume_meshes import box_mesh, meshes_of
 
 ALL = "all"
 """Word that stands for every volume maker."""

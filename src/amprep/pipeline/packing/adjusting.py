@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from amprep.job import PackingSettings
 from amprep.model import Packing, PackingProblem, Part, Stop
 from amprep.model.counting import counted
-from amprep.pipeline.packing.even_layers import Evened, even_layers
-from amprep.pipeline.packing.interlocking import FreedPacking, free_locked_items
+from amprep.repacking.even_layers import Evened, even_layers
+from amprep.repacking.interlocking import FreedPacking, free_locked_items
 
 
 def adjusted(

@@ -9,12 +9,12 @@ from amprep.arrays import Floats
 from amprep.files import replacing
 from amprep.model.bounding_volume import TurnedVolume
 from amprep.model.mesh import Mesh, join_meshes
+from amprep.model.volume_meshes import meshes_of
 from amprep.report.picture import VIEW
 from amprep.report.picture.camera import box_corners, fitted
 from amprep.report.picture.colours import PALETTE, VOLUME
 from amprep.report.picture.render import render
 from amprep.report.picture.scene import PART_KIND, ColouredMesh
-from amprep.report.volume_meshes import meshes_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -19,11 +19,11 @@ from amprep.model import (
 )
 from amprep.model.counting import counted
 from amprep.model.mesh import join_meshes
+from amprep.model.volume_meshes import meshes_of
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.picture.colours import PALETTE, SUPPORT, VOLUME, part_colours
 from amprep.report.picture.marks import mark_radius, thinned
 from amprep.report.record import BuildRecord, RunRecord
-from amprep.report.volume_meshes import meshes_of
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:

@@ -5,9 +5,9 @@ import trimesh
 
 from amprep.model import Boxes, Mesh, TurnedVolume
 from amprep.model.rotations import quarter_turns
+from amprep.model.volume_meshes import box_mesh
 from amprep.report.inspection.picture import draw_volume, outlines
 from amprep.report.picture.colours import VOLUME, rgb
-from amprep.report.volume_meshes import box_mesh
 
 BOX = box_mesh(np.zeros(3), np.array([30.0, 20.0, 10.0]))
 

@@ -5,7 +5,7 @@ import pytest
 
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model import Boxes, ConvexPieces, Solid
-from amprep.report.volume_meshes import box_mesh, meshes_of
+from amprep.model.volume_meshes import box_mesh, meshes_of
 
 
 def test_each_box_becomes_a_closed_mesh_with_outward_normals():

@@ -12,7 +12,7 @@ from tests.shared.removal import arrays, cup
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.measures.objective import objective_reached
 from amprep.model import Boxes, BuildVolume, Item, Mesh, Packing, PackingProblem, Part, Placement, Solid, Stop
-from amprep.pipeline.packing.even_layers import even_layers
+from amprep.repacking.even_layers import even_layers
 from amprep.testing.problems import box_mesh
 
 

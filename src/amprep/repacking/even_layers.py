@@ -9,7 +9,7 @@ from amprep.arrays import Floats
 from amprep.geometry.meshes.cross_section import cross_section_areas
 from amprep.geometry.removal.vertical import too_near, vertical_travel
 from amprep.model import Packing, PackingProblem, Part, Placement, Stop
-from amprep.pipeline.packing.volume_bodies import VolumeBodies
+from amprep.repacking.volume_bodies import VolumeBodies
 
 # Strategy. The sum of the squared areas of all layers falls if and only if their variation does, since their sum stays.
 # One part after another, largest first, is moved to the height, within its free travel up and down, where that sum is

@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.geometry.removal.bodies import CollisionShape, MovableBody, movable_body
 from amprep.model import Boxes, PackingProblem, Placement
-from amprep.report.volume_meshes import box_mesh, meshes_of
+from amprep.model.volume_meshes import box_mesh, meshes_of
 
 PARALLEL = 1e-9
 """Tolerance of an entry of a rotation by quarter turns."""

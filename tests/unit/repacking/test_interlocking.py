@@ -22,7 +22,7 @@ from amprep.model import (
     Stop,
     Unplaced,
 )
-from amprep.pipeline.packing.interlocking import free_locked_items
+from amprep.repacking.interlocking import free_locked_items
 
 
 def problem_of(solids, size, **rules):

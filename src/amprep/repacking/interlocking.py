@@ -12,7 +12,7 @@ from amprep.geometry.removal.insertion import box_drops, drop
 from amprep.geometry.removal.order import DIRECTIONS, find_removal_order
 from amprep.measures.objective import objective_reached
 from amprep.model import Item, Packing, PackingProblem, Placement, Stop, Unplaced
-from amprep.pipeline.packing.volume_bodies import VolumeBodies
+from amprep.repacking.volume_bodies import VolumeBodies
 
 # Strategy. A packing of one box per part, parallel to the axes, has no locked groups: the box with the highest lower
 # face is below no other, and leaves upwards. In other packings, the smallest part of each locked group is taken out
