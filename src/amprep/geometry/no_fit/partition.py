@@ -18,13 +18,19 @@ if TYPE_CHECKING:
 # one with most faces in it. At last cells are joined in pairs whose hull is not larger than both of them.
 
 MOST_FACES = 300
-"""Number of triangles up to which the decomposition is quick: it takes a second or two then."""
+"""Number of triangles up to which the decomposition is quick: it takes half a second at most then."""
+
+MOST_CELLS = 100
+"""Number of cells from which on the decomposition is given up: a curved mesh needs more than packing can use."""
 
 IN_PLANE = 1e-5
 """Distance from a plane that counts as none, as a fraction of the size of the mesh; at most `CONTACT_TOLERANCE` / 2."""
 
 EMPTY = 0.2
 """Volume of a cell over its surface, as a fraction of the distance that counts as none, up to which it is left out."""
+
+NEAR = 1e-4
+"""Distance of pieces that touch, as a fraction of the largest coordinate."""
 
 CONVEX = 1e-6
 """Excess of the hull over the volume of a mesh, as a fraction of it, up to which the mesh is convex."""
@@ -50,7 +56,7 @@ def exact_pieces(vertices: Floats, triangles: Int64s, stop: Callable[[], bool]) 
 
     Returns
     -------
-    The pieces; None after a stop, or if nothing is inside.
+    The pieces; None after a stop, if nothing is inside, or if there are more than `MOST_CELLS`.
     """
     if _is_convex(vertices, triangles):
         return [extreme_points(vertices)]
@@ -66,7 +72,7 @@ def _is_convex(vertices: Floats, triangles: Int64s) -> bool:
 
 
 def _cells(vertices: Floats, triangles: Int64s, stop: Callable[[], bool]) -> list[Floats]:
-    """Return the corners of the cells inside the mesh; none after a stop."""
+    """Return the corners of the cells inside the mesh; none after a stop, or if there are too many."""
     from manifold3d import Manifold
 
     lo, hi = vertices.min(axis=0), vertices.max(axis=0)
@@ -75,7 +81,7 @@ def _cells(vertices: Floats, triangles: Int64s, stop: Callable[[], bool]) -> lis
     inside: list[Floats] = []
     todo: list[tuple[Manifold, list[Facet]]] = [(box, _facets(vertices[triangles], near))]
     while todo:
-        if stop():
+        if stop() or len(inside) + len(todo) > MOST_CELLS:
             return []
         cell, facets = todo.pop()
         if facets:
@@ -158,6 +164,8 @@ def _joined(cells: list[Floats], stop: Callable[[], bool]) -> list[Floats]:
     allowed = 1e-6 * sum(volume.values())
     joints: dict[tuple[int, int], float] = {}
     for i in pieces:
+        if stop():
+            return list(pieces.values())
         joints |= _joints(i, [j for j in pieces if j < i], pieces, volume, allowed)
     number = len(cells)
     while joints and not stop():
@@ -173,9 +181,14 @@ def _joined(cells: list[Floats], stop: Callable[[], bool]) -> list[Floats]:
 def _joints(
     one: int, others: list[int], pieces: dict[int, Floats], volume: dict[int, float], allowed: float
 ) -> dict[tuple[int, int], float]:
-    """Return the pairs of a piece with others that may be joined, with the volume of their hull."""
+    """Return the pairs of a piece with others that may be joined, with the volume of their hull; they touch."""
     found = {}
+    low, high = pieces[one].min(axis=0), pieces[one].max(axis=0)
+    near = NEAR * float(np.abs(pieces[one]).max())
     for other in others:
+        apart = np.maximum(pieces[other].min(axis=0) - high, low - pieces[other].max(axis=0))
+        if apart.max() > near:
+            continue
         together = hull_volume(np.concatenate((pieces[one], pieces[other])))
         if together - volume[one] - volume[other] <= allowed:
             found[one, other] = together

@@ -84,3 +84,17 @@ def test_the_winding_number_is_one_inside_and_zero_outside():
     ball = trimesh.creation.icosphere(2)
     assert winding_number(ball.triangles, np.array([0.2, 0.1, -0.3])) == pytest.approx(1.0)
     assert winding_number(ball.triangles, np.array([0.2, 1.1, -0.3])) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_curved_mesh_that_needs_too_many_pieces_is_given_up():
+    ball = Manifold.sphere(8, 12).rotate([10, 20, 30])
+    solid = Manifold.sphere(10, 16) - ball.translate([5, 0, 0]) - ball.translate([-6, 3, 0])
+    assert pieces_of(*arrays(solid)) is None
+
+
+def test_the_bars_of_a_window_are_whole_although_planes_cut_them():
+    window = Manifold.cube([30, 30, 2])
+    for x in (2, 16):
+        for y in (2, 16):
+            window -= Manifold.cube([12, 12, 2]).translate([x, y, 0])
+    assert len(pieces_of(*arrays(window))) <= 9

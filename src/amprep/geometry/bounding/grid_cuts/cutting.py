@@ -50,14 +50,14 @@ class SetOfCells:
 
 def cut_cells_apart(solid: SolidCells, most: int, stop: Callable[[], bool]) -> list[SetOfCells]:
     """Cut the cells of a solid into about `most` sets; the set whose hull has the greatest excess is cut next."""
-    from amprep.kernels.bounding.grid_cuts.cut import cut_cells, measure_set
+    from amprep.kernels.bounding.grid_cuts.cut import cut_cells
 
     cells, directions = solid.cells, sphere_directions()
     work, found = _work(cells), _measured_sets()
     numbers = np.zeros(2, np.int64)
     members = np.arange(len(cells.place), dtype=np.int32)
-    measure_set(cells, work, directions, members, found)
-    todo = _sets(members, found, 1)
+    count = cut_cells(cells, work, directions, members, np.empty(6), numbers, found)
+    todo = _sets(members, found, count)
     done: list[SetOfCells] = []
     convex = CONVEX * float(cells.volume.sum())
     while todo and len(todo) + len(done) < most and not stop():

@@ -7,12 +7,18 @@ import numpy as np
 
 from amprep.kernels.bounding.grid_cuts.records import Directions
 
+BASES = ((1, 0, 0), (1, 1, 0), (1, 1, 1), (2, 1, 0), (2, 1, 1), (2, 2, 1))
+"""Directions of which all follow by permutations and signs."""
+
+TRIANGLES = ((0, 3, 4), (3, 1, 5), (4, 5, 2), (3, 5, 4))
+"""Triangles between the bases; those of the whole sphere follow in the same way."""
+
 
 @cache
 def sphere_directions() -> Directions:
-    """Return the directions to the corners, edges and faces of a cube, and between those to edges and faces."""
+    """Return the directions to the corners, edges and faces of a cube, and those between neighbours of these."""
     known: dict[tuple[int, ...], int] = {}
-    for base in ((1, 0, 0), (1, 1, 0), (1, 1, 1), (2, 1, 0)):
+    for base in BASES:
         for axes in sorted(set(permutations(base))):
             for signs in product((1, -1), repeat=3):
                 direction = tuple(a * s for a, s in zip(axes, signs, strict=True))
@@ -24,8 +30,8 @@ def sphere_directions() -> Directions:
     triangles = []
     for axes in permutations(range(3)):
         for signs in product((1, -1), repeat=3):
-            corners = [_placed(base, axes, signs) for base in ((1, 0, 0), (2, 1, 0), (1, 1, 0), (1, 1, 1))]
-            for three in ((0, 1, 3), (1, 2, 3)):
+            corners = [_placed(base, axes, signs) for base in BASES]
+            for three in TRIANGLES:
                 triangles.append(_outward([corners[k] for k in three], known))
     both = np.concatenate((normals, -normals))
     return Directions(normals, np.array(triangles, np.int32), np.linalg.inv(both[np.array(triangles)]))

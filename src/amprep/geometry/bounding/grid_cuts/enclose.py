@@ -1,20 +1,29 @@
 """Enclose points by a convex polyhedron of few corners."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.bounding.convex.prepared import extreme_points
+from amprep.geometry.bounding.grid_cuts.directions import sphere_directions
 
-# Strategy. Most points are inside the hull of the extreme points in some directions. Only the others are given to
-# Qhull, which finds the exact hull. If that has too many corners, some of its planes are kept: a polyhedron of f
-# faces has at most 2 f - 4 corners. Planes of large faces and those farthest from all chosen ones come first, so that
-# the planes around a round piece are evenly spread. The polyhedron contains the hull because each plane does.
+if TYPE_CHECKING:
+    from scipy.spatial import ConvexHull
+
+# Strategy. Most points are inside the hull of the extreme points in some directions, and with a few others it is exact.
+# If it has too many corners, or if many points are outside, because the piece is round, some of its planes are kept and
+# moved out to the points. A polyhedron of f faces has at most 2 f - 4 corners. Planes of large faces and those farthest
+# from all chosen ones come first, so that the planes around a round piece are evenly spread.
 
 MOST_CORNERS = 40
 """Largest number of corners of a piece."""
 
 MOST_FACES = MOST_CORNERS // 2 + 2
 """Number of faces that never have more corners."""
+
+FEW = 50
+"""All points outside the hull of some are added to them if they are so few, and else the farthest only."""
 
 ROUNDING = 1e-6
 """Distance (mm) that pieces are moved outward for the rounding of their corners."""
@@ -24,25 +33,6 @@ FLAT = 1e-3
 
 COPLANAR = 1e-6
 """Difference of unit normals up to which faces are in one plane."""
-
-
-def hull_of(points: Floats, extreme: Floats) -> Floats:
-    """Return the corners ``(k, 3)`` of the convex hull of points, of which some extreme ones are known.
-
-    Points outside by less than half of `ROUNDING` may be left out.
-    """
-    from scipy.spatial import ConvexHull, QhullError
-
-    from amprep.kernels.bounding.grid_cuts.extremes import mark_outside
-
-    try:
-        planes = ConvexHull(extreme).equations
-    except (QhullError, ValueError):
-        return extreme_points(np.concatenate((points, extreme)))
-    outside = np.empty(len(points), np.bool_)
-    different = np.unique(np.round(planes, 9), axis=0)
-    mark_outside(points, different, ROUNDING / 2.0, outside)
-    return extreme_points(np.concatenate((extreme, points[outside])))
 
 
 def enclosing_corners(points: Floats, extreme: Floats, outward: float) -> Floats:
@@ -55,20 +45,58 @@ def enclosing_corners(points: Floats, extreme: Floats, outward: float) -> Floats
     outward
         Distance (mm) of the points from its faces at least.
     """
-    from scipy.spatial import ConvexHull, QhullError
-
-    corners = hull_of(points, extreme)
-    try:
-        hull = ConvexHull(corners)
-    except (QhullError, ValueError):
-        return _thickened(corners, outward)
-    if len(corners) > MOST_CORNERS:
-        corners = _fewer_corners(corners, hull.equations[:, :3], _areas(corners[hull.simplices]))
+    hull, outside = _hull(extreme), points
+    if hull is not None:
+        outside = points[_outside(points, hull.equations)]
+    if hull is not None and len(outside) > 0:
+        added = _farthest(outside, hull.equations)
+        extreme = np.concatenate((extreme, outside[added]))
+        outside = np.delete(outside, added, axis=0)
+        hull = _hull(extreme)
+    if hull is None:
+        return _thickened(extreme_points(np.concatenate((points, extreme))), outward)
+    corners = extreme[hull.vertices]
+    if len(outside) > 0 or len(corners) > MOST_CORNERS:
+        areas = _areas(extreme[hull.simplices])
+        corners = _few_corners(np.concatenate((corners, outside)), hull.equations[:, :3], areas)
     middle = corners.mean(axis=0)
-    inner = float(-(hull.equations[:, :3] @ middle + hull.equations[:, 3]).max())
+    inner = -float((hull.equations[:, :3] @ middle + hull.equations[:, 3]).max())
     if inner < FLAT * float(np.linalg.norm(corners - middle, axis=1).max()):
         return _thickened(corners, outward)
     return np.asarray(middle + (corners - middle) * (1.0 + (outward + ROUNDING) / inner))
+
+
+def enclosing_hull(points: Floats) -> Floats:
+    """Return the corners ``(k, 3)`` of a convex polyhedron that contains points ``(n, 3)`` mm."""
+    low, size = points.min(axis=0), np.maximum(np.ptp(points, axis=0), 1e-9)
+    products = ((points - low) / size) @ sphere_directions().normals.T
+    extreme = np.unique(np.concatenate((products.argmax(axis=0), products.argmin(axis=0))))
+    return enclosing_corners(points, points[extreme], 0.0)
+
+
+def _hull(points: Floats) -> "ConvexHull | None":
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return ConvexHull(points)
+    except (QhullError, ValueError):
+        return None
+
+
+def _outside(points: Floats, planes: Floats) -> Bools:
+    """Tell which points are outside a hull by more than half of `ROUNDING`."""
+    from amprep.kernels.bounding.grid_cuts.extremes import mark_outside
+
+    outside = np.empty(len(points), np.bool_)
+    mark_outside(points, np.unique(np.round(planes, 9), axis=0), ROUNDING / 2.0, outside)
+    return outside
+
+
+def _farthest(points: Floats, planes: Floats) -> Int64s:
+    """Return the points that are farthest outside of each plane; all if they are few."""
+    if len(points) <= FEW:
+        return np.arange(len(points))
+    return np.unique((points @ planes[:, :3].T + planes[:, 3]).argmax(axis=0))
 
 
 def _thickened(corners: Floats, outward: float) -> Floats:
@@ -82,8 +110,8 @@ def _areas(triangles: Floats) -> Floats:
     return np.asarray(np.linalg.norm(across, axis=1))
 
 
-def _fewer_corners(corners: Floats, normals: Floats, area: Floats) -> Floats:
-    """Return the corners of a polyhedron of some planes of a hull, or its corners if that fails."""
+def _few_corners(points: Floats, normals: Floats, area: Floats) -> Floats:
+    """Return the corners of a polyhedron of few faces that contains points, or those of their hull if that fails."""
     from scipy.spatial import HalfspaceIntersection, QhullError
 
     key = np.round(normals / COPLANAR).astype(np.int64)
@@ -91,13 +119,12 @@ def _fewer_corners(corners: Floats, normals: Floats, area: Floats) -> Floats:
     weight: Floats = np.concatenate((np.zeros(6), np.bincount(which.ravel(), area))).astype(np.float64)
     normals = np.concatenate((np.eye(3), -np.eye(3), normals[first]))
     chosen = normals[_spread(normals, weight)]
-    offsets = (corners @ chosen.T).max(axis=0)
-    middle = corners.mean(axis=0)
+    offsets = (points @ chosen.T).max(axis=0)
     try:
-        found = HalfspaceIntersection(np.column_stack((chosen, -offsets)), middle).intersections
+        found = HalfspaceIntersection(np.column_stack((chosen, -offsets)), points.mean(axis=0)).intersections
     except (QhullError, ValueError):
-        return corners
-    return extreme_points(np.asarray(found)) if np.isfinite(found).all() else corners
+        return extreme_points(points)
+    return extreme_points(np.asarray(found if np.isfinite(found).all() else points))
 
 
 def _spread(normals: Floats, area: Floats) -> Int64s:

@@ -4,14 +4,21 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int16s, Int32s, Int64s
-from amprep.kernels.bounding.boxes.polygons import MOST_CORNERS, clip, measure
+from amprep.kernels.bounding.boxes.polygons import clip
 from amprep.kernels.bounding.grid_cuts.records import ClippedSurface, GridPlanes
 from amprep.kernels.helper import helper
 
 # Strategy. The coordinates of the vertices are compared exactly with the planes of the grid; vertices that should be
 # in a plane have been moved into it. A triangle in a plane belongs to the cell on the side of the material, any other
 # one only to cells whose interior it meets. So a cell next to a face of the solid sees nothing of it. Most triangles
-# of a fine mesh are in one cell as a whole; the others are clipped plane by plane.
+# of a fine mesh are in one cell as a whole; the others are clipped plane by plane, and what is below a plane waits on a
+# stack until it is clipped along the next axis.
+
+_CORNERS = 16
+"""Greatest number of corners of a triangle that was clipped by six planes."""
+
+_STACK = 256
+"""Polygons that wait: at most one for each plane of the grid."""
 
 
 @helper
@@ -56,16 +63,13 @@ def _add(surface: ClippedSurface, polygon: Floats, count: int, cell: int, floor:
 
 
 @helper
-def _cut_off(
-    polygon: Floats, count: int, axis: int, plane: float, lower: Floats, rest: Floats
-) -> tuple[int, int]:
-    """Write what is below a plane to `lower`, keep what is above; return both numbers of corners."""
-    below = clip(polygon, count, axis, plane, -1.0, lower)
-    above = clip(polygon, count, axis, plane, 1.0, rest)
-    for i in range(above):
-        for c in range(3):
-            polygon[i, c] = rest[i, c]
-    return below, above
+def _normal(polygon: Floats, axis: int) -> float:
+    """Component of the normal of a triangle, twice as long as its area."""
+    b, c = (axis + 1) % 3, (axis + 2) % 3
+    return float(
+        (polygon[1, b] - polygon[0, b]) * (polygon[2, c] - polygon[0, c])
+        - (polygon[1, c] - polygon[0, c]) * (polygon[2, b] - polygon[0, b])
+    )
 
 
 @njit(cache=True)
@@ -88,82 +92,70 @@ def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface
     int
         Number of corners; -1 if there is no room for them.
     """
-    work = np.empty((5, MOST_CORNERS, 3))
-    whole, slab, row, cell, rest = work[0], work[1], work[2], work[3], work[4]
+    stack = np.empty((_STACK, _CORNERS, 3))
+    counts, axes = np.empty(_STACK, np.int64), np.empty(_STACK, np.int64)
+    cell = np.empty((_STACK, 3), np.int64)
+    polygon, rest, normal = np.empty((_CORNERS, 3)), np.empty((_CORNERS, 3)), np.empty(3)
     seen = np.full(len(points), -1, np.int64)
-    bounds = np.empty(6)
-    px, py, pz = planes
-    ny, nz = len(py) - 1, len(pz) - 1
+    ny, nz = len(planes[1]) - 1, len(planes[2]) - 1
     out, cells = surface.points, surface.cells
     used = 0
     for t in range(len(triangles)):
         for i in range(3):
             for c in range(3):
-                whole[i, c] = points[triangles[t, i], c]
-        ux, uy, uz = whole[1, 0] - whole[0, 0], whole[1, 1] - whole[0, 1], whole[1, 2] - whole[0, 2]
-        vx, vy, vz = whole[2, 0] - whole[0, 0], whole[2, 1] - whole[0, 1], whole[2, 2] - whole[0, 2]
-        nx, mid, up = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        measure(whole, 3, bounds)
-        x0, x1 = _span(px, bounds[0], bounds[3], nx)
-        y0, y1 = _span(py, bounds[1], bounds[4], mid)
-        z0, z1 = _span(pz, bounds[2], bounds[5], up)
-        if x0 == x1 and y0 == y1 and z0 == z1:
-            at = (x0 * ny + y0) * nz + z0
-            if used + 3 > len(out):
-                return -1
-            for i in range(3):
-                if seen[triangles[t, i]] != at:
-                    seen[triangles[t, i]] = at
-                    cells[used] = at
-                    for c in range(3):
-                        out[used, c] = whole[i, c]
-                    used += 1
-            _add(surface, whole, 3, at, pz[z0])
-            continue
-        n_whole = 3
-        for x in range(x0, x1 + 1):
-            if x < x1:
-                n_slab, n_whole = _cut_off(whole, n_whole, 0, px[x + 1], slab, rest)
-            else:
-                n_slab = n_whole
-                for i in range(n_whole):
-                    for c in range(3):
-                        slab[i, c] = whole[i, c]
-            if n_slab < 3:
-                continue
-            measure(slab, n_slab, bounds)
-            y0, y1 = _span(py, bounds[1], bounds[4], mid)
-            for y in range(y0, y1 + 1):
-                if y < y1:
-                    n_row, n_slab = _cut_off(slab, n_slab, 1, py[y + 1], row, rest)
+                stack[0, i, c] = points[triangles[t, i], c]
+        for c in range(3):
+            normal[c] = _normal(stack[0], c)
+        counts[0], axes[0], top, whole = 3, 0, 1, True
+        while top > 0:
+            top -= 1
+            count, axis = counts[top], axes[top]
+            for i in range(count):
+                for c in range(3):
+                    polygon[i, c] = stack[top, i, c]
+            x, y, z = cell[top, 0], cell[top, 1], cell[top, 2]
+            while axis < 3:
+                low, high = polygon[0, axis], polygon[0, axis]
+                for i in range(1, count):
+                    low, high = min(low, polygon[i, axis]), max(high, polygon[i, axis])
+                first, last = _span(planes[axis], low, high, normal[axis])
+                if last > first:
+                    whole = False
+                for at in range(first, last):
+                    below = clip(polygon, count, axis, planes[axis][at + 1], -1.0, stack[top])
+                    count = clip(polygon, count, axis, planes[axis][at + 1], 1.0, rest)
+                    for i in range(count):
+                        for c in range(3):
+                            polygon[i, c] = rest[i, c]
+                    if below > 2:
+                        cell[top, 0], cell[top, 1], cell[top, 2] = x, y, z
+                        cell[top, axis] = at
+                        counts[top], axes[top] = below, axis + 1
+                        top += 1
+                if axis == 0:
+                    x = last
+                elif axis == 1:
+                    y = last
                 else:
-                    n_row = n_slab
-                    for i in range(n_slab):
-                        for c in range(3):
-                            row[i, c] = slab[i, c]
-                if n_row < 3:
-                    continue
-                measure(row, n_row, bounds)
-                z0, z1 = _span(pz, bounds[2], bounds[5], up)
-                for z in range(z0, z1 + 1):
-                    if z < z1:
-                        n_cell, n_row = _cut_off(row, n_row, 2, pz[z + 1], cell, rest)
-                    else:
-                        n_cell = n_row
-                        for i in range(n_row):
-                            for c in range(3):
-                                cell[i, c] = row[i, c]
-                    if n_cell < 3:
+                    z = last
+                axis += 1
+                if count < 3:
+                    break
+            if count < 3:
+                continue
+            if used + count > len(out):
+                return -1
+            number = (x * ny + y) * nz + z
+            for i in range(count):
+                if whole:
+                    if seen[triangles[t, i]] == number:
                         continue
-                    at = (x * ny + y) * nz + z
-                    if used + n_cell > len(out):
-                        return -1
-                    for i in range(n_cell):
-                        cells[used] = at
-                        for c in range(3):
-                            out[used, c] = cell[i, c]
-                        used += 1
-                    _add(surface, cell, n_cell, at, pz[z])
+                    seen[triangles[t, i]] = number
+                cells[used] = number
+                for c in range(3):
+                    out[used, c] = polygon[i, c]
+                used += 1
+            _add(surface, polygon, count, number, planes[2][z])
     return used
 
 

@@ -103,25 +103,30 @@ def _sort(cells: GridCells, work: CutWork, members: Int32s, axis: int) -> tuple[
 
 
 @helper
-def _corner(cells: GridCells, cell: int, corner: int) -> int:
-    """Return the point of a corner of a cell."""
+def _corner(cells: GridCells, x: int, y: int, z: int) -> int:
+    """Return the point of a corner of the grid."""
     _, ny, nz = cells.number.shape
-    x = cells.place[cell, 0] + (corner >> 2)
-    y = cells.place[cell, 1] + ((corner >> 1) & 1)
-    z = cells.place[cell, 2] + (corner & 1)
     return int(cells.first[-1] + (x * (ny + 1) + y) * (nz + 1) + z)
 
 
 @helper
-def _at_edge(cells: GridCells, cell: int, corner: int, least: Int64s, most: Int64s) -> bool:
-    """Tell whether a corner in the solid is in two faces of a box of cells."""
+def _point(cells: GridCells, cell: int, k: int, least: Int64s, most: Int64s) -> int:
+    """Return a point of the surface in a cell, and after all of these its corners; -1 for a corner that is no matter.
+
+    A corner matters if it is in the solid and in two faces of a box of cells.
+    """
+    corner = k - (cells.first[cell + 1] - cells.first[cell])
+    if corner < 0:
+        return int(cells.first[cell] + k)
     if not (cells.inside[cell] >> corner) & 1:
-        return False
-    faces = 0
-    for c in range(3):
-        at = cells.place[cell, c] + ((corner >> (2 - c)) & 1)
-        faces += 1 if at == least[c] or at == most[c] + 1 else 0
-    return faces >= 2
+        return -1
+    x = cells.place[cell, 0] + (corner >> 2)
+    y = cells.place[cell, 1] + ((corner >> 1) & 1)
+    z = cells.place[cell, 2] + (corner & 1)
+    faces = 1 if x == least[0] or x == most[0] + 1 else 0
+    faces += 1 if y == least[1] or y == most[1] + 1 else 0
+    faces += 1 if z == least[2] or z == most[2] + 1 else 0
+    return int(_corner(cells, x, y, z)) if faces > 1 else -1
 
 
 @helper
@@ -130,7 +135,6 @@ def _measure(
 ) -> None:
     """Find the box, the extreme points and the volumes of a set of cells."""
     least, most = np.empty(3, np.int64), np.empty(3, np.int64)
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
     best = np.full(DIRECTIONS, -np.inf)
     for c in range(3):
         least[c], most[c] = 1 << 30, -1
@@ -138,31 +142,19 @@ def _measure(
         for c in range(3):
             least[c] = min(least[c], cells.place[members[i], c])
             most[c] = max(most[c], cells.place[members[i], c])
-    for i in range(len(members)):
-        cell = members[i]
-        for p in range(cells.first[cell], cells.first[cell + 1]):
-            for c in range(3):
-                low[c] = min(low[c], cells.points[p, c])
-                high[c] = max(high[c], cells.points[p, c])
-        for corner in range(8):
-            if _at_edge(cells, cell, corner, least, most):
-                p = _corner(cells, cell, corner)
-                for c in range(3):
-                    low[c] = min(low[c], cells.points[p, c])
-                    high[c] = max(high[c], cells.points[p, c])
     frame = found.frame[k]
-    set_frame(low, high, frame)
+    low = cells.points[_corner(cells, least[0], least[1], least[2])]
+    set_frame(low, cells.points[_corner(cells, most[0] + 1, most[1] + 1, most[2] + 1)], frame)
     found.volume[k] = 0.0
     for i in range(len(members)):
         cell = members[i]
         value, index = work.value[cell], work.point[cell]
         for d in range(DIRECTIONS):
             value[d] = -np.inf
-        for p in range(cells.first[cell], cells.first[cell + 1]):
-            add_point(cells.points, p, frame, directions, value, index)
-        for corner in range(8):
-            if _at_edge(cells, cell, corner, least, most):
-                add_point(cells.points, _corner(cells, cell, corner), frame, directions, value, index)
+        for e in range(cells.first[cell + 1] - cells.first[cell] + 8):
+            p = _point(cells, cell, e, least, most)
+            if p >= 0:
+                add_point(cells.points, p, frame, directions, value, index)
         work.empty[cell] = 1 if value[0] == -np.inf else 0
         found.volume[k] += cells.volume[cell]
         for d in range(DIRECTIONS):
@@ -172,15 +164,6 @@ def _measure(
     found.hull[k] = 0.0
     if best[0] > -np.inf:
         found.hull[k] = estimate_volume(cells.points, frame, directions, best, found.points[k], work.local)
-
-
-@njit(cache=True)
-def measure_set(
-    cells: GridCells, work: CutWork, directions: Directions, members: Int32s, found: MeasuredSets
-) -> None:
-    """Find the box, the extreme points and the volumes of a set of cells, as the first of `found`."""
-    _measure(cells, work, directions, members, found, 0)
-    found.end[0] = len(members)
 
 
 @helper
@@ -243,7 +226,8 @@ def cut_cells(
     frame
         The box around the set.
     numbers
-        ``(2,)`` number of sweeps, and last number of a set; both are raised.
+        ``(2,)`` number of sweeps, and last number of a set; both are raised. As long as there is no set, none is cut:
+        the components of all cells become sets.
     found
         Receives what is known of the components.
 
@@ -252,7 +236,9 @@ def cut_cells(
     int
         Number of components; 1 for a set that no plane cuts. -1 if there are too many.
     """
-    axis, layer = _best_plane(cells, work, directions, members, frame, numbers)
+    axis, layer = -1, 0
+    if numbers[1] > 0:
+        axis, layer = _best_plane(cells, work, directions, members, frame, numbers)
     numbers[0] += 1
     for i in range(len(members)):
         work.parent[members[i]] = members[i]

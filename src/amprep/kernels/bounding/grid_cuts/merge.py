@@ -8,6 +8,10 @@ from amprep.kernels.bounding.grid_cuts.extremes import add_point, estimate_volum
 from amprep.kernels.bounding.grid_cuts.records import DIRECTIONS, Directions
 from amprep.kernels.helper import helper
 
+# Strategy. A matrix holds by how much the hull of each pair of sets that touch is larger than both. The least entry is
+# merged, and the entries of the new set are computed again: about a thousand estimates for 64 sets. The extreme points
+# of two sets are chosen again for their common box, so that errors do not add up.
+
 
 @helper
 def _distinct(index: Int32s, kept: Int32s) -> int:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from amprep.arrays import Bytes, Floats, Int32s, Int64s
 
-DIRECTIONS = 50
+DIRECTIONS = 98
 """Number of directions in which extreme points of sets are known."""
 
 

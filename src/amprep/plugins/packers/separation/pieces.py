@@ -10,6 +10,7 @@ from amprep.arrays import Floats
 from amprep.geometry.bounding.convex.prepared import extreme_points
 from amprep.geometry.bounding.grid_cuts.decompose import SETS, CutSolid, cut_solid
 from amprep.geometry.bounding.grid_cuts.distribute import distribute_pieces
+from amprep.geometry.bounding.grid_cuts.enclose import enclosing_hull
 from amprep.geometry.meshes.topology import edges_match
 from amprep.geometry.no_fit.partition import MOST_FACES, exact_pieces, hull_volume
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
@@ -125,10 +126,10 @@ def _given_or_exact(volume: BoundingVolume, most: int, stop: Stop) -> PieceSet |
 
 def _hull(volume: Solid) -> PieceSet:
     """Return the hull of a solid as its only piece; its excess is 0 if the solid cannot be cut."""
-    mesh = volume.mesh
+    mesh, hull = volume.mesh, enclosing_hull(volume.mesh.vertices)
     if mesh.signed_volume <= 0.0 or not edges_match(mesh.triangles):
-        return PieceSet((extreme_points(mesh.vertices),), 0.0)
-    return _piece_set([extreme_points(mesh.vertices)], mesh.signed_volume)
+        return PieceSet((hull,), 0.0)
+    return _piece_set([hull], mesh.signed_volume)
 
 
 def _piece_set(pieces: list[Floats], volume: float) -> PieceSet:
