@@ -50,11 +50,11 @@ def amprep_packers() -> Iterable[Packer]:
         name="auto",
         summary="Enclosing boxes at once, then the true shapes; of boxes alone, few builds with a proven bound.",
         run=later("amprep.plugins.packers.auto:pack_auto"),
-        accepts=replace(_ALL, volumes=_ANY_VOLUME),
+        accepts=replace(_ALL, volumes=_ANY_VOLUME, orientations=_ANY_LIST | {"about-z"}),
         params=AutoParams,
         efforts={
-            "fast": {"work": 20.0, "proof": 40.0, "separation": 600.0},
-            "thorough": {"work": 1000.0, "proof": 4000.0, "separation": 60_000.0},
+            "fast": {"work": 20.0, "proof": 40.0, "separation": 600.0, "plates": 1500.0},
+            "thorough": {"work": 1000.0, "proof": 4000.0, "separation": 60_000.0, "plates": 120_000.0},
         },
         volumes="mesh",
     )
@@ -135,6 +135,7 @@ def amprep_packers() -> Iterable[Packer]:
             stacking=frozenset({False}),
         ),
         params=PlatesParams,
+        efforts={"fast": {"work": 3000.0}, "thorough": {"work": 300_000.0}},
         volumes="mesh",
     )
     yield Packer(

@@ -90,7 +90,9 @@ class AutoParams:
     boxes
         Fraction of both budgets for the enclosing boxes, where true shapes are packed after them.
     separation
-        Millions of field values that `separation` reads; some 300 to 1000 per second. 0: boxes alone.
+        Millions of field values that `separation` reads, with stacking; some 300 to 1000 per second. 0: boxes alone.
+    plates
+        Millions of field values that `plates` reads, without stacking; some 500 to 1000 per second. 0: boxes alone.
     """
 
     ruin_size: int = 3
@@ -100,10 +102,12 @@ class AutoParams:
     proof: float = 400.0
     boxes: float = 0.2
     separation: float = 4000.0
+    plates: float = 8000.0
 
     def __post_init__(self) -> None:
         require_bounds(self, "ruin_size", at_least=1)
-        require_bounds(self, "temperature", "patience", "work", "proof", "separation", at_least=0)
+        require_bounds(self, "temperature", "patience", "work", "proof", at_least=0)
+        require_bounds(self, "separation", "plates", at_least=0)
         require_bounds(self, "boxes", at_least=0, at_most=1)
 
 

@@ -14,6 +14,7 @@ from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem
 from amprep.plugins.packers.auto.fill import fill_build
 from amprep.plugins.packers.auto.height import lower_build
+from amprep.plugins.packers.auto.lists import in_lists
 from amprep.plugins.packers.auto.ruin_and_recreate import RuinAndRecreate
 from amprep.plugins.packers.bounds.combinatorial import builds_bound
 from amprep.plugins.packers.bounds.fractional_cover import CoveringBound
@@ -31,7 +32,7 @@ def pack_auto(
     The first pass is always begun, so that a late stop still gives a result.
     """
     if all(isinstance(item.volume, Boxes) for item in problem.items):
-        instance = prepare(problem)
+        instance = prepare(in_lists(problem))
         return as_packing(
             instance, pack_boxes(instance, params=params, rng=rng, stop=stop, progress=progress)
         )

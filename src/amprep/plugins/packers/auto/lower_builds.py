@@ -9,6 +9,7 @@ from amprep.measures.bounding_volume import points_of
 from amprep.measures.parts_bound import parts_bound
 from amprep.model.control import Stop, silent
 from amprep.model.packing import Packing, PackingProblem, Placement
+from amprep.plugins.packers.auto.lists import in_lists
 from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
 from amprep.plugins.packers.instance.prepare import prepare
 from amprep.plugins.packers.params import AutoParams, SeparationParams
@@ -62,7 +63,7 @@ def _lowered(
 ) -> tuple[Placement, ...]:
     """Return the lowest placements of the items of a build that are found."""
     items = [placement.item for placement in build]
-    own = _alone(problem, items, number)
+    own = in_lists(_alone(problem, items, number))
     bound, height = parts_bound(own), _height(problem, build)
     if height <= bound * (1.0 + NEAR):
         return build

@@ -10,11 +10,12 @@ from amprep.measures.objective import objective_reached
 from amprep.measures.parts_bound import parts_bound
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, PackingStep, Status
+from amprep.plugins.packers.auto.lists import in_lists
 from amprep.plugins.packers.auto.lower_builds import heights_of, lower_builds
 from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
 from amprep.plugins.packers.instance.prepare import prepare
-from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, SeparationParams
+from amprep.plugins.packers.params import AutoParams, ExtremePointsParams, PlatesParams, SeparationParams
 
 PackBoxes = Callable[..., PackerResult]
 """`amprep.plugins.packers.auto.pack_boxes`."""
@@ -33,7 +34,7 @@ MET = 1e-9
 
 # Strategy. Boxes take milliseconds and are often proved best for the true shapes too: one build is, and a height that
 # is that of the highest part. Then nothing else is done, and no kernel for true shapes is compiled. Else `separation`
-# packs the true shapes, and the better packing counts. With stacking, low builds are the second aim of few builds.
+# or `plates` packs the true shapes, and the better packing counts. With stacking, few builds are then made low.
 
 
 def pack_true_shapes(
@@ -47,14 +48,15 @@ def pack_true_shapes(
 ) -> Packing:
     """Pack enclosing boxes, then the true shapes, and return the better packing with a record of the steps."""
     if stop.deadline is not None:
-        params = replace(params, separation=UNLIMITED if params.separation > 0.0 else 0.0)
+        params = replace(params, separation=_unlimited(params.separation), plates=_unlimited(params.plates))
     improved = Improvement(problem, stop, progress)
     improved.add("enclosing boxes", lambda: _of_boxes(problem, pack_boxes, params, rng, stop, progress))
     lowering = problem.objective == "builds" and problem.stacking
-    if problem.stacking and params.separation > 0.0 and not improved.ends():
+    work = params.separation if problem.stacking else params.plates
+    if work > 0.0 and not improved.ends():
         fraction = BUILDS_FRACTION if lowering else 1.0
-        work = SeparationParams(work=fraction * params.separation)
-        improved.add("true shapes", lambda: _separated(problem, work, rng, _part(stop, fraction), progress))
+        part = _part(stop, fraction)
+        improved.add("true shapes", lambda: _of_shapes(problem, fraction * work, rng, part, progress))
     if lowering and not stop():
         improved.add(
             "lower builds", lambda: lower_builds(problem, improved.best, pack_boxes, params, rng, stop)
@@ -127,7 +129,7 @@ def _of_boxes(
     progress: Progress,
 ) -> Packing:
     """Return a packing of the enclosing boxes: by `extreme-points`, and where it has many builds, by searching on."""
-    instance = prepare(problem, enclosing=True)
+    instance = prepare(in_lists(problem), enclosing=True)
     early = _part(stop, BOXES_FRACTION)
     found = None
     if problem.objective == "builds":
@@ -144,17 +146,24 @@ def _of_boxes(
     return found if found is not None and len(searched.builds) >= len(found.builds) else searched
 
 
-def _separated(
-    problem: PackingProblem,
-    params: SeparationParams,
-    rng: np.random.Generator,
-    stop: Stop,
-    progress: Progress,
+def _of_shapes(
+    problem: PackingProblem, work: float, rng: np.random.Generator, stop: Stop, progress: Progress
 ) -> Packing:
-    """Return a packing of the true shapes."""
+    """Return a packing of the true shapes: by `separation`, or without stacking by `plates`."""
+    if not problem.stacking:
+        from amprep.plugins.packers.plates import pack_plates
+
+        plates = PlatesParams(work=work)
+        return pack_plates(problem, params=plates, rng=rng, stop=stop, progress=progress)
     from amprep.plugins.packers.separation import pack_separation
 
-    return pack_separation(problem, params=params, rng=rng, stop=stop, progress=progress)
+    shapes = SeparationParams(work=work)
+    return pack_separation(in_lists(problem), params=shapes, rng=rng, stop=stop, progress=progress)
+
+
+def _unlimited(work: float) -> float:
+    """Return work for all of the time; none stays none."""
+    return UNLIMITED if work > 0.0 else 0.0
 
 
 def _part(stop: Stop, fraction: float) -> Stop:

@@ -19,7 +19,7 @@ from amprep.model import (
     silent,
 )
 from amprep.model.rotations import quarter_turns
-from amprep.plugins.packers import separation
+from amprep.plugins.packers import plates, separation
 from amprep.plugins.packers.auto import pack_auto
 from amprep.plugins.packers.params import AutoParams
 
@@ -106,13 +106,31 @@ def test_a_filling_of_true_shapes_has_more_value_than_one_of_boxes():
     assert packing.status == "optimal"
 
 
-def test_boxes_alone_are_packed_without_stacking_or_work_for_true_shapes(monkeypatch):
+def test_two_wedges_share_a_plate_on_which_nothing_is_stacked():
+    given = problem(2, (43, 43, 100), stacking=False)
+    packing = packed(given, plates=200.0)
+    assert [step.reached for step in packing.steps] == [2.0, 1.0]
+    assert packing.status == "optimal"
+    assert overlap(given, packing) < 1e-2
+    assert check_packing(given, packing) == []
+
+
+@pytest.mark.parametrize("stacking", [False, True])
+def test_boxes_alone_are_packed_without_work_for_true_shapes(monkeypatch, stacking):
     monkeypatch.setattr(separation, "pack_separation", None)
-    packing = packed(problem(2, (43, 43, 100), stacking=False))
-    assert len(packing.builds) == 2
-    assert packing.bound == 1.0
-    assert packing.status == "feasible"
-    assert len(packed(problem(2, (43, 43, 21)), separation=0.0).builds) == 2
+    monkeypatch.setattr(plates, "pack_plates", None)
+    packing = packed(problem(2, (43, 43, 21), stacking=stacking), separation=0.0, plates=0.0)
+    assert (len(packing.builds), packing.bound, packing.status) == (2, 1.0, "feasible")
+
+
+def test_parts_that_may_be_turned_by_any_angle_are_packed_as_boxes_in_quarter_turns():
+    items = tuple(Item(0, copy, WEDGE, 1.0, Orientations("about-z"), exact=True) for copy in range(4))
+    packing = packed(PackingProblem(items, BuildVolume(np.array([90.0, 90, 50]))))
+    assert (len(packing.builds), packing.bound_for) == (1, "shapes")
+    box = Boxes(np.zeros((1, 3)), np.array([[80.0, 40, 20]]))
+    turned = Item(0, 0, box, 1.0, Orientations("about-z"), exact=True)
+    packing = packed(PackingProblem((turned,), BuildVolume(np.array([45.0, 90, 50]))))
+    assert (len(packing.builds), packing.bound_for) == (1, "volumes")
 
 
 def test_a_bound_is_for_the_volumes_where_they_are_not_the_parts():
