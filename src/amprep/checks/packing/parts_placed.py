@@ -144,7 +144,9 @@ def _inside(part: CheckedPart, settings: BuildSettings) -> list[Violation]:
             message = f"it extends {-distance:.4g} mm beyond the {name} of the build volume"
             found.append(Violation("inside build volume", part.label, message))
         elif distance < part.clearance - TOLERANCE:
-            message = f"it is {distance:.4g} mm from the {name}, expected at least {part.clearance:g} mm"
+            message = (
+                f"it is {max(distance, 0.0):.4g} mm from the {name}, expected at least {part.clearance:g} mm"
+            )
             found.append(Violation("clearance", part.label, message))
     lowest = part.mesh.bounds[0][2]
     if lowest < -TOLERANCE:
