@@ -280,7 +280,7 @@ class SeparationParams:
 
     step: float = 0.06
     memory: float = 400.0
-    scan_chance: float = 0.4
+    scan_chance: float = 0.5
     shrink: float = 0.01
     persistence: int = 40
     workers: int = 2

@@ -16,16 +16,13 @@ from amprep.plugins.packers.separation.fill import pack_most
 from amprep.plugins.packers.separation.height import pack_lowest
 from amprep.plugins.packers.separation.no_fit import prepare_no_fit
 from amprep.plugins.packers.separation.shapes import ShapeInstance, prepare_shapes
-from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget, nothing_placed, only
+from amprep.plugins.packers.separation.state import UNLIMITED, Placed, Scene, WorkBudget, nothing_placed, only
 
 TOP_TOLERANCE = 1e-6
 """Length (mm) by which an item may be higher than the build volume."""
 
 DEFAULT_WORK = 6000.0
 """Work of all workers if neither time nor work is limited, in millions of field values."""
-
-UNLIMITED = 1e12
-"""Work, in millions of field values, that no search does."""
 
 
 def pack_separation(
@@ -38,7 +35,7 @@ def pack_separation(
 ) -> Packing:
     """Pack true shapes, as convex pieces, for any objective."""
     instance = prepare_shapes(problem, stop)
-    budget = WorkBudget(stop, _work(params, stop) * 1e6)
+    budget = WorkBudget(stop, _work(params, stop))
     no_fit = prepare_no_fit(instance, params, stop) if instance.free.any() else None
     if no_fit is None:
         return _as_packing(instance, nothing_placed(), stop)
@@ -48,10 +45,10 @@ def pack_separation(
 
 
 def _work(params: SeparationParams, stop: Stop) -> float:
-    """Return the work in millions of field values; without limit if only the time is limited."""
-    if params.work is not None:
-        return params.work
-    return DEFAULT_WORK if stop.deadline is None else UNLIMITED
+    """Return the work in field values; without limit if only the time is limited."""
+    if params.work is None:
+        return DEFAULT_WORK * 1e6 if stop.deadline is None else UNLIMITED
+    return params.work * 1e6
 
 
 def _below_top(instance: ShapeInstance, placed: Placed) -> Placed:

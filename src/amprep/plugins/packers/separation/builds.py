@@ -40,7 +40,7 @@ def _search(worker: SearchWorker) -> None:
         news = worker.better_than(best.builds)
         if news is not None:
             best, failures, pool = news.placed, 0, AttemptPool()
-        scene.progress(scene.budget.fraction, f"{best.builds} builds")
+        scene.progress(scene.budget.used, f"{best.builds} builds")
         start = _start(worker, best, failures, pool)
         attempt = separated(scene, start, within, best.builds - 1, partial(worker.knows_better, best.builds))
         if attempt.exact is None:

@@ -19,7 +19,7 @@ SPARE = 8
 MOST_ORDERS = 20
 """Number of random orders of the items."""
 
-CHEAP = 0.03
+CHEAP = 0.05
 """Fraction of the work or time up to which further orders of the items are tried."""
 
 
@@ -151,7 +151,7 @@ def construct(
     for k in range(len(items)):
         if scene.budget.over():
             break
-        scene.progress(scene.budget.fraction, f"{k} of {len(items)} parts placed")
+        scene.progress(scene.budget.used, f"{k} of {len(items)} parts placed")
         if work.place(k, min(builds + 1, most_builds)):
             builds = max(builds, int(work.layout.build[k]) + 1)
     placed = placed_from(work.layout, work.placed.items)
@@ -180,9 +180,10 @@ def best_constructed(
         ``(n,)`` value of each item per volume, where items of greater value come first.
     """
     orders = _orders(scene, items, worker, density)
+    begun = scene.budget.used
     best = construct(scene, next(orders), within, most_builds)
     for order in orders:
-        if scene.budget.fraction > CHEAP or scene.budget.over():
+        if scene.budget.used > begun + CHEAP or scene.budget.over():
             break
         found = construct(scene, order, within, most_builds)
         if value(found) < value(best):

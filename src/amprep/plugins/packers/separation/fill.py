@@ -41,8 +41,8 @@ def _search(worker: SearchWorker) -> None:
         news = worker.better_than(_value(values, best))
         best = best if news is None else news.placed
         reached = _value(values, best)
-        scene.progress(scene.budget.fraction, f"{len(best.items)} parts")
-        start = _exchanged(scene, best, within)
+        scene.progress(scene.budget.used, f"{len(best.items)} parts")
+        start = exchanged(scene, best, within)
         if start is None:
             break
         attempt = separated(scene, start, within, 1, partial(worker.knows_better, reached))
@@ -66,7 +66,7 @@ def _value(values: Floats, placed: Placed) -> float:
     return -float(values[placed.items].sum())
 
 
-def _exchanged(scene: Scene, best: Placed, within: PositionRange) -> Placed | None:
+def exchanged(scene: Scene, best: Placed, within: PositionRange) -> Placed | None:
     """Return a layout of greater value, with overlaps; None if there is none."""
     values, volumes = scene.item_values, scene.instance.volumes
     left = np.setdiff1d(np.flatnonzero(scene.instance.free & (values > 0.0)), best.items)

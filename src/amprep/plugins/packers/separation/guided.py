@@ -12,6 +12,9 @@ from amprep.plugins.packers.separation.state import Placed, Scene, only, placed_
 PROGRESS = 0.98
 """The total overlap must fall below this fraction of the least one to count as progress."""
 
+PATIENCE = 0.1
+"""Fraction of the work or time that may pass without progress in one layout of many parts."""
+
 RESIDUE = 0.1
 """Total overlap, in mean sizes of the shapes, at which the linear program is tried."""
 
@@ -43,11 +46,13 @@ def separated(
     best = scene.layout(start)
     items = start.items
     state, rules = scene.work_arrays(len(items), within), scene.rules(items, builds)
-    least, nearest, idle = np.inf, start, 0
+    least, nearest, idle, since = np.inf, start, 0, scene.budget.used
     residue = RESIDUE * scene.instance.mean_size
-    while not scene.budget.over() and idle < scene.params.persistence and not useless():
+    while not (scene.budget.over() or useless()):
+        if idle >= scene.params.persistence or scene.budget.used > since + PATIENCE:
+            break
         overlap = scene.run(layout, best, rules, within, state)
-        idle = 0 if overlap < PROGRESS * least else idle + 1
+        idle, since = (0, scene.budget.used) if overlap < PROGRESS * least else (idle + 1, since)
         if overlap < least:
             least, nearest = overlap, placed_from(best, items)
         if overlap < residue and (overlap < SMALL or overlap <= least):

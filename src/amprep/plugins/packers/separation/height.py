@@ -53,7 +53,7 @@ def _search(worker: SearchWorker) -> None:
         if news is not None:
             best, height = news.placed, news.value
             start, failures, pool, reduction = best, 0, AttemptPool(), params.shrink
-        scene.progress(scene.budget.fraction, f"height {height:.6g} mm")
+        scene.progress(scene.budget.used, f"height {height:.6g} mm")
         within = instance.positions(max(bound, height * (1.0 - reduction)))
         room = instance.positions(max(bound, height * (1.0 - LEAST_GAIN)))
         attempt = separated(scene, start, within, 1, partial(worker.knows_better, height), room)

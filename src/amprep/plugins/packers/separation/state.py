@@ -17,7 +17,7 @@ from amprep.plugins.packers.separation.bounds import build_room
 from amprep.plugins.packers.separation.no_fit import NoFit
 from amprep.plugins.packers.separation.shapes import ShapeInstance
 
-CANDIDATES = 4
+CANDIDATES = 2
 """Number of cells of a scan from which a descent starts."""
 
 FINEST = 0.02
@@ -61,6 +61,10 @@ class Placed(NamedTuple):
         return int(self.build.max(initial=-1)) + 1
 
 
+UNLIMITED = 1e18
+"""Work that no search does."""
+
+
 @dataclass
 class WorkBudget:
     """Work that may still be done, in field values read.
@@ -92,15 +96,20 @@ class WorkBudget:
         return self.limit - self.left
 
     @property
-    def fraction(self) -> float:
-        """Fraction of the work, or of the time where that is limited, that is used up."""
-        end = self.stop.remaining() + (time.monotonic() - self.begun)
-        timed = (time.monotonic() - self.begun) / max(end, 1e-9)
-        return float(min(max(self.spent / max(self.limit, 1.0), timed, 0.0), 1.0))
+    def used(self) -> float:
+        """Fraction of the work that is done; where work is not limited, of the time."""
+        if self.limit < UNLIMITED:
+            return float(min(self.spent / max(self.limit, 1.0), 1.0))
+        passed = time.monotonic() - self.begun
+        return float(min(passed / max(passed + self.stop.remaining(), 1e-9), 1.0))
+
+    def stopped(self) -> bool:
+        """Tell whether the search has to end for another reason than its work."""
+        return self.ended.is_set() or self.stop()
 
     def over(self) -> bool:
         """Tell whether the search has to end."""
-        return self.left <= 0.0 or self.ended.is_set() or self.stop()
+        return self.left <= 0.0 or self.stopped()
 
 
 @dataclass(frozen=True, eq=False)

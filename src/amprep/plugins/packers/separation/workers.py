@@ -7,7 +7,7 @@ from threading import Condition
 from typing import NamedTuple
 
 from amprep.model.control import silent
-from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget, nothing_placed
+from amprep.plugins.packers.separation.state import UNLIMITED, Placed, Scene, WorkBudget, nothing_placed
 
 # Strategy. Each worker is a thread with its own random numbers and work arrays; kernels and linear programs release
 # the interpreter lock. The clock of a worker is the work that it has done. A layout that one publishes at clock c
@@ -48,12 +48,12 @@ class Exchange:
             self.shared.append(layout)
             self.changed.notify_all()
 
-    def advance(self, worker: int, clock: float, over: Callable[[], bool]) -> None:
+    def advance(self, worker: int, clock: float, stopped: Callable[[], bool]) -> None:
         """Set the clock of a worker and wait until no other one is behind by `DELAY` or more."""
         with self.changed:
             self.clocks[worker] = clock
             self.changed.notify_all()
-            while self._behind(clock) and not over():
+            while self._behind(clock) and not stopped():
                 self.changed.wait(WAIT)
 
     def leave(self, worker: int) -> None:
@@ -93,7 +93,7 @@ class SearchWorker:
     def better_than(self, value: float) -> SharedLayout | None:
         """Return a layout of less value than a given one if another worker has shared it."""
         budget = self.scene.budget
-        self.exchange.advance(self.number, budget.spent, budget.over)
+        self.exchange.advance(self.number, budget.spent, budget.stopped)
         found = self.exchange.best(self.number, budget.spent)
         return found if found is not None and found.value < value else None
 
@@ -123,7 +123,8 @@ def run_workers(scene: Scene, goal: float, search: Callable[[SearchWorker], None
     exchange = Exchange([0.0] * count, 0.0 if timed else DELAY, goal)
     generators = scene.rng.spawn(count)
     whole = scene.budget
-    budgets = [WorkBudget(whole.stop, whole.left / count, ended=whole.ended) for _ in range(count)]
+    part = whole.left / count if whole.limit < UNLIMITED else UNLIMITED
+    budgets = [WorkBudget(whole.stop, part, ended=whole.ended) for _ in range(count)]
     workers = [
         SearchWorker(
             k, replace(scene, rng=rng, budget=budget, progress=silent if k else scene.progress), exchange

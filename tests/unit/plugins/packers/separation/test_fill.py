@@ -7,6 +7,10 @@ from amprep.checks.packing.volumes_placed import check_packing
 from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop, silent
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation import pack_separation
+from amprep.plugins.packers.separation.fill import exchanged
+from amprep.plugins.packers.separation.no_fit import prepare_no_fit
+from amprep.plugins.packers.separation.shapes import prepare_shapes
+from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget
 
 
 def pack(sizes, values, room, shape="box", work=50.0):
@@ -41,3 +45,29 @@ def test_the_bound_is_a_fractional_knapsack():
 def test_round_build_volumes_are_kept():
     value, _ = pack([(3, 3, 2)] * 6, [1.0] * 6, (8, 8, 2), "cylinder", work=20.0)
     assert value >= 2.0
+
+
+def test_two_items_replace_one_of_greater_value_per_volume():
+    """The pass by value per volume takes the long block; the two cubes beside it are worth more."""
+    value, _ = pack([(3, 2, 2), (2, 2, 2), (2, 2, 2)], [7.0, 4.0, 4.0], (4, 2, 2))
+    assert value == 8.0
+
+
+def test_an_exchange_gains_value_and_fits_by_volume():
+    volumes = [Boxes(np.zeros(3), np.array(size, float)) for size in [(3, 2, 2), (2, 2, 2), (2, 2, 2)]]
+    items = tuple(
+        Item(k, 0, v, value) for k, (v, value) in enumerate(zip(volumes, [7.0, 4.0, 4.0], strict=True))
+    )
+    problem = PackingProblem(items, BuildVolume(np.array([4.0, 2, 2]), "box"), "fill")
+    instance, params = prepare_shapes(problem, Stop()), SeparationParams()
+    no_fit = prepare_no_fit(instance, params, Stop())
+    assert no_fit is not None
+    scene = Scene(instance, no_fit, params, np.random.default_rng(1), WorkBudget(Stop(), 1e9))
+    zero = np.zeros(1, np.int64)
+    best = Placed(zero, zero, zero, np.zeros((1, 3)))
+    for _ in range(20):
+        found = exchanged(scene, best, scene.full_height)
+        assert found is not None
+        assert sorted(found.items.tolist()) == [1, 2]
+    everything = Placed(np.arange(3), np.array([0, 1, 1]), np.zeros(3, np.int64), np.zeros((3, 3)))
+    assert exchanged(scene, everything, scene.full_height) is None
