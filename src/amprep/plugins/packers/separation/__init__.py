@@ -11,6 +11,7 @@ from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.bounds import builds_bound, fill_bound, height_bound
+from amprep.plugins.packers.separation.boxes import better_as_boxes
 from amprep.plugins.packers.separation.builds import pack_builds
 from amprep.plugins.packers.separation.fill import pack_most
 from amprep.plugins.packers.separation.height import pack_lowest
@@ -33,15 +34,24 @@ def pack_separation(
     stop: Stop,
     progress: Progress,
 ) -> Packing:
-    """Pack true shapes, as convex pieces, for any objective."""
+    """Pack true shapes, as convex pieces, for any objective; or their boxes when time is too short."""
+    progress(0.0, "convex pieces of the parts")
     instance = prepare_shapes(problem, stop)
     budget = WorkBudget(stop, _work(params, stop))
+    progress(0.0, "no-fit solids of the parts")
     no_fit = prepare_no_fit(instance, params, stop) if instance.free.any() else None
-    if no_fit is None:
-        return _as_packing(instance, nothing_placed(), stop)
-    scene = Scene(instance, no_fit, params, rng, budget, progress)
-    pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
-    return _as_packing(instance, _below_top(instance, pack(scene)), stop)
+    placed = nothing_placed()
+    if no_fit is not None:
+        scene = Scene(instance, no_fit, params, rng, budget, progress)
+        pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
+        placed = _below_top(instance, pack(scene))
+    packing = _as_packing(instance, placed, stop)
+    if no_fit is not None and not stop():
+        return packing
+    late = no_fit is None and instance.free.any()
+    if late or any(unplaced.reason == "out of time" for unplaced in packing.unplaced):
+        return better_as_boxes(problem, packing, rng, stop)
+    return packing
 
 
 def _work(params: SeparationParams, stop: Stop) -> float:

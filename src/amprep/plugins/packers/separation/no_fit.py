@@ -14,8 +14,14 @@ from amprep.model.control import Stop
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.shapes import ShapeInstance
 
-MOST_CORNER_PAIRS = 1_000_000
-"""Number of pairs of corners of pieces up to which fields are sampled from exact no-fit solids, in a few seconds."""
+MOST_CORNER_PAIRS, SECONDS_A_PAIR = 1_000_000, 1e-5
+"""Pairs of corners of pieces up to which fields are sampled from exact no-fit solids, and the time for each, s."""
+
+SECONDS_A_MILLION = 0.03
+"""Time (s) for a million samples from voxels by two threads."""
+
+TIME_FOR_FIELDS, COARSER, COARSEST = 0.2, 2.5, 10.0
+"""Fraction of a time limit for fields, factor of their step if twice that is too short, and the greatest factor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,16 +63,40 @@ class NoFit:
 
 
 def prepare_no_fit(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> NoFit | None:
-    """Compute no-fit solids and fields; None after a stop.
+    """Compute no-fit solids and fields; None when time is too short.
 
-    Fields are sampled from exact no-fit solids if that takes a few seconds, else from voxels.
+    Fields are sampled from exact no-fit solids if that takes a few seconds, else from voxels. With a time limit they
+    may take a fraction of it: then the step is larger.
     """
+    if stop():
+        return None
     step = params.step * instance.mean_size
     moving = [convex_shape(shape.pieces) for shape in instance.shapes]
     shapes = _with_obstacles(instance, moving, _obstacles(instance, step))
-    exact = corner_pairs(shapes) <= MOST_CORNER_PAIRS
-    while (4.0 if exact else 1.0) * samples(shapes, step) > params.memory * 1e6:
+    seconds = TIME_FOR_FIELDS * stop.remaining()
+    pairs = corner_pairs(shapes)
+    if pairs <= MOST_CORNER_PAIRS and pairs * SECONDS_A_PAIR <= seconds:
+        return _sampled(instance, moving, _step(shapes, step, params.memory / 4.0), stop, exact=True)
+    step = _step(shapes, step, min(params.memory, seconds / SECONDS_A_MILLION))
+    for coarser in (1.0, COARSER):
+        early = stop.within(2.0 * seconds) if np.isfinite(seconds) else stop
+        found = _sampled(instance, moving, coarser * step, early, exact=False)
+        if found is not None or stop():
+            return found
+    return None
+
+
+def _step(shapes: ShapeSet, step: float, millions: float) -> float:
+    """Return the least step from a given one to `COARSEST` times it with at most some millions of samples."""
+    most = COARSEST * step
+    while step < most and samples(shapes, step) > millions * 1e6:
         step *= 1.05
+    return step
+
+
+def _sampled(
+    instance: ShapeInstance, moving: list[list[ConvexPiece]], step: float, stop: Stop, *, exact: bool
+) -> NoFit | None:
     obstacles = _obstacles(instance, step)
     shapes = _with_obstacles(instance, moving, obstacles)
     fields = (sample_fields if exact else sample_from_voxels)(shapes, step, stop)

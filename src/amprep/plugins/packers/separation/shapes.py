@@ -23,6 +23,9 @@ MOST_SHAPES = 150
 MOST_PIECES, MOST_OF_VOLUME = 2500, 40
 """Number of convex pieces of all volumes together, and for each volume where there are few."""
 
+TIME_FOR_PIECES, SECONDS_A_PIECE = 0.3, 0.005
+"""Fraction of a time limit that the decomposition may take, and what a piece takes, s."""
+
 SAME = 1e-6
 """Difference (mm) of points up to which two rotations of a volume are the same shape."""
 
@@ -161,11 +164,16 @@ def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
 
 
 def _pieces(problem: PackingProblem, stop: Stop) -> dict[int, PieceSet]:
-    """Return the convex pieces of each volume, by its id; more of them for volumes of which there are many copies."""
+    """Return the convex pieces of each volume, by its id; more of them for volumes of which there are many copies.
+
+    With a time limit they take at most a fraction of it: then there are less, and at last only hulls.
+    """
+    time = TIME_FOR_PIECES * stop.remaining()
     volumes = {id(item.volume): item.volume for item in problem.items}
     copies = Counter(id(item.volume) for item in problem.items)
-    total = min(MOST_PIECES, MOST_OF_VOLUME * len(volumes))
-    sets = decompose_volumes(list(volumes.values()), [copies[key] for key in volumes], total, stop).sets
+    total = int(min(MOST_PIECES, MOST_OF_VOLUME * len(volumes), len(volumes) + time / SECONDS_A_PIECE))
+    early = stop.within(time) if np.isfinite(time) else stop
+    sets = decompose_volumes(list(volumes.values()), [copies[key] for key in volumes], total, early).sets
     return dict(zip(volumes, sets, strict=True))
 
 
