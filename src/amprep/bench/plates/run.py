@@ -181,6 +181,19 @@ class PlatesBench:
         )
 
 
+def ratios_to(name: str, results: Sequence[PlatesResult]) -> dict[str, float]:
+    """Return for each packer its mean number of plates over that of the packer or package of a given name.
+
+    Without valid results of that one there is no ratio.
+    """
+    plates: dict[str, list[int]] = {}
+    for result in results:
+        if result.validated:
+            plates.setdefault(result.packer, []).append(result.plates)
+    mean = {packer: float(np.mean(numbers)) for packer, numbers in plates.items()}
+    return {packer: mean[packer] / mean[name] for packer in mean if name in mean and packer != name}
+
+
 class JudgedPlates(NamedTuple):
     """The violations on all plates, how the pairs were judged, and the area of shadows over that of the plates."""
 

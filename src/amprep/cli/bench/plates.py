@@ -50,7 +50,7 @@ def plates(
     Every plate is checked as polygons and on the meshes; the exit code is 1 if
     a plate is wrong or a part is left.
     """
-    from amprep.bench.plates.run import PlatesBench, read_scene
+    from amprep.bench.plates.run import PlatesBench, ratios_to, read_scene
 
     sides = _sides(size)
     scene = read_scene(files, sides, clearance, rotations)
@@ -63,13 +63,17 @@ def plates(
         from amprep.bench.plates.rivals import spyrrow_plates
 
         results += [spyrrow_plates(scene, seconds=time_limit, seed=seed) for seed in range(1, seeds + 1)]
+    ratios = ratios_to("spyrrow", results)
     least = scene.shadow_area / (sides[0] * sides[1])
     if as_json:
         record = {"benchmark": "plates", "parts": scene.copies, "size_mm": sides, "clearance_mm": clearance}
         record |= {"rotations": rotations, "time_limit_s": time_limit, "shadows_in_plates": least}
+        record |= {"ratios_to_spyrrow": ratios}
         print_json(record | {"results": [result.record for result in results]})
     else:
         _print(results, f"{scene.copies} parts, shadows of {least:.2f} plates of {size} mm")
+        for name, ratio in ratios.items():
+            typer.echo(f"plates of {name} over those of spyrrow: {ratio:.2f}")
     finish(valid=all(result.validated for result in results))
 
 

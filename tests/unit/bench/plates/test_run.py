@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from amprep.bench.plates.run import PlatesBench, judge_plates, read_scene
+from amprep.bench.plates.run import PlatesBench, PlatesResult, judge_plates, ratios_to, read_scene
+from amprep.checks.packing.pairs import PairCounts
 from amprep.errors import InputError
 from amprep.model import PlacedPart
 
@@ -45,3 +46,13 @@ def test_wrong_plates_are_reported_by_both_checks(folder):
 def test_a_folder_without_parts_is_refused(tmp_path):
     with pytest.raises(InputError):
         read_scene([tmp_path], (40.0, 40.0), 1.0, "none")
+
+
+def made(packer, plates, faults=()):
+    return PlatesResult(packer, 1, plates, None, "", 0.5, 0, 1.0, 1.0, None, 0.1, PairCounts(), faults)
+
+
+def test_ratios_compare_means_of_valid_results():
+    results = [made("a", 2), made("a", 3), made("b", 4), made("b", 1, ("wrong",)), made("c", 5)]
+    assert ratios_to("c", results) == {"a": pytest.approx(0.5), "b": pytest.approx(0.8)}
+    assert ratios_to("d", results) == {}
