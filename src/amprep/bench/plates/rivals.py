@@ -72,7 +72,8 @@ def spyrrow_plates(scene: PlatesScene, *, seconds: float, seed: int) -> PlatesRe
     trial_seconds = max(1, int(seconds / (TRIALS * expected)))
     reset_peak()
     start, process = time.monotonic(), time.process_time()
-    left, plates = sorted(outlines, key=lambda each: -each.area), []
+    fitting = [each for each in outlines if _fits_alone(each, scene, angles[each.part])]
+    left, plates = sorted(fitting, key=lambda each: -each.area), []
     while left:
         placed = _fullest_plate(left, scene, angles, trial_seconds, seed)
         if not placed:
@@ -90,7 +91,7 @@ def spyrrow_plates(scene: PlatesScene, *, seconds: float, seed: int) -> PlatesRe
         bound=None,
         bound_for="",
         filled=judged.filled,
-        unplaced=len(left),
+        unplaced=len(outlines) - sum(len(plate) for plate in plates),
         seconds=spent[0],
         process_seconds=spent[1],
         memory_mb=memory,
@@ -98,6 +99,15 @@ def spyrrow_plates(scene: PlatesScene, *, seconds: float, seed: int) -> PlatesRe
         pairs=judged.pairs,
         faults=judged.faults,
     )
+
+
+def _fits_alone(item: PolygonItem, scene: PlatesScene, angles: list[float] | None) -> bool:
+    """Return whether an outline fits the empty plate at one of its angles; the package panics at others."""
+    room = scene.space.size[:2] - 2.0 * scene.clearance
+    turns = np.deg2rad(np.arange(0.0, 180.0) if angles is None else angles)
+    x, y = item.points.T
+    wide = [(np.ptp(np.cos(t) * x - np.sin(t) * y), np.ptp(np.sin(t) * x + np.cos(t) * y)) for t in turns]
+    return bool((np.array(wide) <= room).all(axis=1).any())
 
 
 def _fullest_plate(

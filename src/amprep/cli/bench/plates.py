@@ -116,7 +116,7 @@ def _print(results: "list[PlatesResult]", title: str) -> None:
 
 
 def _cells(result: "PlatesResult") -> list[str]:
-    left = f" + {result.unplaced} left" if result.unplaced else ""
+    left = f", {result.unplaced} left" if result.unplaced else ""
     bound = "-" if result.bound is None else f"{result.bound:g} {result.bound_for}"
     return [
         str(result.seed),
@@ -125,5 +125,5 @@ def _cells(result: "PlatesResult") -> list[str]:
         f"{result.filled:.1%}",
         f"{result.seconds:.1f} ({result.process_seconds:.1f})",
         str(result.memory_mb),
-        "valid" if result.validated else "INVALID",
+        "INVALID" if result.faults else "valid",
     ]

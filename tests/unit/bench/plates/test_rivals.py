@@ -39,7 +39,9 @@ def test_the_package_packs_valid_plates(tmp_path):
     pytest.importorskip("spyrrow")
     for k, size in enumerate(((30.0, 10.0, 5.0), (12.0, 12.0, 4.0), (18.0, 9.0, 3.0))):
         trimesh.creation.box(size).export(tmp_path / f"{k}.stl")
+    trimesh.creation.box((39.0, 5.0, 5.0)).export(tmp_path / "too-long.stl")
     result = spyrrow_plates(read_scene([tmp_path], (40.0, 40.0), 1.0, "z90"), seconds=6, seed=1)
-    assert result.validated, result.faults
+    assert result.faults == ()
+    assert result.unplaced == 1
     assert result.plates == 1
     assert np.isclose(result.filled, (300 + 144 + 162) / 1600.0)
