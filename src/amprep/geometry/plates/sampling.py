@@ -18,6 +18,9 @@ INSIDE = 2
 DEEP = -0.4
 """Signed distance, in steps, of sampled points inside."""
 
+CAREFUL = 0.6
+"""Fraction of the distance of a corner from its sampled point by which it counts as nearer to others."""
+
 MARGIN = 3.0
 """Distance beyond the clearance, in steps, up to which signed distances are sampled around an outline."""
 
@@ -97,7 +100,9 @@ def _points(outline: ShadowOutline, step: float) -> tuple[Int32s, Int16s]:
     fine = step / PHASES
     point = np.round(exact / fine)
     normal = np.column_stack((along[:, 1], -along[:, 0])) / length[:, None]
-    shift = -((exact - point * fine) * normal[row]).sum(axis=1) * (number > 0)
+    moved = exact - point * fine
+    along_normal = -(moved * normal[row]).sum(axis=1)
+    shift = np.where(number > 0, along_normal, -CAREFUL * np.hypot(moved[:, 0], moved[:, 1]))
     return point.astype(np.int32), np.round(shift / step * UNITS).astype(np.int16)
 
 

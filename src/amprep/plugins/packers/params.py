@@ -321,14 +321,14 @@ class PlatesParams:
         Millions of field values read or computed after which the search ends; some 500 to 1000 per second.
     """
 
-    step: float = 0.025
-    memory: float = 400.0
+    step: float = 0.035
+    memory: float = 500.0
     angle_step_deg: float = 15.0
     tolerance: float = 0.05
     scan_chance: float = 0.5
     passes: int = 5
     persistence: int = 30
-    failures: int = 50
+    failures: int = 200
     work: float = 30000.0
 
     def __post_init__(self) -> None:

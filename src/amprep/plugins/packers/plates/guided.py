@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.plugins.packers.plates.programs import make_exact
 from amprep.plugins.packers.plates.state import OnPlates, PlateScene, placed_from
 
@@ -14,7 +15,13 @@ RESIDUE = 0.06
 """Total overlap, in mean sizes of the shapes, at which the linear program is tried."""
 
 SMALL = 1e-3
-"""Total overlap (mm) at which the linear program is tried in any case."""
+"""Total overlap (mm) at which the linear program is tried in any case, and the search ends."""
+
+LESS = 0.8
+"""Fraction of the overlap at the last try below which it is tried again."""
+
+SIMILAR = (0.3, 1.1)
+"""Areas of items for an exchange, as fractions of that of the item that overlaps."""
 
 
 class PlateAttempt(NamedTuple):
@@ -37,11 +44,13 @@ def separated(scene: PlateScene, start: OnPlates, plates: int) -> PlateAttempt:
         idle = 0 if overlap < PROGRESS * least else idle + 1
         if overlap < least:
             least, nearest = overlap, placed_from(best, items)
-        if overlap < residue and (overlap < SMALL or overlap < 0.8 * tried):
+        if overlap < residue and (overlap < SMALL or overlap < LESS * tried):
             tried = overlap
             exact = make_exact(scene, placed_from(best, items))
             if exact is not None:
                 return PlateAttempt(0.0, nearest, exact)
+            if overlap < SMALL:
+                break
     return PlateAttempt(least, nearest, None)
 
 
@@ -53,17 +62,29 @@ def clipped(scene: PlateScene, placed: OnPlates) -> OnPlates:
 
 
 def disturbed(scene: PlateScene, placed: OnPlates) -> OnPlates:
-    """Exchange the places of two items, large ones more often; of two pairs in half of all cases."""
-    changed, half, rng = placed.copy(), scene.instance.half, scene.rng
+    """Exchange an item that overlaps, or any one where none does, with another of similar size, once to three times."""
+    changed, rng = placed.copy(), scene.rng
     n = len(placed.items)
     if n < 2:
         return changed
-    for _ in range(int(rng.integers(1, 3))):
-        chance = half[changed.shape].prod(axis=1)
-        i, j = rng.choice(n, 2, replace=False, p=chance / chance.sum()).tolist()
+    area = scene.instance.half[scene.instance.first[placed.items]].prod(axis=1)
+    chance = overlaps(scene, placed) + 1e-2 * scene.outlines.step
+    for _ in range(int(rng.integers(1, 4))):
+        i = int(rng.choice(n, p=chance / chance.sum()))
+        similar = (area >= SIMILAR[0] * area[i]) & (area <= SIMILAR[1] * area[i])
+        similar[i] = False
+        others = np.flatnonzero(similar) if similar.any() else np.delete(np.arange(n), i)
+        j = int(rng.choice(others))
         changed.position[[i, j]] = changed.position[[j, i]]
         changed.plate[[i, j]] = changed.plate[[j, i]]
     return changed
+
+
+def overlaps(scene: PlateScene, placed: OnPlates) -> Floats:
+    """Return the total overlap of each item, mm."""
+    layout, state = scene.layout(placed), scene.state(len(placed.items))
+    scene.run(layout, scene.layout(placed), scene.rules(placed.items, max(placed.plates, 1)), state, 0)
+    return np.asarray(state.overlap.sum(axis=1))
 
 
 class PlateAttempts:

@@ -125,11 +125,18 @@ class PlateScene:
             np.empty(CANDIDATES),
         )
 
-    def run(self, layout: PlateLayout, best: PlateLayout, rules: PlateRules, state: PlateState) -> float:
+    def run(
+        self,
+        layout: PlateLayout,
+        best: PlateLayout,
+        rules: PlateRules,
+        state: PlateState,
+        rounds: int = ROUNDS,
+    ) -> float:
         """Run some rounds of the separation and charge their work; return the total overlap of the best layout."""
         before = int(state.spent[READ])
         shapes = self.instance.arrays
-        least = separate_plates(self.outlines, self.cache, shapes, rules, layout, best, state, ROUNDS)
+        least = separate_plates(self.outlines, self.cache, shapes, rules, layout, best, state, rounds)
         self.budget.left -= int(state.spent[READ]) - before + 1000
         return float(least)
 
