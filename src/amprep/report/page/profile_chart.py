@@ -26,7 +26,7 @@ def profile_chart(number: int, entry: BuildRecord) -> str:
     )
     top = profile.low + profile.spacing * len(profile.areas)
     figures = (
-        f"Build {number}, z = {profile.low:.1f} to {top:.1f} mm: mean {profile.mean / 100:.1f} cm², "
+        f"Build {number}, from left to right z = {profile.low:.1f} to {top:.1f} mm: mean {profile.mean / 100:.1f} cm², "
         f"largest {profile.largest:.2f} times the mean, variation {100 * profile.variation:.0f} %, "
         f"largest jump within {profile.spacing:.2g} mm {profile.largest_jump:.2f} times the mean"
     )
