@@ -5,11 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
+from amprep.geometry.removal.above import MOST_TRIANGLES, is_above
 from amprep.geometry.removal.bodies import MovableBody
 from amprep.geometry.trees.queries import directional_distances
 
 SETBACK = 1e-3
 """mm; a motion is judged from this far behind, because bodies in contact may overlap by as much."""
+
+UPWARDS = np.array([0.0, 0.0, 1.0])
 
 SLIDING = 1e-4
 """mm; bounding boxes that overlap by less than this pass each other."""
@@ -54,8 +57,26 @@ class Blocking:
         """Tell whether a body that leaves in direction k hits another."""
         key = body, other, k
         if key not in self._known:
-            self._known[key] = self.travel(body, other, self.directions[k]) < np.inf
+            upwards = bool(self.directions[k, 2] == 1.0)
+            answer = self._is_below(body, other) if upwards else None
+            self._known[key] = (
+                self.travel(body, other, self.directions[k]) < np.inf if answer is None else answer
+            )
         return self._known[key]
+
+    def _is_below(self, body: int, other: int) -> bool | None:
+        """Tell whether something of another body is above a body; None if that is better asked of their trees."""
+        one, two = self.bodies[body], self.bodies[other]
+        for i, shape in enumerate(one.shapes):
+            met = boxes_met(one.low[i], one.high[i], two.low, two.high, UPWARDS)
+            for j in np.flatnonzero(met):
+                sizes = len(shape.triangles) + len(two.shapes[j].triangles)
+                if sizes > MOST_TRIANGLES or (shape.is_built and two.shapes[j].is_built):
+                    return None
+                answer = is_above(two.triangles(int(j)), one.triangles(i), SETBACK)
+                if answer or answer is None:
+                    return answer
+        return False
 
     def travel(self, body: int, other: int, direction: Floats, offset: Floats | None = None) -> float:
         """Return how far a body may travel until it touches another one, mm; infinity if it never does.

@@ -58,6 +58,12 @@ class MovableBody:
     high: Floats
     is_boxes: bool = False
 
+    def triangles(self, i: int) -> Floats:
+        """Return the corners of the triangles of a shape in the build, ``(n, 3, 3)`` mm."""
+        shape, pose = self.shapes[i], self.poses[i]
+        vertices = shape.vertices @ pose[:3, :3].T + pose[:3, 3]
+        return np.asarray(vertices[shape.triangles])
+
 
 def movable_body(placed: Sequence[tuple[CollisionShape, Floats]], is_boxes: bool = False) -> MovableBody:
     """Return the body of one or more shapes, each with its pose ``(4, 4)``; see `MovableBody`."""
