@@ -91,7 +91,7 @@ def _work(cells: GridCells) -> CutWork:
         np.empty(n),
         zeros[3],
         np.zeros(longest + 2, np.int64),
-        np.zeros((3, longest + 1)),
+        np.zeros((6, longest + 1)),
         np.empty((DIRECTIONS, 3)),
     )
 

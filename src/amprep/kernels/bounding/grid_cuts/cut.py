@@ -15,6 +15,12 @@ from amprep.kernels.helper import helper
 # faces of the box around the set. All other cells matter for the components only. So the planes of a set of n cells
 # take O(n) and two estimates each.
 
+BOTH_WASTE = 0.15
+"""Weight of the smaller one of the excesses on both sides of a plane.
+
+Many planes through a frame save nothing. One that leaves a bar on one side, and all the waste on the other, is better.
+"""
+
 
 @helper
 def _root(parent: Int32s, i: int) -> int:
@@ -172,6 +178,9 @@ def _best_plane(
 ) -> tuple[int, int]:
     """Return the axis and the layer below which to cut; the axis is -1 if the set has one layer along each."""
     best, best_axis, best_layer = np.inf, -1, 0
+    whole = 0.0
+    for i in range(len(members)):
+        whole += cells.volume[members[i]]
     for axis in range(3):
         low, layers = _sort(cells, work, members, axis)
         for k in range(layers):
@@ -199,9 +208,17 @@ def _best_plane(
                         )
                         total += work.joined_volume[root]
                 work.total[axis, layer if sign == 1 else layer + 1] += total
+                if sign == 0:
+                    work.total[3 + axis, layer + 1] = total
+        below = 0.0
         for k in range(1, layers):
-            if work.total[axis, k] < best * (1.0 - 1e-9):
-                best, best_axis, best_layer = work.total[axis, k], axis, low + k
+            for i in range(work.layers[k - 1], work.layers[k]):
+                below += cells.volume[work.order[i]]
+            excess = work.total[3 + axis, k] - below
+            other = work.total[axis, k] - work.total[3 + axis, k] - (whole - below)
+            value = work.total[axis, k] + BOTH_WASTE * max(min(excess, other), 0.0)
+            if value < best - 1e-9 * abs(best) or best == np.inf:
+                best, best_axis, best_layer = value, axis, low + k
     return best_axis, best_layer
 
 

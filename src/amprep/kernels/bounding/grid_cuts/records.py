@@ -95,8 +95,8 @@ class CutWork(NamedTuple):
     parent, added, joined_value, joined_point, joined_empty, joined_volume
         A union-find forest, the sweep that added a cell, and the same for components.
     order, layers, total
-        ``(n,)``, ``(most + 1,)`` and ``(3, most)`` cells by layer, the first of each layer, and the volume of the hulls
-        after a cut below each layer.
+        ``(n,)``, ``(most + 1,)`` and ``(6, most)`` cells by layer, the first of each layer, and for each axis the
+        volume of the hulls after a cut below each layer; in the last three rows of those below the cut.
     local
         ``(DIRECTIONS, 3)`` coordinates of extreme points.
     """

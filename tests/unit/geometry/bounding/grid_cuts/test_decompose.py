@@ -69,6 +69,11 @@ def test_a_solid_with_faces_along_the_axes_is_decomposed_exactly(name, count):
     assert union == pytest.approx(solid.volume(), rel=1e-3 if name == "thin" else 1e-5)
 
 
+def test_a_frame_is_decomposed_into_its_bars_although_no_plane_alone_saves_volume():
+    frame = Manifold.cube([60, 50, 20]) - Manifold.cube([56, 46, 20]).translate([2, 2, 0])
+    assert union_of(decomposed(frame, 4)).volume() == pytest.approx(frame.volume(), rel=1e-4)
+
+
 @pytest.mark.parametrize("name", ["torus", "turned bracket", "spheres", "comb"])
 def test_more_pieces_waste_less(name):
     solid = CURVED[name]()
