@@ -45,7 +45,7 @@ def pack_separation(
         scene = Scene(instance, no_fit, params, rng, budget, progress)
         pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
         placed = _below_top(instance, pack(scene))
-    packing = _as_packing(instance, placed, stop)
+    packing = _as_packing(instance, placed, budget)
     if no_fit is not None and not stop():
         return packing
     late = no_fit is None and instance.free.any()
@@ -70,20 +70,26 @@ def _below_top(instance: ShapeInstance, placed: Placed) -> Placed:
     return placed if fits.all() or not len(tops) else only(placed, np.flatnonzero(fits))
 
 
-def _as_packing(instance: ShapeInstance, placed: Placed, stop: Stop) -> Packing:
+def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> Packing:
     """Return a layout as a packing, with a reason for every item that is left out."""
     problem, builds = instance.problem, _builds(instance, placed)
     left = np.setdiff1d(np.flatnonzero(instance.free | instance.too_large), placed.items)
-    reason = "out of time" if stop() else "no room left"
+    reason = "out of time" if budget.stop() else "no room left"
     bound = {"height": height_bound, "builds": builds_bound, "fill": fill_bound}[problem.objective](instance)
     return Packing(
         builds=builds,
         unplaced=tuple(Unplaced(int(i), "too large" if instance.too_large[i] else reason) for i in left),
         bound=float(bound),
         status=_status(instance, placed, len(builds), float(bound)),
-        stop_reason=stop.reason if stop() else "finished",
+        stop_reason=_stop_reason(budget),
         bound_for=problem.bound_for,
     )
+
+
+def _stop_reason(budget: WorkBudget) -> str:
+    if budget.stop():
+        return budget.stop.reason
+    return "work used up" if budget.left <= 0.0 else "finished"
 
 
 def _builds(instance: ShapeInstance, placed: Placed) -> tuple[tuple[Placement, ...], ...]:

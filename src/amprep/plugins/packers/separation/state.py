@@ -17,7 +17,7 @@ from amprep.plugins.packers.separation.bounds import build_room
 from amprep.plugins.packers.separation.no_fit import NoFit
 from amprep.plugins.packers.separation.shapes import ShapeInstance
 
-CANDIDATES = 2
+CANDIDATES = 1
 """Number of cells of a scan from which a descent starts."""
 
 FINEST = 0.02
@@ -61,8 +61,8 @@ class Placed(NamedTuple):
         return int(self.build.max(initial=-1)) + 1
 
 
-UNLIMITED = 1e18
-"""Work that no search does."""
+UNLIMITED = 1e14
+"""Work that no search does, in days."""
 
 
 @dataclass
@@ -96,9 +96,14 @@ class WorkBudget:
         return self.limit - self.left
 
     @property
+    def timed(self) -> bool:
+        """Whether only the time is limited."""
+        return self.limit >= UNLIMITED and self.stop.deadline is not None
+
+    @property
     def used(self) -> float:
         """Fraction of the work that is done; where work is not limited, of the time."""
-        if self.limit < UNLIMITED:
+        if not self.timed:
             return float(min(self.spent / max(self.limit, 1.0), 1.0))
         passed = time.monotonic() - self.begun
         return float(min(passed / max(passed + self.stop.remaining(), 1e-9), 1.0))
@@ -141,7 +146,7 @@ class Scene:
     def gives_up(self, failures: int) -> bool:
         """Tell whether the search ends after some failures."""
         most = self.params.failures
-        if most is None and self.params.work is None and self.budget.stop.deadline is None:
+        if most is None and self.params.work is None and not self.budget.timed:
             most = DEFAULT_FAILURES
         return most is not None and failures >= most
 

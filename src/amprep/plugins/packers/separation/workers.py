@@ -119,11 +119,10 @@ def run_workers(scene: Scene, goal: float, search: Callable[[SearchWorker], None
         Called in one thread per worker, for the first worker in the thread of the caller.
     """
     count = scene.params.workers
-    timed = scene.params.work is None and scene.budget.stop.deadline is not None
-    exchange = Exchange([0.0] * count, 0.0 if timed else DELAY, goal)
+    exchange = Exchange([0.0] * count, 0.0 if scene.budget.timed else DELAY, goal)
     generators = scene.rng.spawn(count)
     whole = scene.budget
-    part = whole.left / count if whole.limit < UNLIMITED else UNLIMITED
+    part = UNLIMITED if whole.timed else whole.left / count
     budgets = [WorkBudget(whole.stop, part, ended=whole.ended) for _ in range(count)]
     workers = [
         SearchWorker(
