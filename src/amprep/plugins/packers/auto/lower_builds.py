@@ -32,7 +32,9 @@ def lower_builds(
     rng: np.random.Generator,
     stop: Stop,
 ) -> Packing:
-    """Return a packing with the same items in each build, and lower builds; the last one, which is least full, first.
+    """Return a packing with the same items in each build, and lower builds, or the given one if no build is lower.
+
+    The last build, which is least full, comes first.
 
     Each build is packed as enclosing boxes, and if that leaves it higher than its bound, as true shapes.
     """
@@ -43,7 +45,8 @@ def lower_builds(
             break
         part = stop.within(stop.remaining() / (number + 1)) if stop.deadline is not None else stop
         builds[number] = _lowered(problem, builds[number], number, pack_boxes, params, share, rng, part)
-    return replace(packing, builds=tuple(builds))
+    lowered = tuple(builds)
+    return packing if lowered == packing.builds else replace(packing, builds=lowered)
 
 
 def heights_of(problem: PackingProblem, packing: Packing) -> list[float]:

@@ -74,10 +74,12 @@ class Improvement:
         self.steps: list[PackingStep] = []
 
     def add(self, method: str, step: Callable[[], Packing]) -> None:
-        """Do a step; its packing counts if it is better."""
+        """Do a step; its packing counts if it is better. A step that returns the best packing itself did nothing."""
         begun = time.monotonic()
         self.progress(0.0, method)
         found = step()
+        if found is self.best:
+            return
         if not self.steps:
             too_large = [each.item for each in found.unplaced if each.reason == "too large"]
             self.bound = parts_bound(self.problem, too_large)
