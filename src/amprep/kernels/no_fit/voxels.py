@@ -17,8 +17,8 @@ from amprep.kernels.no_fit.records import NoFitFields
 # takes some 0.4 microseconds for 900 columns. Then a separable Euclidean distance transform (Meijster, Roerdink,
 # Hesselink 2000, doi:10.1007/0-306-47025-X_36), with plain minima in place of envelopes because these are vectorised,
 # gives the distance of each sample to the nearest voxel outside, or inside; the boundary is half a voxel before it.
-# Shapes are sampled at the centres of voxels, a quarter of a side too large, b further by the clearance: on average,
-# boundaries are where they should be. A pair with 30,000 samples takes a millisecond.
+# Shapes are sampled at the centres of voxels, a fraction of a side too large, b further by the clearance. A pair with
+# 30,000 samples takes a millisecond.
 
 FINE = 2
 """Voxels to a step of the fields."""

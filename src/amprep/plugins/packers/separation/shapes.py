@@ -17,7 +17,7 @@ from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
 from amprep.plugins.packers.separation.pieces import PieceSet, decompose_volumes
 
-MOST_SHAPES = 150
+MOST_SHAPES = 320
 """Number of shapes above which types with several orientations keep only some, those of least height."""
 
 MOST_PIECES, MOST_OF_VOLUME = 2500, 40
@@ -189,9 +189,15 @@ def _shapes_of(problem: PackingProblem, item: Item, pieces: Sequence[Floats]) ->
         if key not in found:
             found[key] = Shape(rotation, tuple(turned), -least, _feasible_position(problem, turned))
     fitting = [shape for shape in found.values() if shape.fits]
-    lowest = sorted(range(len(fitting)), key=lambda k: (round(float(fitting[k].size[2]), 6), k))
-    kept = sorted(lowest[: _most_orientations(problem)])
+    kept = sorted(_lowest(fitting)[: _most_orientations(problem)])
     return [fitting[k] for k in kept] or list(found.values())[:1]
+
+
+def _lowest(shapes: Sequence[Shape]) -> list[int]:
+    """Return the numbers of shapes by increasing height, of equal ones with different lengths and widths in turn."""
+    sizes = [tuple(np.round(shape.size, 6).tolist()) for shape in shapes]
+    turn = [sizes[:k].count(size) for k, size in enumerate(sizes)]
+    return sorted(range(len(shapes)), key=lambda k: (sizes[k][2], turn[k], k))
 
 
 def _type_of(item: Item) -> tuple[int, bytes]:

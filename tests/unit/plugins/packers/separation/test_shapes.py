@@ -39,10 +39,18 @@ def test_copies_share_their_shapes_and_rotations_that_do_not_fit_are_left_out():
 
 
 def test_types_with_many_orientations_keep_the_lowest_ones():
-    volumes = [block(1, 2, 3 + k / 100) for k in range(80)]
+    volumes = [block(1, 2, 3 + k / 1000) for k in range(MOST_SHAPES)]
     instance = prepared(*(Item(k, 0, volume, 1.0, ALL_TURNS) for k, volume in enumerate(volumes)))
     assert len(instance.shapes) <= MOST_SHAPES
     assert {float(shape.size[2]) for shape in instance.shapes} == {1.0}
+
+
+def test_of_equally_low_orientations_those_with_other_lengths_and_widths_come_first():
+    volumes = [block(1, 2, 3 + k / 1000) for k in range(MOST_SHAPES // 2)]
+    instance = prepared(*(Item(k, 0, volume, 1.0, ALL_TURNS) for k, volume in enumerate(volumes)))
+    low = [instance.shapes[k].size for k in range(2)]
+    assert [size[2] for size in low] == [1.0, 1.0]
+    assert low[0][0] == low[1][1] != low[0][1]
 
 
 @pytest.mark.parametrize("megabytes", [1.0, 5.0])
