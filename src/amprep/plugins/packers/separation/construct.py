@@ -177,7 +177,7 @@ def best_constructed(
     worker
         Number of the worker.
     density
-        ``(n,)`` value of each item per volume, where items of greater value come first.
+        ``(n,)`` value of each item per volume, where such items come first.
     """
     orders = _orders(scene, items, worker, density)
     begun = scene.budget.used
@@ -195,7 +195,7 @@ def _orders(scene: Scene, items: Int64s, worker: int, density: Floats | None) ->
     """Yield orders of the items by decreasing size, then such with sizes changed at random."""
     keys = _sizes(scene, items)
     if density is not None:
-        keys = [density, density * keys[0], *(density * np.sqrt(key) for key in keys)]
+        keys = [density, *(density * np.cbrt(key) for key in keys)]
     for k in range(len(keys)):
         yield _by_key(scene, items, keys[(k + worker) % len(keys)])
     for k in range(MOST_ORDERS):

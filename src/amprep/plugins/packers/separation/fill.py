@@ -15,6 +15,9 @@ from amprep.plugins.packers.separation.workers import SearchWorker, run_workers
 REMOVED = (0.4, 0.4, 0.2)
 """Probabilities that an exchange takes no item, one, and two out of the layout."""
 
+SPREAD = 0.5
+"""Standard deviation of the logarithm by which the order of items to put in differs from that of their density."""
+
 MOST_ADDED, TRIES = 4, 20
 """Largest number of items that an exchange puts in, and tries to find an exchange that would gain."""
 
@@ -53,12 +56,17 @@ def _search(worker: SearchWorker) -> None:
 
 
 def _first_layout(worker: SearchWorker, within: PositionRange) -> Placed:
-    """Return a constructed layout: by value per volume, or in another order."""
+    """Return a constructed layout: by value per volume of the enclosing box, or in another order."""
     scene = worker.scene
     free = np.flatnonzero(scene.instance.free & (scene.item_values > 0.0))
-    density = scene.item_values / np.maximum(scene.instance.volumes, 1e-12)
     value = partial(_value, scene.item_values)
-    return best_constructed(scene, free, within, 1, value, worker.number, density[free])
+    return best_constructed(scene, free, within, 1, value, worker.number, _density(scene)[free])
+
+
+def _density(scene: Scene) -> Floats:
+    """Return the value of each item per volume of its enclosing box."""
+    boxes = scene.instance.size[scene.instance.first].prod(axis=1)
+    return np.asarray(scene.item_values / np.maximum(boxes, 1e-12))
 
 
 def _value(values: Floats, placed: Placed) -> float:
@@ -85,9 +93,9 @@ def exchanged(scene: Scene, best: Placed, within: PositionRange) -> Placed | Non
 
 
 def _added(scene: Scene, left: Int64s, lost: float, room: float) -> Int64s:
-    """Return some of the items left out, in random order, that fit by volume and gain value; or none."""
+    """Return some of the items left out that fit by volume and gain value, dense ones more often; or none."""
     values, volumes = scene.item_values[left], scene.instance.volumes[left]
-    order = scene.rng.permutation(len(left))
+    order = np.argsort(-_density(scene)[left] * np.exp(scene.rng.normal(0.0, SPREAD, len(left))))
     chosen: list[int] = []
     gained = taken = 0.0
     for k in order.tolist():
