@@ -72,7 +72,7 @@ def _normal(polygon: Floats, axis: int) -> float:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface: ClippedSurface) -> int:
     """Write the corners of what the triangles have in each cell, and the volume below it in the cell.
 
@@ -159,7 +159,7 @@ def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface
     return used
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def count_at_corners(points: Floats, triangles: Int64s, planes: GridPlanes, change: Int16s) -> None:
     """Count how the winding number changes along the vertical lines of the corners of the cells.
 
@@ -229,7 +229,7 @@ def count_at_corners(points: Floats, triangles: Int64s, planes: GridPlanes, chan
                                 change[i, j, 1, ix, iy, k + 1] -= turns[i, j]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def extremes_of_cells(points: Floats, owner: Int32s, low: Floats, size: Floats, index: Int32s) -> None:
     """Find the extreme points of the surface in each cell, in the directions to the corners, edges and faces of a cube.
 

@@ -222,7 +222,7 @@ def _best_plane(
     return best_axis, best_layer
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def cut_cells(
     cells: GridCells,
     work: CutWork,

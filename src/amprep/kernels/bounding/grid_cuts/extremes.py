@@ -74,7 +74,7 @@ def set_frame(low: Floats, high: Floats, frame: Floats) -> None:
         frame[3 + c] = 1.0 / max(high[c] - low[c], 1e-9)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def mark_outside(points: Floats, planes: Floats, tolerance: float, outside: Bools) -> None:
     """Tell which points ``(n, 3)`` are farther outside than a tolerance of one of the planes ``(k, 4)``."""
     for i in range(len(points)):

@@ -57,7 +57,7 @@ def _measure(
     return float(estimate_volume(points, frame, directions, value, index, local))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def merge_sets(
     points: Floats,
     extreme: Int32s,

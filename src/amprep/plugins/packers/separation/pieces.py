@@ -1,8 +1,10 @@
 """Convex pieces of bounding volumes."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import product
+from itertools import product, takewhile
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from amprep.geometry.meshes.topology import edges_match
 from amprep.geometry.no_fit.partition import MOST_FACES, exact_pieces, hull_volume
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.control import Stop
+from amprep.model.mesh import Mesh
 
 # Strategy. Boxes and convex pieces are taken as they are, and solids of few faces are decomposed exactly. All other
 # solids get their hulls first. Then they are cut, the one with the greatest excess first: the volume of its hull
@@ -29,6 +32,13 @@ LEAST_GAIN = 2e-3
 
 TRIANGLE_WORK, CUT_WORK, PIECE_WORK = 1_500, 700_000, 2_000_000
 """Work of a triangle, of a cut and of a piece of a solid, in field values read."""
+
+
+THREADS = 2
+"""Number of threads; most of the work is in kernels, which run side by side."""
+
+TIME_TO_CUT = 0.6
+"""Fraction of the time left that cutting may take; the rest is for the pieces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,24 +88,74 @@ def decompose_volumes(
     wasted = {k: sets[k].excess * mesh.signed_volume * copies[k] for k, mesh in meshes.items()}
     worst = sorted((k for k in wasted if sets[k].excess > LEAST_GAIN), key=lambda k: (-wasted[k], k))
     left = total - sum(len(sets[k].pieces) for k in range(len(sets)) if k not in worst)
-    cuts: dict[int, CutSolid] = {}
-    for k in worst[: max(left - 1, 0)]:
-        if stop():
-            break
-        cuts[k] = cut_solid(*meshes[k].arrays, stop, _sets_to_cut(left, len(worst)))
-        work += CUT_WORK * len(cuts[k].sets)
+    number = _sets_to_cut(left, len(worst))
+    cuts = _cut_each([meshes[k] for k in worst[: max(left - 1, 0)]], number, stop)
+    work += CUT_WORK * sum(len(cut.hulls) for cut in cuts)
     counts = distribute_pieces(
-        [cut.hulls for cut in cuts.values()],
-        [copies[k] for k in cuts],
-        left - (len(worst) - len(cuts)),
-        [LEAST_GAIN * cut.volume for cut in cuts.values()],
+        [cut.hulls for cut in cuts],
+        [copies[k] for k in worst[: len(cuts)]],
+        left * len(cuts) // max(len(worst), 1),
+        [LEAST_GAIN * cut.volume for cut in cuts],
     )
-    for k, count in zip(cuts, counts.tolist(), strict=True):
-        pieces = cuts[k].pieces(count, stop) if count > 1 else None
-        if pieces is not None:
-            sets[k] = _piece_set(pieces, meshes[k].signed_volume)
-            work += PIECE_WORK * count
+    work += PIECE_WORK * float(counts[counts > 1].sum())
+    for k, pieces in zip(worst, _pieces_of_each(cuts, counts.tolist(), stop), strict=False):
+        sets[k] = pieces or sets[k]
     return Decomposition(tuple(sets), work)
+
+
+class _KnownCut:
+    """The cuts of a mesh, and the pieces that were made of them; only these are kept after the decomposition."""
+
+    def __init__(self, mesh: Mesh, number: int, stop: Stop) -> None:
+        self.mesh, self.number = mesh, number
+        self.cut: CutSolid | None = cut_solid(*mesh.arrays, stop, number)
+        self.hulls, self.volume = self.cut.hulls, self.cut.volume
+        self.made: dict[int, PieceSet] = {}
+
+    def pieces(self, count: int, stop: Stop) -> PieceSet | None:
+        """Return at most `count` pieces, made now or earlier; None after a stop, or for one piece."""
+        if count < 2 or (count not in self.made and stop()):
+            return None
+        if count not in self.made:
+            cut = self.cut or cut_solid(*self.mesh.arrays, stop, self.number)
+            pieces = cut.pieces(count, stop)
+            if pieces is None:
+                return None
+            self.made[count] = _piece_set(pieces, self.mesh.signed_volume)
+        return self.made[count]
+
+
+_KNOWN: "WeakKeyDictionary[Mesh, dict[int, _KnownCut]]" = WeakKeyDictionary()
+"""Cuts by the number of sets, as long as the mesh is used: `auto` runs several packers on the same parts."""
+
+
+def _cut_each(meshes: list[Mesh], number: int, stop: Stop) -> list[_KnownCut]:
+    """Cut meshes in threads, the first ones if the time is not enough for all."""
+    left = stop.remaining()
+    early = stop.within(TIME_TO_CUT * left if np.isfinite(left) else None)
+
+    def cut(mesh: Mesh) -> _KnownCut | None:
+        known = _KNOWN.get(mesh, {}).get(number)
+        if known is not None or early():
+            return known
+        found = _KnownCut(mesh, number, early)
+        return found if early() else _KNOWN.setdefault(mesh, {}).setdefault(number, found)
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        found = list(pool.map(cut, meshes))
+    return [each for each in takewhile(lambda each: each is not None, found) if each is not None]
+
+
+def _pieces_of_each(cuts: list[_KnownCut], counts: list[int], stop: Stop) -> list[PieceSet | None]:
+    """Return the exact pieces of each cut, made in threads; None where there is one piece, and after a stop."""
+
+    def pieces(known: _KnownCut, count: int) -> PieceSet | None:
+        made = known.pieces(count, stop)
+        known.cut = None
+        return made
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        return list(pool.map(pieces, cuts, counts))
 
 
 def _sets_to_cut(total: int, solids: int) -> int:

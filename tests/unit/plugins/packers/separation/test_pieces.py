@@ -1,6 +1,8 @@
 """Volumes get pieces that contain them, those first whose pieces waste most."""
 
+from collections.abc import Iterator
 from itertools import count
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -21,10 +23,27 @@ SOLIDS = [tube(20, 15, 10), tube(5, 4, 3), Manifold.sphere(8, 48)]
 VOLUMES = [Solid(part_of(solid).mesh) for solid in SOLIDS]
 
 
+class StopAfter(Stop):
+    """Tells to stop when it was asked some times."""
+
+    asked: ClassVar[Iterator[int]]
+    times: ClassVar[int]
+
+    def __call__(self):
+        return next(self.asked) >= self.times
+
+    def within(self, seconds):  # noqa: ARG002
+        return self
+
+
 def stop_after(times):
-    """Return a function that tells to stop when it was asked some times."""
-    asked = count()
-    return lambda: next(asked) >= times
+    """Return a stop that becomes true when it was asked some times."""
+    return type("StopAfterTimes", (StopAfter,), {"asked": count(), "times": times})()
+
+
+def copied(volumes):
+    """Return the volumes with meshes that no decomposition knows."""
+    return [Solid(Mesh(volume.mesh.vertices, volume.mesh.triangles)) for volume in volumes]
 
 
 def outside(solid, pieces):
@@ -34,7 +53,7 @@ def outside(solid, pieces):
 
 @pytest.mark.parametrize("times", [0, 1, 5, 30, 70, 140, 150, 1000])
 def test_pieces_contain_their_solids_whenever_the_decomposition_is_stopped(times):
-    found = decompose_volumes(VOLUMES, [1, 1, 1], 40, stop_after(times))
+    found = decompose_volumes(copied(VOLUMES), [1, 1, 1], 40, stop_after(times))
     for solid, pieces in zip(SOLIDS, found.sets, strict=True):
         assert len(pieces.pieces) >= 1
         assert outside(solid, pieces.pieces) < 1e-4
@@ -74,7 +93,21 @@ def test_an_open_mesh_keeps_its_hull():
 
 
 def test_work_is_counted_and_the_same_in_every_run():
-    first, second = (decompose_volumes(VOLUMES, [1, 1, 1], 40, Stop()) for _ in range(2))
+    first, second = (decompose_volumes(copied(VOLUMES), [1, 1, 1], 40, Stop()) for _ in range(2))
     assert first.work == second.work > 0.0
     for a, b in zip(first.sets, second.sets, strict=True):
         assert all(np.array_equal(p, q) for p, q in zip(a.pieces, b.pieces, strict=True))
+
+
+def test_the_same_meshes_are_cut_once():
+    volumes = copied(VOLUMES)
+    first, second = (decompose_volumes(volumes, [1, 1, 1], 40, Stop()) for _ in range(2))
+    assert first.work == second.work
+    assert all(a is b for a, b in zip(first.sets[:2], second.sets[:2], strict=True))
+
+
+def test_a_decomposition_that_was_stopped_is_not_kept():
+    volumes = copied(VOLUMES)
+    decompose_volumes(volumes, [1, 1, 1], 40, stop_after(9))
+    again, fresh = (decompose_volumes(each, [1, 1, 1], 40, Stop()) for each in (volumes, copied(VOLUMES)))
+    assert [len(each.pieces) for each in again.sets] == [len(each.pieces) for each in fresh.sets]
