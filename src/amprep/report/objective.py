@@ -96,15 +96,14 @@ def amount(value: float) -> str:
 def _bound(record: RunRecord) -> str:
     """Return what the bounds bound, and for which packings."""
     if _is_best_of_parts(record):
-        return "optimal: no packing of the parts " + {"fill": "has more", "height": "is lower"}.get(
+        return "no packing of the parts " + {"fill": "has more", "height": "is lower"}.get(
             record.objective, "has fewer"
         )
     words = []
-    if record.bound is not None and record.bound_for == "volumes":
-        optimal = record.status == "optimal"
-        own = _none_better(record, record.packed_as, record.bound)
-        words.append(f"optimal for the {record.packed_as}" if optimal else own)
     parts = record.bound if record.bound_for == "shapes" else record.parts_bound
+    proved = record.status == "optimal" and parts is not None  # which the status says
+    if record.bound is not None and record.bound_for == "volumes" and not proved:
+        words.append(_none_better(record, record.packed_as, record.bound))
     if parts is not None:
         words.append(_none_better(record, "parts", parts))
     return "; ".join(words) or "no bound known"

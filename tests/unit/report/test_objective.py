@@ -6,6 +6,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
+from amprep.model.packing import PackingStep
 from amprep.report.json_report import to_json
 from amprep.report.objective import amount, gap_of, objective_words, part_values, total_value
 from amprep.report.page.html import html_text
@@ -94,6 +95,38 @@ def test_a_stop_reason_is_shown_only_where_the_packing_is_not_optimal(filled, st
     record = replace(filled, status=status, stop_reason="time limit", bound_for=bound_for)
     assert f"{words};" in printed(record).replace(":", ";")
     assert f"{words} ·" in html_text(record)
+
+
+def test_a_bound_for_boxes_is_beside_the_one_for_the_parts(filled):
+    boxes = replace(
+        filled,
+        objective="builds",
+        reached=3.0,
+        bound=3.0,
+        parts_bound=2.0,
+        packed_as="enclosing boxes",
+        unplaced=(),
+    )
+    optimal = replace(boxes, status="optimal")
+    words = "packing optimal for the enclosing boxes: 3 builds, no packing of the parts has fewer than 2"
+    assert words in printed(optimal)
+    assert words.capitalize() in html_text(optimal)
+    assert to_json(optimal)["parts_bound"] == 2.0
+    searched = replace(boxes, reached=4.0)
+    assert objective_words(searched) == (
+        "4 builds, no packing of the enclosing boxes has fewer than 3; no packing of the parts has fewer than 2"
+    )
+    best = replace(optimal, reached=2.0, bound=2.0)
+    assert "packing optimal: 2 builds, no packing of the parts has fewer;" in printed(best)
+
+
+def test_the_steps_of_a_packer_are_shown_with_what_they_gained(filled):
+    steps = (PackingStep("enclosing boxes", 3.0, 120.0, 0.1), PackingStep("true shapes", 2.0, 90.5, 8.0))
+    record = replace(filled, objective="builds", reached=2.0, steps=steps)
+    words = "enclosing boxes: 3 builds, 120.0 mm high in 0.1 s; true shapes: 2 builds, 90.5 mm high in 8.0 s"
+    assert words in printed(record)
+    assert "true shapes" in html_text(record)
+    assert [each["reached"] for each in to_json(record)["steps"]] == [3.0, 2.0]
 
 
 def test_large_values_keep_all_digits_before_the_point():

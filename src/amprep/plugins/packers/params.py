@@ -101,7 +101,7 @@ class AutoParams:
     work: float = 100.0
     proof: float = 400.0
     boxes: float = 0.2
-    separation: float = 4000.0
+    separation: float = 2500.0
     plates: float = 8000.0
 
     def __post_init__(self) -> None:

@@ -2,7 +2,15 @@
 
 from html import escape
 
-from amprep.report.objective import amount, gap_of, objective_words, part_values, step_rows, total_value
+from amprep.report.objective import (
+    amount,
+    gap_of,
+    objective_words,
+    part_values,
+    status_words,
+    step_rows,
+    total_value,
+)
 from amprep.report.page.cells import Cell, table
 from amprep.report.record import RunRecord
 
@@ -37,7 +45,8 @@ def objective_figures(record: RunRecord) -> list[tuple[str, str, bool]]:
 
 def packing_section(record: RunRecord) -> str:
     """Return what the packing reached, what its bounds bound, and the steps of the packer."""
-    words = objective_words(record)
+    reached = objective_words(record)
+    words = f"{status_words(record).capitalize()}: {reached}" if reached else ""
     steps: list[tuple[Cell, ...]] = [
         (name, *(("number", each) for each in figures)) for name, *figures in step_rows(record)
     ]

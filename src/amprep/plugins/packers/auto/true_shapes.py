@@ -90,7 +90,16 @@ class Improvement:
 
     def ends(self) -> bool:
         """Return whether the best packing cannot be better, or there is no time to make it better."""
-        return self._is_optimal() or self.stop()
+        return self._is_optimal() or self._all_but_too_large() or self.stop()
+
+    def _all_but_too_large(self) -> bool:
+        """Return whether the bound is met without items whose enclosing boxes are too large for a box-shaped build."""
+        space = self.problem.space
+        if self.problem.objective == "fill" or space.shape == "cylinder" or len(space.zone_lo):
+            return False
+        left = any(each.reason != "too large" for each in self.best.unplaced)
+        reached = objective_reached(self.problem, self.best)
+        return not left and reached <= self.bound + MET * max(1.0, reached)
 
     def packing(self) -> Packing:
         """Return the best packing with the bound for true shapes and all steps."""

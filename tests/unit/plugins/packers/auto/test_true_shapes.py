@@ -84,6 +84,15 @@ def test_nothing_but_boxes_is_packed_where_they_are_proved_best_for_the_shapes(m
     assert len(low.steps) == 1
 
 
+def test_true_shapes_are_not_tried_for_a_part_whose_box_is_too_large(monkeypatch):
+    monkeypatch.setattr(separation, "pack_separation", None)
+    given = problem(2, (90, 90, 25))
+    high = Item(1, 0, Solid(wedge(z=30.0)), 1.0, TURNS, exact=True)
+    packing = packed(PackingProblem((*given.items, high), given.space))
+    assert [each.reason for each in packing.unplaced] == ["too large"]
+    assert packing.status == "infeasible"
+
+
 def test_a_build_that_need_not_be_high_is_low():
     given = problem(2, (43, 43, 100))
     packing = packed(given)
