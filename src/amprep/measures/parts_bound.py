@@ -168,6 +168,8 @@ def _least_height(problem: PackingProblem, extents: list[ShapeExtents]) -> float
     for placed in problem.fixed:
         points = points_of(problem.items[placed.item].volume) @ placed.rotation[2]
         tops.append(float(points.max() + placed.translation[2]))
+    if not extents:
+        return max(tops)
     filled = sum(each.volume for each in extents) / _base_area(problem.space, problem.clearance)
     return max(*tops, filled + problem.lift - problem.clearance - 2.0 * CONTACT_TOLERANCE)
 

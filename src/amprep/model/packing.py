@@ -145,13 +145,13 @@ class PackingStep:
     height
         Height (mm) of the highest build.
     seconds
-        Duration of the step.
+        Duration of the step; steps are equal whatever their durations.
     """
 
     method: str
     reached: float
     height: float
-    seconds: float
+    seconds: float = field(compare=False)
 
 
 @dataclass(frozen=True, eq=False)

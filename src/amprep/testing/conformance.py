@@ -114,11 +114,15 @@ def _about(problem: str, violation: Violation) -> Violation:
 
 
 def fingerprint(value: Any) -> Any:
-    """Convert an answer to nested tuples, which are equal exactly when the answers are equal."""
+    """Convert an answer to nested tuples, which are equal exactly when the answers are equal.
+
+    Fields that are not compared, such as durations, do not count.
+    """
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if is_dataclass(value):
-        return type(value).__name__, tuple(fingerprint(getattr(value, field.name)) for field in fields(value))
+        compared = (field.name for field in fields(value) if field.compare)
+        return type(value).__name__, tuple(fingerprint(getattr(value, name)) for name in compared)
     if isinstance(value, list | tuple):
         return tuple(map(fingerprint, value))
     return repr(value)

@@ -104,11 +104,12 @@ class Improvement:
     def packing(self) -> Packing:
         """Return the best packing with the bound for true shapes and all steps."""
         optimal = self._is_optimal()
+        bound = objective_reached(self.problem, self.best) if optimal else self.bound  # without rounding
         left: Status = "infeasible" if self.best.status == "infeasible" else "feasible"
         reason = "bound met" if optimal else self.stop.reason if self.stop() else "finished"
         return replace(
             self.best,
-            bound=self.bound,
+            bound=bound,
             bound_for=self.problem.bound_for,
             status="optimal" if optimal else left,
             stop_reason=reason,

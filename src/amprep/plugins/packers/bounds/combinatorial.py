@@ -90,12 +90,11 @@ def height_bound(instance: PreparedInstance) -> float:
     least = np.array([min(o.size[2] for o in item_type) for item_type in instance.types] or [0.0])
     highest = float(least[instance.type_of[instance.free]].max(initial=-lift)) + lift
     inside, taken = counted_items(instance), _taken(instance, 3)
+    known = max(highest, float(instance.fixed_hi[:, 2].max(initial=0.0)))
+    if not inside.any():
+        return known
     filled = float(taken[instance.type_of[inside]].sum()) / max(_base_area(instance), 1e-12)
-    return max(
-        highest,
-        filled + lift - gap - 2.0 * CONTACT_TOLERANCE,
-        float(instance.fixed_hi[:, 2].max(initial=0.0)),
-    )
+    return max(known, filled + lift - gap - 2.0 * CONTACT_TOLERANCE)
 
 
 def counted_items(instance: PreparedInstance) -> Bools:
