@@ -15,6 +15,7 @@ from amprep.measures.bounding_volume import volume_of
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
+from amprep.plugins.packers.separation.between_zones import find_between_zones
 from amprep.plugins.packers.separation.pieces import PieceSet, decompose_volumes
 
 MOST_SHAPES = 320
@@ -219,8 +220,8 @@ def _digest(pieces: list[Floats]) -> bytes:
 def _feasible_position(problem: PackingProblem, pieces: list[Floats]) -> Floats:
     """Return a position of the least corner in an empty build; NaN if none is found.
 
-    The search is exact for boxes. For other shapes it is on the boxes around their pieces, and exact in a round build
-    volume without zones.
+    The search is exact for boxes. For other shapes it is on the boxes around their pieces, exact in a round build
+    volume without zones, and among zones on a grid of positions.
     """
     space = empty_space(problem)
     lo, hi = np.array([p.min(axis=0) for p in pieces]), np.array([p.max(axis=0) for p in pieces])
@@ -230,4 +231,6 @@ def _feasible_position(problem: PackingProblem, pieces: list[Floats]) -> Floats:
         inside = find_inside_circle(outline_of(points[:, :2]), Circle(space.axis, space.radius), space.slack)
         if inside is not None and points[:, 2].max() <= space.hi[2] - space.lo[2] + space.slack:
             found = np.array([*inside, space.lo[2]])
+    if found is None and len(space.zone_lo):
+        found = find_between_zones(pieces, space)
     return np.full(3, np.nan) if found is None else found

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from manifold3d import Manifold, OpType
+from manifold3d import CrossSection, Manifold, OpType
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.measures.objective import objective_reached
@@ -20,7 +20,7 @@ from amprep.model import (
 )
 from amprep.model.rotations import axis_rotations
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation import pack_separation
+from amprep.plugins.packers.separation import no_fit, pack_separation
 
 
 def solid(manifold):
@@ -85,6 +85,18 @@ def test_curved_and_concave_parts_keep_the_clearance(clearance):
     size = np.array([16.0, 16, 200]) + 2 * clearance
     items = items_of(ball, ball, cross, cross, wedge(), channel(), orientations=HALF_TURN)
     _, packing, _ = pack(items, size, work=10.0, clearance=clearance, lift=clearance)
+    assert not packing.unplaced
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.5, 3.0])
+def test_layouts_found_with_voxels_keep_the_clearance(clearance, monkeypatch):
+    monkeypatch.setattr(no_fit, "MOST_CORNER_PAIRS", 0)
+    ball = solid(Manifold.sphere(5.0, 16))
+    ring = solid(Manifold.revolve(CrossSection.circle(1.5, 8).translate([6, 0]), 16))
+    bracket = solid(Manifold.cube([12, 3, 9]) + Manifold.cube([12, 10, 3]) - Manifold.cylinder(20, 2.0))
+    size = np.array([24.0, 24, 400]) + 2 * clearance
+    items = items_of(*[ball] * 3, *[ring] * 3, *[bracket] * 3, orientations=HALF_TURN)
+    _, packing, _ = pack(items, size, work=15.0, clearance=clearance, lift=clearance)
     assert not packing.unplaced
 
 
