@@ -123,7 +123,7 @@ def choose_packer(host: Host, packing: PackingSettings) -> Chosen[Packer]:
     if level is None and packing.effort != "normal":
         known = ", ".join(["normal", *listed.offer.efforts])
         raise JobError(
-            f"packing.effort: the packer {packing.strategy!r} has the levels {known}, got {packing.effort!r}; set its "
+            f"packing.effort: the packer {packing.strategy!r} knows {known} only, got {packing.effort!r}; set its "
             "budget in [packing.params] instead"
         )
     return Chosen.of(host, listed, {**(level or {}), **packing.params})

@@ -1,4 +1,4 @@
-"""Resolve the lattice cell that a job names: an offer, or a file that declares one."""
+"""Resolve the lattice cell and the packer that a job names."""
 
 import numpy as np
 import pytest
@@ -6,13 +6,14 @@ import pytest
 from amprep.checks.cells.templates import check_cells
 from amprep.errors import JobError, MeshError
 from amprep.host import Host
-from amprep.job import apply_sets, job_from_inputs
+from amprep.job import PackingSettings, apply_sets, job_from_inputs
 from amprep.model import CellRequest, Grid, Mesh, SupportEdges
-from amprep.pipeline.resolve import cell_named, choose_cell
+from amprep.pipeline.resolve import cell_named, choose_cell, choose_packer
 from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))
 FRAME = Grid(np.zeros(3), pitch=2.0, step=4.0, shape=(3, 3, 3))
+LEVELS = ("fast", "normal", "thorough")
 REQUEST = CellRequest(
     FRAME, SupportEdges([1, 2], [1, 1], [1, 1], [0, 1], [1, 1], [1, 1], group=[0, 0]), [1, 0]
 )
@@ -104,3 +105,22 @@ def test_a_cell_drawn_in_openscad_passes_its_check(tmp_path):
     ]
     assert len(ends[0]) == 4
     assert ends[0] == ends[1]
+
+
+def test_a_level_of_effort_sets_the_budgets_of_the_packer_and_params_take_precedence(host):
+    work = {level: choose_packer(host, PackingSettings(effort=level)).params.work for level in LEVELS}
+    assert work["fast"] < work["normal"] < work["thorough"]
+    chosen = choose_packer(host, PackingSettings(effort="thorough", params={"work": 7.0})).params
+    assert (chosen.work, chosen.proof) == (7.0, 4000.0)
+
+
+def test_every_level_of_every_packer_is_a_set_of_valid_parameters(host):
+    for name, listed in host.offers("packer").items():
+        for level in listed.offer.efforts:
+            assert level in LEVELS
+            assert choose_packer(host, PackingSettings(strategy=name, effort=level)).name == name
+
+
+def test_a_packer_without_the_level_is_refused_with_what_to_do(host):
+    with pytest.raises(JobError, match=r"'sweep' knows normal only, got 'fast'.*\[packing.params\]"):
+        choose_packer(host, PackingSettings(strategy="sweep", effort="fast"))
