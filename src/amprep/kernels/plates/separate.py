@@ -32,7 +32,7 @@ from amprep.kernels.random_numbers import uniform
 NEGLIGIBLE = 1e-9
 """Weighted overlap that counts as none."""
 
-GROWTH_LEAST, GROWTH_MOST, DECAY = 1.2, 1.5, 0.95
+GROWTH_LEAST, GROWTH_MOST, DECAY = 1.03, 1.15, 0.97
 """Factors of the weight of the least and the deepest overlap, and of the weights of pairs that do not overlap."""
 
 LONGER, SHORTER, TRIES = 1.3, 0.55, 2
@@ -41,7 +41,7 @@ LONGER, SHORTER, TRIES = 1.3, 0.55, 2
 VALUES_A_DEPTH = 8
 """Field values read for one depth between samples."""
 
-OTHERS = 3
+OTHERS = 12
 """Number of other shapes and plates that a move scans."""
 
 
