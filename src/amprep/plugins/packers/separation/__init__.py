@@ -5,8 +5,11 @@ Nielsen, Brazil 2009 (doi:10.1016/j.comgeo.2008.03.004): the builds are fixed, i
 item at a time moves to the position of least weighted overlap.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
+from amprep.measures.objective import objective_reached
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packers.params import SeparationParams
@@ -76,7 +79,7 @@ def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> 
     left = np.setdiff1d(np.flatnonzero(instance.free | instance.too_large), placed.items)
     reason = "out of time" if budget.stop() else "no room left"
     bound = {"height": height_bound, "builds": builds_bound, "fill": fill_bound}[problem.objective](instance)
-    return Packing(
+    packing = Packing(
         builds=builds,
         unplaced=tuple(Unplaced(int(i), "too large" if instance.too_large[i] else reason) for i in left),
         bound=float(bound),
@@ -84,6 +87,14 @@ def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> 
         stop_reason=_stop_reason(budget),
         bound_for=problem.bound_for,
     )
+    return _with_reached_bound(problem, packing)
+
+
+def _with_reached_bound(problem: PackingProblem, packing: Packing) -> Packing:
+    """Return a packing whose bound is not above its height: pieces are larger than parts by rounding."""
+    if problem.objective != "height" or packing.unplaced or packing.bound is None:
+        return packing
+    return replace(packing, bound=min(packing.bound, objective_reached(problem, packing)))
 
 
 def _stop_reason(budget: WorkBudget) -> str:

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from amprep.geometry.boxes.build_space import find_feasible_position
 from amprep.geometry.no_fit.circle import Circle, circle_sides, find_inside_circle, outline_of
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.measures.bounding_volume import volume_of
+from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
@@ -175,7 +176,16 @@ def _pieces(problem: PackingProblem, stop: Stop) -> dict[int, PieceSet]:
     total = int(min(MOST_PIECES, MOST_OF_VOLUME * len(volumes), len(volumes) + time / SECONDS_A_PIECE))
     early = stop.within(time) if np.isfinite(time) else stop
     sets = decompose_volumes(list(volumes.values()), [copies[key] for key in volumes], total, early).sets
-    return dict(zip(volumes, sets, strict=True))
+    return {key: _inside_box(volume, each) for (key, volume), each in zip(volumes.items(), sets, strict=True)}
+
+
+def _inside_box(volume: BoundingVolume, found: PieceSet) -> PieceSet:
+    """Return pieces that are not beyond the enclosing box of the volume; rounding enlarged them by up to 1e-4 mm.
+
+    So heights and walls are those of the volume.
+    """
+    lo, hi = volume.enclosing()
+    return replace(found, pieces=tuple(np.clip(piece, lo, hi) for piece in found.pieces))
 
 
 def _shapes_of(problem: PackingProblem, item: Item, pieces: Sequence[Floats]) -> list[Shape]:

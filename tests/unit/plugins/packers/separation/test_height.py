@@ -100,6 +100,14 @@ def test_layouts_found_with_voxels_keep_the_clearance(clearance, monkeypatch):
     assert not packing.unplaced
 
 
+def test_the_tallest_curved_part_is_a_bound_that_is_met_in_spite_of_the_rounding_of_pieces():
+    """The check of claims refuses a bound above the height, and an optimal packing above its bound."""
+    tower = solid(Manifold.cylinder(31.7, 3.1, 4.3, 48) - Manifold.cylinder(40.0, 2.2, 2.2, 48))
+    _, packing, height = pack(items_of(tower, solid(Manifold.sphere(5.0, 32))), (30, 30, 99), work=5.0)
+    assert packing.status == "optimal"
+    assert height == pytest.approx(31.7, abs=1e-6)
+
+
 def test_fixed_parts_and_zones_are_avoided_and_the_bound_counts_them():
     fixed = (Placement(0, np.eye(3), np.array([0.0, 0, 5])),)
     space = BuildVolume(np.array([6.0, 6, 50]), "box", np.array([[4.0, 4, 0]]), np.array([[6.0, 6, 50]]))
