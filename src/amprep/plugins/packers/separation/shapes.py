@@ -9,6 +9,7 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.geometry.boxes.build_space import find_feasible_position
+from amprep.geometry.no_fit.between_zones import find_between_zones
 from amprep.geometry.no_fit.circle import Circle, circle_sides, find_inside_circle, outline_of
 from amprep.kernels.no_fit.records import PositionRange
 from amprep.measures.bounding_volume import volume_of
@@ -16,7 +17,6 @@ from amprep.model.bounding_volume import BoundingVolume
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
-from amprep.plugins.packers.separation.between_zones import find_between_zones
 from amprep.plugins.packers.separation.pieces import PieceSet, decompose_volumes
 
 MOST_SHAPES = 320

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from amprep.geometry.boxes.build_space import Space
-from amprep.plugins.packers.separation.between_zones import find_between_zones
+from amprep.geometry.no_fit.between_zones import find_between_zones
 
 WEDGE = np.array([[x, y, z] for x, y in ((0.0, 0.0), (8.0, 0.0), (0.0, 8.0)) for z in (0.0, 2.0)])
 
