@@ -309,6 +309,8 @@ class PlatesParams:
         Step of the turns about z of a part that may be turned by any angle, degrees.
     tolerance
         Length (mm) by which the outline of a shadow may be simplified outwards.
+    support_margin_mm
+        Width (mm) of the margin around the shadows of parts with faces that hang over, for the base of their supports.
     scan_chance
         Probability that a move scans plates when a descent leaves an overlap.
     passes
@@ -325,6 +327,7 @@ class PlatesParams:
     memory: float = 500.0
     angle_step_deg: float = 15.0
     tolerance: float = 0.05
+    support_margin_mm: float = 0.0
     scan_chance: float = 0.5
     passes: int = 5
     persistence: int = 30
@@ -334,5 +337,5 @@ class PlatesParams:
     def __post_init__(self) -> None:
         require_bounds(self, "step", above=0, at_most=0.5)
         require_bounds(self, "angle_step_deg", above=0, at_most=360)
-        require_bounds(self, "tolerance", "scan_chance", "work", "failures", at_least=0)
+        require_bounds(self, "tolerance", "support_margin_mm", "scan_chance", "work", "failures", at_least=0)
         require_bounds(self, "memory", "passes", "persistence", at_least=1)

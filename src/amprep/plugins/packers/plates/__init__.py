@@ -18,7 +18,7 @@ from amprep.plugins.packers.plates.fill import pack_most
 from amprep.plugins.packers.plates.prepare import prepare_plates, with_lowest_shapes
 from amprep.plugins.packers.plates.result import as_packing
 from amprep.plugins.packers.plates.shapes import PlateInstance
-from amprep.plugins.packers.plates.state import make_scene
+from amprep.plugins.packers.plates.state import make_scene, none_on_plates
 from amprep.plugins.packers.separation.state import WorkBudget
 
 
@@ -51,7 +51,7 @@ def _packed(
 ) -> Packing:
     """Return the best packing that is found within a budget."""
     problem, stop = instance.problem, budget.stop
-    start = pack_enclosing(instance, rng, stop)
+    start = none_on_plates() if params.support_margin_mm > 0.0 else pack_enclosing(instance, rng, stop)
     if not instance.free.any() or stop():
         return as_packing(instance, start, stop)
     scene = make_scene(instance, params, rng, budget)

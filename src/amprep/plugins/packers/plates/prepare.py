@@ -10,10 +10,10 @@ from amprep.geometry.boxes.build_space import Space, find_feasible_position, rot
 from amprep.geometry.no_fit.circle import Circle, find_inside_circle
 from amprep.geometry.plates.areas import needed_area
 from amprep.geometry.plates.outline import ShadowOutline, outline_of, rectangle
-from amprep.geometry.plates.shadow import shadow_of
+from amprep.geometry.plates.shadow import SEGMENTS, shadow_of
 from amprep.kernels.plates.records import EVERY_PLATE
 from amprep.measures.bounding_volume import points_of
-from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
+from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
 from amprep.plugins.packers.instance.prepare import empty_space
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 SAME = 1e-6
 """Difference of matrix entries, and of points (mm), up to which they are the same."""
+
+ON_PLATE, HANGING = 0.05, 1.0
+"""Height (mm) of faces that lie on the plate, and area (mm2) beside them above which a volume hangs over."""
 
 NOWHERE = np.full(2, np.nan)
 """Position of a shape that fits no build."""
@@ -122,7 +125,8 @@ def _add_type(
         group = [(rotation, _quarters(base, rotation)) for rotation in left]
         left = [rotation for rotation, quarter in group if quarter < 0]
         region, low, high = volume_shadow(item.volume, base)
-        outline = outline_of(region, low[:2], high[:2], problem.clearance, params.tolerance)
+        wide = _with_margin(params, item.volume, base, (region, low, high))
+        outline = outline_of(*wide, problem.clearance, params.tolerance)
         needs.append(LeastNeed(needed_area(region, problem.clearance), float(high[2] - low[2])))
         for rotation, quarter in group:
             if quarter >= 0 and (key := _digest(outline, quarter, high[2] - low[2])) not in seen:
@@ -168,6 +172,39 @@ def volume_shadow(volume: BoundingVolume, rotation: Floats) -> tuple["CrossSecti
     return CrossSection.batch_boolean(hulls, OpType.Add), low, high
 
 
+def _with_margin(
+    params: PlatesParams,
+    volume: BoundingVolume,
+    rotation: Floats,
+    shadow: tuple["CrossSection", Floats, Floats],
+) -> tuple["CrossSection", Floats, Floats]:
+    """Return a shadow and the corners ``(2,)`` of its box, with the margin for supports if the volume hangs over."""
+    from manifold3d import JoinType
+
+    (region, low, high), margin = shadow, params.support_margin_mm
+    if margin > 0.0 and hangs_over(volume, rotation, region):
+        wider = region.offset(margin, JoinType.Round, 2.0, SEGMENTS)
+        return wider, low[:2] - margin, high[:2] + margin
+    return region, low[:2], high[:2]
+
+
+def hangs_over(volume: BoundingVolume, rotation: Floats, shadow: "CrossSection") -> bool:
+    """Tell whether a turned volume covers more of the plate than its lowest faces and pieces."""
+    from manifold3d import CrossSection
+
+    points = points_of(volume) @ rotation.T
+    lowest = points[:, 2] <= points[:, 2].min() + ON_PLATE
+    if isinstance(volume, Solid):
+        flat = lowest[volume.mesh.triangles].all(axis=1)
+        base = shadow_of(points, volume.mesh.triangles[flat]) if flat.any() else CrossSection()
+    elif isinstance(volume, Boxes):
+        low = lowest.reshape(-1, 8).any(axis=1)
+        base = volume_shadow(Boxes(volume.lo[low], volume.hi[low]), rotation)[0]
+    else:
+        return True
+    return bool((shadow - base).area() > HANGING)
+
+
 def _shape(
     problem: PackingProblem,
     item: Item,
@@ -195,7 +232,8 @@ def _positions_alone(
     convex pieces, and exact on a round plate without zones.
     """
     space = empty_space(problem)
-    if isinstance(item.volume, Boxes):
+    own = 2.0 * outline.half if quarter % 2 == 0 else 2.0 * outline.half[::-1]
+    if isinstance(item.volume, Boxes) and (own <= _plan_size(item.volume, rotation) + SAME).all():
         lo, hi = rotated_boxes(item.volume.lo, item.volume.hi, rotation)
         middle = (lo.min(axis=0) + hi.max(axis=0)) / 2.0
         lo, hi = lo - [*middle[:2], lo[:, 2].min()], hi - [*middle[:2], lo[:, 2].min()]
@@ -212,6 +250,12 @@ def _positions_alone(
         return found[:2], NOWHERE
     found = find_feasible_position(lo, hi, space)
     return NOWHERE, NOWHERE if found is None else found[:2]
+
+
+def _plan_size(volume: Boxes, rotation: Floats) -> Floats:
+    """Return the size ``(2,)`` mm in plan of the box around turned boxes."""
+    lo, hi = rotated_boxes(volume.lo, volume.hi, rotation)
+    return np.asarray((hi.max(axis=0) - lo.min(axis=0))[:2])
 
 
 def _inside_circle(outline: ShadowOutline, quarter: int, height: float, space: Space) -> Floats | None:
@@ -239,8 +283,10 @@ def _obstacles(
         if (hi > lo).all() and (high > low).all():
             add(rectangle(low, high), (low + high) / 2.0, EVERY_PLATE, 0.0, float(lo[2]), float(hi[2]))
     for fixed in problem.fixed:
-        region, low, high = volume_shadow(problem.items[fixed.item].volume, fixed.rotation)
-        outline = outline_of(region, low[:2], high[:2], problem.clearance, params.tolerance)
+        volume = problem.items[fixed.item].volume
+        region, low, high = volume_shadow(volume, fixed.rotation)
+        wide = _with_margin(params, volume, fixed.rotation, (region, low, high))
+        outline = outline_of(*wide, problem.clearance, params.tolerance)
         middle = (low + high)[:2] / 2.0 + fixed.translation[:2]
         add(outline, middle, 0, problem.clearance, -np.inf, np.inf)
     if space.radius:

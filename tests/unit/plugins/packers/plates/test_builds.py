@@ -76,3 +76,13 @@ def test_the_same_seed_gives_the_same_layout_and_a_stop_the_best_so_far():
     assert matrices[0] == matrices[1]
     stopped = checked(problem, stop=Stop.after(0.0))
     assert sum(map(len, stopped.builds)) == len(volumes)
+
+
+def test_parts_that_hang_over_keep_a_margin_for_their_supports_and_others_do_not():
+    def gap(volume):
+        packing = checked(plate_problem([volume] * 2, (60.0, 60.0, 9.0)), support_margin_mm=3.0)
+        one, other = packing.builds[0]
+        return np.hypot(*(one.translation - other.translation)[:2]) - 16.0
+
+    assert gap(mushroom(8.0, 2.0)) >= 6.0 - 1e-3
+    assert gap(disc(8.0)) < 2.0
