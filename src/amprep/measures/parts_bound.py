@@ -180,4 +180,5 @@ def _most_value(problem: PackingProblem, counted: list[int], fraction: Floats) -
     order = np.argsort(-value / np.maximum(fraction, 1e-15), kind="stable")
     before = np.concatenate(([0.0], np.cumsum(fraction[order])[:-1]))
     part = np.clip((1.0 - before) / np.maximum(fraction[order], 1e-15), 0.0, 1.0)
-    return float((part * value[order]).sum() * (1.0 + ROUNDING))
+    most = float((part * value[order]).sum() * (1.0 + ROUNDING))
+    return min(most, float(value.sum()))

@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.measures.objective import objective_reached
 from amprep.measures.parts_bound import parts_bound
+from amprep.measures.too_large import proved_too_large
 from amprep.model import Packing, PackingProblem, Part, Solid
 
 SLACK = 1e-6
@@ -32,8 +33,8 @@ def bound_for_parts(parts: Sequence[Part], problem: PackingProblem, packing: Pac
     fixed = tuple(
         replace(each, rotation=each.rotation @ problem.items[each.item].turn) for each in problem.fixed
     )
-    too_large = [each.item for each in packing.unplaced if each.reason == "too large"]
     own = replace(problem, items=items, fixed=fixed)
+    too_large = proved_too_large(own, [each.item for each in packing.unplaced if each.reason == "too large"])
     bound, reached = parts_bound(own, too_large), objective_reached(problem, packing)
     if packing.unplaced and problem.objective != "fill":
         return bound

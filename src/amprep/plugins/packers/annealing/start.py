@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from amprep.measures.bounding_volume import points_of
 from amprep.model.bounding_volume import Boxes
 from amprep.model.control import Stop, silent
 from amprep.model.packing import Item, Packing, PackingProblem, Placement, Unplaced
@@ -65,7 +66,20 @@ def start_layout(
     packing: Packing = pack(
         box_problem(problem, reserve), params=_PACKERS[name].params, rng=rng, stop=stop, progress=silent
     )
-    return packing
+    return packing if problem.stacking else _lowered(problem, packing)
+
+
+def _lowered(problem: PackingProblem, packing: Packing) -> Packing:
+    """Return a packing of boxes with all volumes down at the lift, above which they may be in tilted boxes."""
+    fixed = {placement.item for placement in problem.fixed}
+
+    def lowered(placed: Placement) -> Placement:
+        if placed.item in fixed:
+            return placed
+        lowest = (points_of(problem.items[placed.item].volume) @ placed.rotation[2]).min()
+        return replace(placed, translation=np.array([*placed.translation[:2], problem.lift - lowest]))
+
+    return replace(packing, builds=tuple(tuple(map(lowered, build)) for build in packing.builds))
 
 
 def _separated(problem: PackingProblem, rng: np.random.Generator, stop: Stop, reserve: float) -> Packing:

@@ -12,6 +12,7 @@ from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, PackingStep, Status
 from amprep.plugins.packers.auto.lists import in_lists
 from amprep.plugins.packers.auto.lower_builds import heights_of, lower_builds
+from amprep.plugins.packers.bounds.reasons import with_proved_reasons
 from amprep.plugins.packers.extreme_points import construct
 from amprep.plugins.packers.instance.arrangement import PackerResult, as_packing
 from amprep.plugins.packers.instance.prepare import prepare
@@ -77,7 +78,7 @@ class Improvement:
         """Do a step; its packing counts if it is better. A step that returns the best packing itself did nothing."""
         begun = time.monotonic()
         self.progress(0.0, method)
-        found = step()
+        found = with_proved_reasons(self.problem, step())
         if found is self.best:
             return
         if not self.steps:

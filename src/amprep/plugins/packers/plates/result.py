@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.model.control import Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
+from amprep.plugins.packers.bounds.reasons import with_proved_reasons
 from amprep.plugins.packers.plates.bounds import builds_bound, fill_bound, height_bound
 from amprep.plugins.packers.plates.shapes import PlateInstance
 from amprep.plugins.packers.plates.state import OnPlates
@@ -26,7 +27,7 @@ def as_packing(instance: PlateInstance, placed: OnPlates, stop: Stop) -> Packing
         bound_for=problem.bound_for,
         stop_reason=stop.reason if stop() else "finished",
     )
-    return replace(packing, status=_status(instance, packing, float(bound)))
+    return with_proved_reasons(problem, replace(packing, status=_status(instance, packing, float(bound))))
 
 
 def _builds(instance: PlateInstance, placed: OnPlates) -> tuple[tuple[Placement, ...], ...]:

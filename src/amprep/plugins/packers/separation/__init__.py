@@ -9,11 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from amprep.arrays import Floats
+from amprep.measures.bounding_volume import points_of
 from amprep.measures.objective import objective_reached
+from amprep.measures.parts_bound import parts_bound
+from amprep.measures.too_large import proved_too_large
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation.bounds import builds_bound, fill_bound, height_bound
 from amprep.plugins.packers.separation.boxes import better_as_boxes
 from amprep.plugins.packers.separation.builds import pack_builds
 from amprep.plugins.packers.separation.fill import pack_most
@@ -24,6 +27,9 @@ from amprep.plugins.packers.separation.state import UNLIMITED, Placed, Scene, Wo
 
 TOP_TOLERANCE = 1e-6
 """Length (mm) by which an item may be higher than the build volume."""
+
+ROUNDING = 1e-5
+"""Length (mm) by which pieces may be larger than an item that they contain exactly."""
 
 DEFAULT_WORK = 6000.0
 """Work of all workers if neither time nor work is limited, in millions of field values."""
@@ -49,10 +55,8 @@ def pack_separation(
         pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
         placed = _below_top(instance, pack(scene))
     packing = _as_packing(instance, placed, budget)
-    if no_fit is not None and not stop():
-        return packing
-    late = no_fit is None and instance.free.any()
-    if late or any(unplaced.reason == "out of time" for unplaced in packing.unplaced):
+    early = no_fit is None or budget.over()
+    if early and any(unplaced.reason != "too large" for unplaced in packing.unplaced):
         return better_as_boxes(problem, packing, rng, stop)
     return packing
 
@@ -78,23 +82,16 @@ def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> 
     problem, builds = instance.problem, _builds(instance, placed)
     left = np.setdiff1d(np.flatnonzero(instance.free | instance.too_large), placed.items)
     reason = "out of time" if budget.stop() else "no room left"
-    bound = {"height": height_bound, "builds": builds_bound, "fill": fill_bound}[problem.objective](instance)
+    too_large = proved_too_large(problem, np.flatnonzero(instance.too_large).tolist())
+    bound = parts_bound(problem, too_large)
     packing = Packing(
         builds=builds,
-        unplaced=tuple(Unplaced(int(i), "too large" if instance.too_large[i] else reason) for i in left),
-        bound=float(bound),
-        status=_status(instance, placed, len(builds), float(bound)),
+        unplaced=tuple(Unplaced(int(i), "too large" if i in too_large else reason) for i in left),
+        bound=bound,
         stop_reason=_stop_reason(budget),
         bound_for=problem.bound_for,
     )
-    return _with_reached_bound(problem, packing)
-
-
-def _with_reached_bound(problem: PackingProblem, packing: Packing) -> Packing:
-    """Return a packing whose bound is not above its height: pieces are larger than parts by rounding."""
-    if problem.objective != "height" or packing.unplaced or packing.bound is None:
-        return packing
-    return replace(packing, bound=min(packing.bound, objective_reached(problem, packing)))
+    return replace(packing, status=_status(problem, packing, infeasible=bool(too_large)))
 
 
 def _stop_reason(budget: WorkBudget) -> str:
@@ -110,22 +107,25 @@ def _builds(instance: ShapeInstance, placed: Placed) -> tuple[tuple[Placement, .
     for row in np.argsort(placed.items, kind="stable").tolist():
         shape = instance.shapes[placed.shape[row]]
         position = placed.position[row] + shape.shift
-        builds[int(placed.build[row])].append(Placement(int(placed.items[row]), shape.rotation, position))
+        item = int(placed.items[row])
+        position[2] -= _air(instance, item, shape.rotation, position)
+        builds[int(placed.build[row])].append(Placement(item, shape.rotation, position))
     return tuple(tuple(build) for build in builds if build)
 
 
-def _status(instance: ShapeInstance, placed: Placed, builds: int, bound: float) -> Status:
+def _air(instance: ShapeInstance, item: int, rotation: Floats, position: Floats) -> float:
+    """Return how far an item is above the lift, if it is only for the rounding of its pieces; else 0."""
+    lowest = (points_of(instance.problem.items[item].volume) @ rotation[2]).min() + position[2]
+    air = float(lowest - instance.low[2])
+    return air if abs(air) < ROUNDING else 0.0
+
+
+def _status(problem: PackingProblem, packing: Packing, *, infeasible: bool) -> Status:
     """Return ``optimal`` when the bound is met, ``infeasible`` when an item that is to be built fits no build."""
-    problem = instance.problem
+    reached, bound = objective_reached(problem, packing), packing.bound or 0.0
+    slack = 1e-9 * max(1.0, abs(reached))
     if problem.objective == "fill":
-        fixed = [placement.item for placement in problem.fixed]
-        reached = float(sum(problem.items[i].value for i in [*placed.items.tolist(), *fixed]))
-        return "optimal" if reached >= bound - 1e-9 * max(1.0, abs(bound)) else "feasible"
-    if instance.too_large.any():
-        return "infeasible"
-    if len(placed.items) < int(instance.free.sum()):
-        return "feasible"
-    if problem.objective == "builds":
-        return "optimal" if builds <= bound else "feasible"
-    tops = placed.position[:, 2] + instance.size[placed.shape, 2]
-    return "optimal" if float(tops.max(initial=0.0)) <= bound + 1e-10 else "feasible"
+        return "optimal" if reached >= bound - slack else "feasible"
+    if packing.unplaced:
+        return "infeasible" if infeasible else "feasible"
+    return "optimal" if reached <= bound + slack else "feasible"
