@@ -12,9 +12,11 @@ from amprep.plugins.packers.separation.shapes import prepare_shapes
 from amprep.plugins.packers.separation.state import Placed, Scene, WorkBudget
 
 
-def scene_of(count, room):
+def scene_of(count, room, zones=()):
+    corners = np.array(zones, float).reshape(-1, 6)
     items = tuple(Item(k, 0, Boxes(np.zeros(3), np.full(3, 4.0)), 1.0) for k in range(count))
-    problem = PackingProblem(items, BuildVolume(np.array(room, float)), "height")
+    space = BuildVolume(np.array(room, float), "box", corners[:, :3], corners[:, 3:])
+    problem = PackingProblem(items, space, "height")
     instance = prepare_shapes(problem, Stop())
     no_fit = prepare_no_fit(instance, SeparationParams(), Stop())
     return Scene(instance, no_fit, SeparationParams(), np.random.default_rng(0), WorkBudget(Stop(), 1e9))
@@ -49,3 +51,10 @@ def test_without_height_it_gets_a_build_of_its_own_or_is_left_out():
     start = placed((0, 0, 0), (4, 0, 0), (2, 0, 0))
     assert mend(scene, start, 4.0, most_builds=2).build.tolist() == [0, 0, 1]
     assert mend(scene, start, 4.0).items.tolist() == [0, 1]
+
+
+def test_above_the_first_item_of_a_further_build_zones_are_kept_free():
+    scene = scene_of(4, (8, 4, 10), zones=[(4, 0, 0, 8, 4, 5)])
+    start = placed((0, 0, 0), (4, 0, 5), (3.9, 0, 5.2), (4, 0, 5.5))
+    found = mend(scene, start, 10.0, most_builds=2)
+    assert sorted(found.items.tolist()) == [0, 1, 2, 3]
