@@ -44,7 +44,8 @@ def verify(
         typer.echo(json.dumps(record | {"pairs_judged": asdict(result.pairs)}, indent=2))
     elif not quiet:
         _show(file, violations)
-        typer.echo(f"parts checked on their meshes exactly, {result.pairs}")
+        if result.pairs.total:
+            typer.echo(f"distances of parts checked exactly: {result.pairs}")
     raise typer.Exit(cli.INCOMPLETE if violations else cli.DONE)
 
 

@@ -1,5 +1,6 @@
 """State the objective that a packing reached, its bound and gap, and the value of each part of a fill problem."""
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 
@@ -70,11 +71,16 @@ def step_rows(record: RunRecord) -> list[tuple[str, str, str, str]]:
 
 
 def objective_words(record: RunRecord) -> str:
-    """Return what the packing reached and what its bound bounds; empty if nothing was packed."""
+    """Return what the packing reached and what its bound bounds; empty if nothing was packed, or for a single build.
+
+    The number of builds is not repeated: it is in the line before.
+    """
     if record.reached is None:
         return ""
-    gap = "" if record.objective == "builds" or _is_best_of_parts(record) else _gap(record)
-    return f"{_amount_reached(record, record.reached)}, {_bound(record)}{gap}"
+    best = _is_best_of_parts(record)
+    if record.objective == "builds":
+        return "" if best and record.reached <= 1.0 else _bound(record)
+    return f"{_amount_reached(record, record.reached)}, {_bound(record)}{'' if best else _gap(record)}"
 
 
 def _amount_reached(record: RunRecord, reached: float) -> str:
@@ -97,7 +103,7 @@ def _bound(record: RunRecord) -> str:
     """Return what the bounds bound, and for which packings."""
     if _is_best_of_parts(record):
         return "no packing of the parts " + {"fill": "has more", "height": "is lower"}.get(
-            record.objective, "has fewer"
+            record.objective, "has fewer builds"
         )
     words = []
     parts = record.bound if record.bound_for == "shapes" else record.parts_bound
@@ -117,7 +123,7 @@ def _none_better(record: RunRecord, packed: str, bound: float) -> str:
         case "height":
             return f"no packing of the {packed} is lower than {bound:.2f} mm"
         case _:
-            return f"no packing of the {packed} has fewer than {bound:g}"
+            return f"no packing of the {packed} has fewer than {counted(math.ceil(bound - ROUNDING), 'build')}"
 
 
 def _is_best_of_parts(record: RunRecord) -> bool:

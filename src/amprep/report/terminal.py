@@ -70,7 +70,7 @@ def _verified(entry: BuildRecord) -> str:
 def _judged(record: RunRecord) -> list[str]:
     """Return a line about how the pairs of parts were judged, if any were."""
     pairs = sum((entry.pairs for entry in record.builds), PairCounts())
-    return [f"meshes checked exactly: {pairs}"] if pairs.total else []
+    return [f"distances of parts checked exactly: {pairs}"] if pairs.total else []
 
 
 def _totals(record: RunRecord) -> str:

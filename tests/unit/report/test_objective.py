@@ -58,8 +58,8 @@ def test_the_copies_of_a_part_are_counted_together(filled):
 @pytest.mark.parametrize(
     ("objective", "reached", "bound", "words"),
     [
-        ("builds", 3.0, 2.0, "3 builds, no packing of the bounding volumes has fewer than 2"),
-        ("builds", 1.0, None, "1 build, no bound known"),
+        ("builds", 3.0, 2.0, "no packing of the bounding volumes has fewer than 2 builds"),
+        ("builds", 1.0, None, "no bound known"),
         (
             "height",
             50.0,
@@ -79,7 +79,7 @@ def test_other_objectives_say_what_their_bound_bounds(filled, objective, reached
 
 def test_a_bound_names_the_parts_where_it_is_for_any_packing_of_them(filled):
     record = replace(filled, objective="builds", reached=3.0, bound=2.0, bound_for="shapes")
-    assert objective_words(record) == "3 builds, no packing of the parts has fewer than 2"
+    assert objective_words(record) == "no packing of the parts has fewer than 2 builds"
     assert to_json(record)["bound_for"] == "shapes"
 
 
@@ -108,16 +108,19 @@ def test_a_bound_for_boxes_is_beside_the_one_for_the_parts(filled):
         unplaced=(),
     )
     optimal = replace(boxes, status="optimal")
-    words = "packing optimal for the enclosing boxes: 3 builds, no packing of the parts has fewer than 2"
+    words = "packing optimal for the enclosing boxes: no packing of the parts has fewer than 2 builds"
     assert words in printed(optimal)
     assert words.capitalize() in html_text(optimal)
     assert to_json(optimal)["parts_bound"] == 2.0
     searched = replace(boxes, reached=4.0)
     assert objective_words(searched) == (
-        "4 builds, no packing of the enclosing boxes has fewer than 3; no packing of the parts has fewer than 2"
+        "no packing of the enclosing boxes has fewer than 3 builds; no packing of the parts has fewer than 2 builds"
     )
     best = replace(optimal, reached=2.0, bound=2.0)
-    assert "packing optimal: 2 builds, no packing of the parts has fewer;" in printed(best)
+    assert "packing optimal: no packing of the parts has fewer builds;" in printed(best)
+    single = replace(best, reached=1.0, bound=1.0, parts_bound=1.0)
+    assert "packing optimal; seed" in printed(single)
+    assert "<p>Packing optimal.</p>" in html_text(single)
 
 
 def test_the_steps_of_a_packer_are_shown_with_what_they_gained(filled):

@@ -93,11 +93,11 @@ class PairCounts:
         return self.boxes + self.triangles + self.solids
 
     def __str__(self) -> str:
-        """One line."""
-        return (
-            f"{counted(self.total, 'pair')}: {self.boxes} apart by their enclosing boxes, {self.triangles} by the "
-            f"distance of their triangles, {self.solids} by the intersection of their solids"
-        )
+        """Return the methods that judged any pairs, for example ``2 pairs by their enclosing boxes, 1 by ...``."""
+        methods = ("enclosing boxes", self.boxes), ("triangles", self.triangles), ("solids", self.solids)
+        first, *others = [method for method in methods if method[1]] or methods[:1]
+        words = [f"{counted(first[1], 'pair')} by their {first[0]}"]
+        return ", ".join(words + [f"{count} by their {name}" for name, count in others])
 
 
 class CloseBodies(NamedTuple):

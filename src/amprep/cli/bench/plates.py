@@ -109,7 +109,7 @@ def _print(results: "list[PlatesResult]", title: str) -> None:
     for result in results:
         typer.echo(
             f"{result.packer}, seed {result.seed}, checked in {result.check_seconds:.1f} s of processor time: "
-            f"polygons, and meshes exactly, {result.pairs}"
+            f"distances of polygons, and of meshes ({result.pairs})"
         )
         for fault in result.faults[:5]:
             typer.echo(f"  {fault}")

@@ -45,8 +45,8 @@ def objective_figures(record: RunRecord) -> list[tuple[str, str, bool]]:
 
 def packing_section(record: RunRecord) -> str:
     """Return what the packing reached, what its bounds bound, and the steps of the packer."""
-    reached = objective_words(record)
-    words = f"{status_words(record).capitalize()}: {reached}" if reached else ""
+    found = filter(None, (status_words(record).capitalize(), objective_words(record)))
+    words = "" if record.reached is None else ": ".join(found)
     steps: list[tuple[Cell, ...]] = [
         (name, *(("number", each) for each in figures)) for name, *figures in step_rows(record)
     ]

@@ -281,7 +281,7 @@ def _verification(record: RunRecord) -> str:
         return table(("Build|", "Promise", "Subject", "Finding"), rows)
     verified = record.builds and all(entry.verification is not None for entry in record.builds)
     pairs = sum((entry.pairs for entry in record.builds), PairCounts())
-    how = f" Meshes were checked exactly: {pairs}." if pairs.total else ""
+    how = f" Distances of parts were checked exactly: {pairs}." if pairs.total else ""
     text = f"All checks passed.{how}" if verified else "The builds were not verified."
     return f'<p class="empty">{text}</p>'
 
