@@ -123,7 +123,8 @@ def _none_better(record: RunRecord, packed: str, bound: float) -> str:
         case "height":
             return f"no packing of the {packed} is lower than {bound:.2f} mm"
         case _:
-            return f"no packing of the {packed} has fewer than {counted(math.ceil(bound - ROUNDING), 'build')}"
+            least = counted(math.ceil(bound - ROUNDING), "build")
+            return f"no packing of the {packed} has fewer than {least}"
 
 
 def _is_best_of_parts(record: RunRecord) -> bool:
