@@ -1,5 +1,6 @@
-"""Names of array types, and a function that makes read-only copies of arrays."""
+"""Names of array types, read-only copies of arrays, and where groups of rows start."""
 
+from collections.abc import Iterable, Sized
 from typing import Any
 
 import numpy as np
@@ -37,3 +38,8 @@ def frozen(values: Any, dtype: DTypeLike, width: int | None = None) -> NDArray[A
         array = array.reshape(-1, width)
     array.setflags(write=False)
     return array
+
+
+def starts_of(groups: Iterable[Sized]) -> Int64s:
+    """Return the first row of each of n groups among the rows of all, and the number of these, ``(n + 1,)``."""
+    return np.cumsum([0, *map(len, groups)]).astype(np.int64)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.geometry.boxes.footprint import convex_outline
 from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.bodies import MovableBody
 from amprep.geometry.removal.insertion import box_drops, drop
@@ -172,8 +173,7 @@ def _offsets(problem: PackingProblem, body: MovableBody, others: Sequence[Movabl
 
 def _outline(body: MovableBody) -> Floats:
     """Return the corners ``(n, 2)`` mm of the convex hull of the shadow of a body."""
-    from scipy.spatial import ConvexHull
-
     placed = zip(body.shapes, body.poses, strict=True)
-    points = np.concatenate([shape.vertices @ pose[:2, :3].T + pose[:2, 3] for shape, pose in placed])
-    return np.asarray(points[ConvexHull(points).vertices])
+    return convex_outline(
+        np.concatenate([shape.vertices @ pose[:2, :3].T + pose[:2, 3] for shape, pose in placed])
+    )

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from amprep.arrays import Bools, Int64s
+from amprep.arrays import Bools, Int64s, starts_of
 from amprep.geometry.no_fit.fields import grids, stored_pairs, unsampled_fields
 from amprep.geometry.no_fit.pieces import AXES, BEVELS, ConvexPiece, ShapeSet
 from amprep.kernels.no_fit.records import NoFitFields
@@ -75,16 +75,12 @@ def _voxels_of(shapes: ShapeSet, side: float, stop: Callable[[], bool]) -> Voxel
         sizes.append(filled.shape)
     return VoxelShapes(
         np.concatenate(runs),
-        _starts(runs),
+        starts_of(runs),
         np.concatenate(words),
-        _starts(words)[:-1],
+        starts_of(words)[:-1],
         np.array(origins, np.int64),
         np.array(sizes, np.int64),
     )
-
-
-def _starts(groups: Sequence[Int64s]) -> Int64s:
-    return np.cumsum([0] + [len(group) for group in groups]).astype(np.int64)
 
 
 def _filled(shape: Sequence[ConvexPiece], side: float, greater: float) -> tuple[Int64s, Bools]:

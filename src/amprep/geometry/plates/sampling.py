@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.arrays import Floats, Int16s, Int32s, Int64s
+from amprep.arrays import Int16s, Int32s, Int64s, starts_of
 from amprep.geometry.plates.outline import ShadowOutline, sides_of
 from amprep.kernels.plates.distance import sample_distances
 from amprep.kernels.plates.records import PHASES, UNITS, SampledOutlines
@@ -61,21 +61,17 @@ def sample_outlines(
         half=np.array([outline.half for outline in outlines]).reshape(-1, 2),
         clearance=np.array(clearances, np.float64),
         distance=np.concatenate(distances),
-        first_distance=_starts(distances)[:-1],
+        first_distance=starts_of(distances)[:-1],
         cells=np.array(cells, np.int64).reshape(-1, 2),
         point=np.concatenate(points),
         shift=np.concatenate(shifts),
-        first_point=_starts(points),
+        first_point=starts_of(points),
         corner=np.concatenate([outline.hull for outline in outlines]),
-        first_corner=_starts([outline.hull for outline in outlines]),
+        first_corner=starts_of([outline.hull for outline in outlines]),
         step=step,
         bed=last if radius else -1,
         radius=radius,
     )
-
-
-def _starts(arrays: Sequence[Floats | Int16s | Int32s]) -> Int64s:
-    return np.cumsum([0, *(len(array) for array in arrays)]).astype(np.int64)
 
 
 def _distances(outline: ShadowOutline, cells: Int64s, step: float) -> Int16s:

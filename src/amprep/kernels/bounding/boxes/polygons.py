@@ -42,6 +42,16 @@ def clip(source: Floats, count: int, axis: int, bound: float, sign: float, targe
 
 
 @helper
+def normal_component(triangle: Floats, axis: int) -> float:
+    """Return a component of the normal of a triangle, the first three corners, that is twice as long as its area."""
+    b, c = (axis + 1) % 3, (axis + 2) % 3
+    return float(
+        (triangle[1, b] - triangle[0, b]) * (triangle[2, c] - triangle[0, c])
+        - (triangle[1, c] - triangle[0, c]) * (triangle[2, b] - triangle[0, b])
+    )
+
+
+@helper
 def measure(polygon: Floats, count: int, bounds: Floats) -> None:
     """Write the enclosing box of ``polygon[:count]`` to ``bounds``, ``(6,)``."""
     for c in range(3):

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.bounding.boxes.polygons import MOST_CORNERS, clip, measure
+from amprep.kernels.bounding.boxes.polygons import MOST_CORNERS, clip, measure, normal_component
 from amprep.kernels.helper import helper
 
 _ROUNDING = 1e-9
@@ -23,16 +23,6 @@ def _span(low: float, high: float, size: float, count: int, outwards: float) -> 
             last = first
     first, last = max(min(first, count - 1), 0), max(min(last, count - 1), 0)
     return first, last
-
-
-@helper
-def _normal(polygon: Floats, axis: int) -> float:
-    """Component of the normal of the first three corners, for polygons that begin as triangles."""
-    b, c = (axis + 1) % 3, (axis + 2) % 3
-    return float(
-        (polygon[1, b] - polygon[0, b]) * (polygon[2, c] - polygon[0, c])
-        - (polygon[1, c] - polygon[0, c]) * (polygon[2, b] - polygon[0, b])
-    )
 
 
 @helper
@@ -88,7 +78,7 @@ def tight_cells(
             for c in range(3):
                 whole[i, c] = points[triangles[t, i], c]
         for c in range(3):
-            normal[c] = _normal(whole, c)
+            normal[c] = normal_component(whole, c)
         measure(whole, 3, bounds)
         x0, x1 = _span(bounds[0] - origin[0], bounds[3] - origin[0], size[0], shape[0], normal[0])
         n_whole = 3

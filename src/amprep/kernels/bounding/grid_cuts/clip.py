@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int16s, Int32s, Int64s
-from amprep.kernels.bounding.boxes.polygons import clip
+from amprep.kernels.bounding.boxes.polygons import clip, normal_component
 from amprep.kernels.bounding.grid_cuts.records import ClippedSurface, GridPlanes
 from amprep.kernels.helper import helper
 
@@ -62,16 +62,6 @@ def _add(surface: ClippedSurface, polygon: Floats, count: int, cell: int, floor:
         surface.volume[cell] += area * (middle - floor)
 
 
-@helper
-def _normal(polygon: Floats, axis: int) -> float:
-    """Component of the normal of a triangle, twice as long as its area."""
-    b, c = (axis + 1) % 3, (axis + 2) % 3
-    return float(
-        (polygon[1, b] - polygon[0, b]) * (polygon[2, c] - polygon[0, c])
-        - (polygon[1, c] - polygon[0, c]) * (polygon[2, b] - polygon[0, b])
-    )
-
-
 @njit(cache=True, nogil=True)
 def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface: ClippedSurface) -> int:
     """Write the corners of what the triangles have in each cell, and the volume below it in the cell.
@@ -105,7 +95,7 @@ def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface
             for c in range(3):
                 stack[0, i, c] = points[triangles[t, i], c]
         for c in range(3):
-            normal[c] = _normal(stack[0], c)
+            normal[c] = normal_component(stack[0], c)
         counts[0], axes[0], top, whole = 3, 0, 1, True
         while top > 0:
             top -= 1

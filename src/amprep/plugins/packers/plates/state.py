@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import Floats, Int64s, starts_of
 from amprep.geometry.plates.sampling import sample_outlines
 from amprep.kernels.plates.contacts import PlatePieces
 from amprep.kernels.plates.records import (
@@ -154,8 +154,8 @@ def make_scene(
     points = [piece for each in pieces for piece in each]
     convex = PlatePieces(
         np.concatenate(points),
-        _starts(points),
-        _starts(pieces),
+        starts_of(points),
+        starts_of(pieces),
         np.array([[*point.min(axis=0), *point.max(axis=0)] for point in points]),
         np.array([outline.half for outline in outlines]),
         clearances,
@@ -165,10 +165,6 @@ def make_scene(
     values = np.empty(_cache_size(sampled, params.memory), np.int16)
     cache = FieldCache(values, first, np.zeros(2, np.int64))
     return PlateScene(instance, sampled, convex, cache, params, rng, budget)
-
-
-def _starts(arrays: "list[Floats] | list[tuple[Floats, ...]]") -> Int64s:
-    return np.cumsum([0, *(len(array) for array in arrays)]).astype(np.int64)
 
 
 def _cache_size(outlines: SampledOutlines, memory: float) -> int:
