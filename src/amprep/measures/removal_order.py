@@ -26,7 +26,7 @@ def measure_removal_order(build: Build, stop: Callable[[], bool] = lambda: False
     build
         Parts and supports.
     stop
-        Ends the search early; the parts that are left are unknown. So does the number of triangles.
+        Ends the search early; the parts that are left are unknown. The search also ends at `MOST_TRIANGLES`.
     """
     groups = _held_together(build)
     blocking = Blocking(_bodies(build, groups), DIRECTIONS)

@@ -3,9 +3,10 @@
 import json
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -192,9 +193,11 @@ class EsicupBench:
         self.problem = PackingProblem(items, space, "height")
         self.host.refuse_mismatch(self.packer, self.problem)
 
-    def run(self, seed: int, seconds: float) -> EsicupResult:
-        """Pack with a seed and a time limit, and check the packing on the meshes."""
-        run = PackerRun(self.host, self.packer, {}, seconds, seed)
+    def run(
+        self, seed: int, seconds: float, params: Mapping[str, Any] = MappingProxyType({})
+    ) -> EsicupResult:
+        """Pack with a seed, a time limit and parameters of the packer, and check the packing on the meshes."""
+        run = PackerRun(self.host, self.packer, dict(params), seconds, seed)
         reset_peak()
         start, process = time.monotonic(), time.process_time()
         packing = run.pack(self.problem)

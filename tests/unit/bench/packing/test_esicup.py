@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from amprep.bench.packing.esicup import read_esicup, run_esicup, summary
+from amprep.bench.packing.esicup import EsicupBench, read_esicup, summary
 from amprep.errors import InputError
 
 
@@ -30,7 +30,8 @@ def test_every_seed_gives_a_layout_that_is_valid_on_the_meshes(instance_file):
     instance = read_esicup(instance_file)
     assert [part.quantity for part in instance.parts] == [2, 1]
     assert instance.record is None
-    results = run_esicup(instance, "separation", seconds=0.5, seeds=[1, 2], progress=lambda _: None)
+    bench = EsicupBench(instance, "separation")
+    results = [bench.run(seed, 1000.0, {"work": 2.0}) for seed in (1, 2)]  # the work ends the search
     assert [result.validated for result in results] == [True, True]
     assert 4.0 <= summary(results)["least_height_mm"] <= 6.0 + 1e-3  # one above the other, compacted
     assert results[0].density == pytest.approx((8 + 8 + 4) / (8 * results[0].height_mm), rel=1e-3)

@@ -29,7 +29,7 @@ ROUNDING = 1e-6
 """Distance (mm) that pieces are moved outward for the rounding of their corners."""
 
 FLAT = 1e-3
-"""A piece is flat if this fraction of its size is more than the distance of its middle from its faces."""
+"""A piece is flat if its middle is nearer to one of its faces than this fraction of its size."""
 
 COPLANAR = 1e-6
 """Difference of unit normals up to which faces are in one plane."""

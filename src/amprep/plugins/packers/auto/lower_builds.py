@@ -34,9 +34,8 @@ def lower_builds(
 ) -> Packing:
     """Return a packing with the same items in each build, and lower builds, or the given one if no build is lower.
 
-    The last build, which is least full, comes first.
-
-    Each build is packed as enclosing boxes, and if that leaves it higher than its bound, as true shapes.
+    The last build, which is least full, comes first. Each build is packed as enclosing boxes, and if that leaves it
+    higher than its bound, as true shapes.
     """
     builds = list(packing.builds)
     share = 0.3 * params.separation / max(len(builds), 1)

@@ -33,9 +33,10 @@ UNLIMITED = 1e9
 MET = 1e-9
 """Fraction of the objective that is rounding."""
 
-# Strategy. Boxes take milliseconds and are often proved best for the true shapes too: one build is, and a height that
-# is that of the highest part. Then nothing else is done, and no kernel for true shapes is compiled. Else `separation`
-# or `plates` packs the true shapes, and the better packing counts. With stacking, few builds are then made low.
+# Strategy. Boxes take milliseconds and are often proved best for the true shapes too: a single build always is, and so
+# is a height that equals that of the highest part. Then nothing else is done, and no kernel for true shapes is
+# compiled. Otherwise `separation` or `plates` packs the true shapes, and the better packing counts. With stacking, each
+# build is then packed again, as low as possible.
 
 
 def pack_true_shapes(

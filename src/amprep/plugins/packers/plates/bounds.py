@@ -19,7 +19,7 @@ def _room(instance: PlateInstance) -> float:
 
 def builds_bound(instance: PlateInstance) -> int:
     """Return the least number of builds by area."""
-    counted = instance.free | instance.lonely
+    counted = instance.free | instance.alone
     if not (counted.any() or instance.problem.fixed):
         return 0
     return max(1, int(np.ceil(_areas(instance)[counted].sum() / max(_room(instance), 1e-9) - 1e-9)))
@@ -27,7 +27,7 @@ def builds_bound(instance: PlateInstance) -> int:
 
 def height_bound(instance: PlateInstance) -> float:
     """Return the least height (mm) of one build with all items that can be built."""
-    counted = np.flatnonzero(instance.free | instance.lonely).tolist()
+    counted = np.flatnonzero(instance.free | instance.alone).tolist()
     tallest = max((instance.needs[item].height for item in counted), default=-np.inf)
     return max(instance.problem.lift + tallest if counted else 0.0, fixed_top(instance))
 
@@ -48,7 +48,7 @@ def fill_bound(instance: PlateInstance) -> float:
     """Return the greatest value of one build: of all items, or what a fractional knapsack over area holds."""
     values = np.array([item.value for item in instance.problem.items])
     fixed = float(sum(values[placement.item] for placement in instance.problem.fixed))
-    counted, area = np.flatnonzero(instance.free | instance.lonely), _areas(instance)
+    counted, area = np.flatnonzero(instance.free | instance.alone), _areas(instance)
     order = counted[np.argsort(-values[counted] / np.maximum(area[counted], 1e-12), kind="stable")]
     taken = np.maximum(area[order], 1e-12)
     full = np.cumsum(taken)

@@ -19,7 +19,7 @@ def box_layout(problem: PackingProblem, rng: np.random.Generator, stop: Stop) ->
 
 
 def pack_enclosing(instance: PlateInstance, rng: np.random.Generator, stop: Stop) -> OnPlates:
-    """Return a layout of the enclosing boxes of all items in their shapes, as far as it has no lonely items."""
+    """Return a layout of the enclosing boxes of all items in their shapes, without those that are `alone`."""
     problem = instance.problem
     items = tuple(
         replace(item, orientations=Orientations("list", _rotations(instance, number)))

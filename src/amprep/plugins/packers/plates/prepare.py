@@ -77,7 +77,7 @@ def prepare_plates(problem: PackingProblem, params: PlatesParams, stop: Stop) ->
 
 def with_lowest_shapes(instance: PlateInstance) -> PlateInstance:
     """Return the instance without shapes that are higher than one plate with all items has to be."""
-    counted = np.flatnonzero(instance.free | instance.lonely).tolist()
+    counted = np.flatnonzero(instance.free | instance.alone).tolist()
     limit = max((instance.needs[item].height for item in counted), default=0.0) + SAME
     kept = np.array([shape.height <= limit for shape in instance.shapes], bool)
     number = np.concatenate(([0], np.cumsum(kept)))

@@ -31,18 +31,18 @@ def as_packing(instance: PlateInstance, placed: OnPlates, stop: Stop) -> Packing
 
 
 def _builds(instance: PlateInstance, placed: OnPlates) -> tuple[tuple[Placement, ...], ...]:
-    """Return the placements of each build that has any: the fixed ones first, then by item; lonely items follow."""
+    """Return the placements of each build that has any: fixed ones first, then by item, last those of items alone."""
     problem = instance.problem
     builds: list[list[Placement]] = [[] for _ in range(max(placed.plates, 1))]
     builds[0] += problem.fixed
     for row in np.argsort(placed.items, kind="stable").tolist():
         placement = instance.placement(int(placed.items[row]), int(placed.shape[row]), placed.position[row])
         builds[int(placed.plate[row])].append(placement)
-    lonely = np.flatnonzero(instance.lonely).tolist()
+    alone = np.flatnonzero(instance.alone).tolist()
     if problem.objective == "builds":
-        builds += [[_alone(instance, item)] for item in lonely]
-    elif lonely and not problem.fixed:
-        best = max(lonely, key=lambda item: problem.items[item].value)
+        builds += [[_alone(instance, item)] for item in alone]
+    elif alone and not problem.fixed:
+        best = max(alone, key=lambda item: problem.items[item].value)
         if not builds[0] or problem.items[best].value > _value(problem, builds[0]):
             builds[0] = [_alone(instance, best)]
     return tuple(tuple(build) for build in builds if build)

@@ -102,9 +102,9 @@ class PlateInstance:
     first, end
         ``(n,)`` range of the shapes of each item.
     free
-        ``(n,)`` items for the search: neither fixed, nor too large, nor `lonely`.
-    lonely
-        ``(n,)`` items whose shadow overlaps a forbidden zone at all known positions.
+        ``(n,)`` items for the search: neither fixed, nor too large, nor `alone`.
+    alone
+        ``(n,)`` items that get a build of their own: their shadow overlaps a forbidden zone at all known positions.
     too_large
         ``(n,)`` items without a known position in an empty build.
     needs
@@ -118,7 +118,7 @@ class PlateInstance:
     first: Int64s
     end: Int64s
     free: Bools
-    lonely: Bools
+    alone: Bools
     too_large: Bools
     needs: tuple[LeastNeed, ...]
 
