@@ -3,7 +3,10 @@
 from amprep.report.record import BuildRecord
 
 WIDTH, HEIGHT = 640.0, 200.0
-"""Size of the drawing, in its own units."""
+"""Size of the area of the chart between its axes, in the units of the drawing."""
+
+LEFT, RIGHT, ABOVE, BELOW = 56.0, 24.0, 24.0, 44.0
+"""Room for the labels around that area."""
 
 
 def profile_chart(number: int, entry: BuildRecord) -> str:
@@ -18,16 +21,38 @@ def profile_chart(number: int, entry: BuildRecord) -> str:
         for index, area in enumerate(profile.areas.tolist())
     )
     mean = HEIGHT * (1.0 - profile.mean / most)
-    chart = (
-        f'<svg class="profile" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" preserveAspectRatio="none" role="img">'
-        f"<title>Area of the cross-section from {profile.low:.1f} to {entry.height_mm:.1f} mm; dashed: the mean</title>"
-        f'<path d="M0 {HEIGHT:g}{points}V{HEIGHT:g}Z"/>'
-        f'<line x1="0" x2="{WIDTH:g}" y1="{mean:.1f}" y2="{mean:.1f}"/></svg>'
-    )
     top = profile.low + profile.spacing * len(profile.areas)
+    box = f"{-LEFT:g} {-ABOVE:g} {LEFT + WIDTH + RIGHT:g} {ABOVE + HEIGHT + BELOW:g}"
+    chart = (
+        f'<svg class="profile" viewBox="{box}" role="img">'
+        f"<title>Area of the cross-section from {profile.low:.1f} to {top:.1f} mm; dashed: the mean</title>"
+        f'<path d="M0 {HEIGHT:g}{points}V{HEIGHT:g}Z"/>'
+        f'<line x1="0" x2="{WIDTH:g}" y1="{mean:.1f}" y2="{mean:.1f}"/>'
+        f"{_heights(profile.low, top)}{_areas(most)}</svg>"
+    )
     figures = (
-        f"Build {number}, from left to right z = {profile.low:.1f} to {top:.1f} mm: mean {profile.mean / 100:.1f} cm², "
-        f"largest {profile.largest:.2f} times the mean, variation {100 * profile.variation:.0f} %, "
-        f"largest jump within {profile.spacing:.2g} mm {profile.largest_jump:.2f} times the mean"
+        f"Build {number}: mean area {profile.mean / 100:.1f} cm² (dashed), coefficient of variation "
+        f"{100 * profile.variation:.0f} %; the largest area is {profile.largest:.2f} times the mean, the largest jump "
+        f"within {profile.spacing:.2g} mm {profile.largest_jump:.2f} times the mean"
     )
     return f"<p>{figures}.</p>\n{chart}\n"
+
+
+def _heights(low: float, top: float) -> str:
+    """Return the labels of the axis of heights."""
+    ends = "".join(
+        _label(WIDTH * at, HEIGHT + 18.0, f"{low + (top - low) * at:.1f}", "middle") for at in (0.0, 0.5, 1.0)
+    )
+    return ends + _label(WIDTH / 2.0, HEIGHT + 38.0, "height z, mm", "middle")
+
+
+def _areas(most: float) -> str:
+    """Return the labels of the axis of areas up to the greatest one, mm2."""
+    ends = "".join(
+        _label(-8.0, HEIGHT * (1.0 - at) + 4.0, f"{most * at / 100:.4g}", "end") for at in (0.0, 0.5, 1.0)
+    )
+    return ends + _label(-LEFT, -12.0, "area, cm²", "start")
+
+
+def _label(x: float, y: float, text: str, anchor: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{text}</text>'

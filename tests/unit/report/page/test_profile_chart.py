@@ -15,7 +15,8 @@ def test_the_chart_has_a_column_for_each_height_up_to_the_largest_area(make_buil
     html = profile_chart(1, BuildRecord(make_build(), profile=profile))
     tops = [float(value) for value in re.findall(r"V([\d.]+)H", html)]
     assert tops == pytest.approx([HEIGHT / 2, 0.0, HEIGHT * 0.75])
-    assert "z = 2.0 to 3.5 mm" in html
+    labels = re.findall(r"<text [^>]*>([^<]*)</text>", html)
+    assert labels == ["2.0", "2.8", "3.5", "height z, mm", "0", "1", "2", "area, cm²"]
 
 
 def test_a_build_without_parts_has_no_chart(make_build):
