@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # moved out to the points. A polyhedron of f faces has at most 2 f - 4 corners. Planes of large faces and those farthest
 # from all chosen ones come first, so that the planes around a round piece are evenly spread.
 
-MOST_CORNERS = 40
+MOST_CORNERS = 80
 """Largest number of corners of a piece."""
 
 MOST_FACES = MOST_CORNERS // 2 + 2

@@ -27,8 +27,9 @@ from amprep.model.mesh import Mesh
 MOST_EXACT = 20
 """Number of exact pieces up to which a solid is packed exactly; work grows with the square of the number."""
 
-LEAST_GAIN = 2e-3
-"""Volume that another piece must save, as a fraction of the volume of the solid."""
+GAIN_AN_ITEM, LEAST_GAIN, MOST_GAIN = 1e-5, 3e-4, 2e-3
+"""Volume that another piece must save, as a fraction of the volume of its solid: for each item that is packed, and the
+least and the greatest. Few items may have many pieces; for hundreds of items the programs would take too long."""
 
 TRIANGLE_WORK, CUT_WORK, PIECE_WORK = 1_500, 700_000, 2_000_000
 """Work of a triangle, of a cut and of a piece of a solid, in field values read."""
@@ -86,7 +87,8 @@ def decompose_volumes(
     meshes = {k: volume.mesh for k, volume in enumerate(volumes) if isinstance(volume, Solid)}
     work = float(sum(TRIANGLE_WORK * len(mesh.triangles) for mesh in meshes.values()))
     wasted = {k: sets[k].excess * mesh.signed_volume * copies[k] for k, mesh in meshes.items()}
-    worst = sorted((k for k in wasted if sets[k].excess > LEAST_GAIN), key=lambda k: (-wasted[k], k))
+    gain = float(np.clip(GAIN_AN_ITEM * sum(copies), LEAST_GAIN, MOST_GAIN))
+    worst = sorted((k for k in wasted if sets[k].excess > gain), key=lambda k: (-wasted[k], k))
     left = total - sum(len(sets[k].pieces) for k in range(len(sets)) if k not in worst)
     number = _sets_to_cut(left, len(worst))
     cuts = _cut_each([meshes[k] for k in worst[: max(left - 1, 0)]], number, stop)
@@ -95,7 +97,7 @@ def decompose_volumes(
         [cut.hulls for cut in cuts],
         [copies[k] for k in worst[: len(cuts)]],
         left * len(cuts) // max(len(worst), 1),
-        [LEAST_GAIN * cut.volume for cut in cuts],
+        [gain * cut.volume for cut in cuts],
     )
     work += PIECE_WORK * float(counts[counts > 1].sum())
     for k, pieces in zip(worst, _pieces_of_each(cuts, counts.tolist(), stop), strict=False):
@@ -160,7 +162,7 @@ def _pieces_of_each(cuts: list[_KnownCut], counts: list[int], stop: Stop) -> lis
 
 def _sets_to_cut(total: int, solids: int) -> int:
     """Return into how many sets of cells a solid is cut: many more than it gets pieces."""
-    return int(np.clip(6 * total // max(solids, 1), 24, SETS))
+    return int(np.clip(4 * total // max(solids, 1), 24, SETS))
 
 
 def _first_pieces(volume: BoundingVolume, most: int, stop: Stop) -> PieceSet:

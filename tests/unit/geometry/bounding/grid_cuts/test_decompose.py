@@ -8,6 +8,7 @@ from tests.shared.convex_solids import SOLIDS, part_of
 from amprep.checks.volumes import check_volume
 from amprep.geometry.bounding.convex.hulls import containing_hull
 from amprep.geometry.bounding.grid_cuts.decompose import cut_solid
+from amprep.geometry.bounding.grid_cuts.enclose import MOST_CORNERS
 from amprep.model.bounding_volume import ConvexPieces
 from amprep.model.mesh import Mesh
 
@@ -95,7 +96,7 @@ def test_a_closed_cavity_is_filled():
 
 
 def test_no_piece_has_many_corners():
-    assert max(len(piece) for piece in decomposed(CURVED["spheres"](), 12)) <= 40
+    assert max(len(piece) for piece in decomposed(CURVED["spheres"](), 12)) <= MOST_CORNERS
 
 
 def test_a_stop_before_the_first_cut_leaves_one_piece():
