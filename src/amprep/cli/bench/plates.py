@@ -117,7 +117,7 @@ def _print(results: "list[PlatesResult]", title: str) -> None:
 
 def _cells(result: "PlatesResult") -> list[str]:
     left = f", {result.unplaced} left" if result.unplaced else ""
-    bound = "-" if result.bound is None else f"{result.bound:g} {result.bound_for}"
+    bound = "-" if result.bound is None else f"{result.bound:g} for {result.bound_for}"
     return [
         str(result.seed),
         f"{result.plates}{left}",

@@ -42,13 +42,11 @@ def _moved(problem: PackingProblem, freed: FreedPacking, parts: Sequence[Part]) 
     if not freed.moved:
         return []
     names = sorted({parts[problem.items[item].part].name for item in freed.moved})
-    count = counted(len(freed.moved), "part")
-    return [f"{count} placed elsewhere, because interlocking is forbidden: {', '.join(names)}"]
+    count = counted(len(freed.moved), "locked part")
+    return [f"{count} placed elsewhere or unplaced, because interlocking is forbidden: {', '.join(names)}"]
 
 
 def _gain(evened: Evened) -> str:
     change = f"from {100 * evened.before:.0f} to {100 * evened.after:.0f} %"
     moved = counted(evened.moved, "part")
-    return (
-        f"build {evened.build}: {moved} moved vertically, which changed the variation of the layers {change}"
-    )
+    return f"build {evened.build}: {moved} moved vertically; variation of the cross-sections {change}"

@@ -27,8 +27,9 @@ def test_a_packing_is_returned_as_it_is_unless_the_job_asks_for_more():
 def test_notes_name_the_parts_that_moved_and_the_gain():
     settings = PackingSettings(stacking=True, interlocking="forbid", even_layers=True)
     packing, notes = adjusted(PROBLEM, PACKING, PARTS, settings, Stop())
-    assert notes[0] == "1 part placed elsewhere, because interlocking is forbidden: hook"
-    assert all("variation of the layers" in note for note in notes[1:])
+    assert notes[0] == "1 locked part placed elsewhere or unplaced, because interlocking is forbidden: hook"
+    assert len(notes) > 1
+    assert all("variation of the cross-sections" in note for note in notes[1:])
     assert packing is not PACKING
 
 

@@ -68,6 +68,7 @@ def enclosing_corners(points: Floats, extreme: Floats, outward: float) -> Floats
 
 def enclosing_hull(points: Floats) -> Floats:
     """Return the corners ``(k, 3)`` of a convex polyhedron that contains points ``(n, 3)`` mm."""
+    points = points.copy()  # of read-only points the kernel would be compiled once more
     low, size = points.min(axis=0), np.maximum(np.ptp(points, axis=0), 1e-9)
     products = ((points - low) / size) @ sphere_directions().normals.T
     extreme = np.unique(np.concatenate((products.argmax(axis=0), products.argmin(axis=0))))
