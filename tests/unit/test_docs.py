@@ -278,3 +278,21 @@ def test_the_example_of_the_page_about_inspection_runs(monkeypatch):
     monkeypatch.chdir(ROOT / "fixtures")
     for block in python_blocks("inspect.md"):
         exec(compile(block, "docs/inspect.md", "exec"), {})
+
+
+def test_the_page_about_packing_states_the_budgets_of_every_level_of_effort():
+    from amprep.plugins.packers import amprep_packers
+    from amprep.plugins.packers.separation import DEFAULT_WORK
+
+    page = (ROOT / "docs" / "packing.md").read_text(encoding="utf-8")
+    row = re.compile(r"^\| `([\w-]+)` \| `(\w+)` \| (\d+) \| (\d+) \| (\d+)(.*) \|$", re.MULTILINE)
+    stated = {
+        packer: (budget, *map(float, levels), more) for packer, budget, *levels, more in row.findall(page)
+    }
+    offers = {offer.name: offer for offer in amprep_packers() if offer.efforts and offer.name != "auto"}
+    assert set(stated) == set(offers)
+    for name, (budget, fast, normal, thorough, more) in stated.items():
+        default = getattr(offers[name].params(), budget)
+        assert (DEFAULT_WORK if default is None else default) == normal
+        further = {key: int(value) for key, value in re.findall(r"`(\w+)` (\d+)", more)}
+        assert offers[name].efforts == {"fast": {budget: fast}, "thorough": {budget: thorough, **further}}
