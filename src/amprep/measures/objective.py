@@ -1,5 +1,7 @@
 """Measure how far a packing reaches its objective, and the gap to the bound."""
 
+from collections.abc import Iterable
+
 from amprep.measures.bounding_volume import points_of
 from amprep.model.packing import Objective, Packing, PackingProblem, Placement
 
@@ -15,7 +17,7 @@ def objective_reached(problem: PackingProblem, packing: Packing) -> float:
         return float(len(packing.builds))
     if problem.objective == "fill":
         return float(sum(problem.items[placement.item].value for placement in placed))
-    return max((_top(problem, placement) for placement in placed), default=0.0)
+    return greatest_height(problem, placed)
 
 
 def relative_gap(objective: Objective, reached: float, bound: float | None) -> float | None:
@@ -27,6 +29,11 @@ def relative_gap(objective: Objective, reached: float, bound: float | None) -> f
         return None
     better = bound - reached if objective == "fill" else reached - bound
     return max(0.0, better) / reached
+
+
+def greatest_height(problem: PackingProblem, placed: Iterable[Placement]) -> float:
+    """Return the height (mm) of the highest of some placed volumes above the plate; 0 without any."""
+    return max((_top(problem, placement) for placement in placed), default=0.0)
 
 
 def _top(problem: PackingProblem, placement: Placement) -> float:

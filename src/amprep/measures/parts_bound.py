@@ -14,6 +14,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.geometry.meshes.distance import box_solids, convex_solid
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.measures.bounding_volume import points_of, volume_of
+from amprep.measures.objective import greatest_height
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces
 from amprep.model.build_volume import BuildVolume
 from amprep.model.packing import Item, PackingProblem
@@ -164,14 +165,12 @@ def _base_area(space: BuildVolume, clearance: float) -> float:
 
 def _least_height(problem: PackingProblem, extents: list[ShapeExtents]) -> float:
     """Return the least height (mm) by fixed items, the highest shape, and volume."""
-    tops = [0.0, *(problem.lift + each.height for each in extents)]
-    for placed in problem.fixed:
-        points = points_of(problem.items[placed.item].volume) @ placed.rotation[2]
-        tops.append(float(points.max() + placed.translation[2]))
+    highest = max(problem.lift + each.height for each in extents) if extents else 0.0
+    highest = max(highest, greatest_height(problem, problem.fixed))
     if not extents:
-        return max(tops)
+        return highest
     filled = sum(each.volume for each in extents) / _base_area(problem.space, problem.clearance)
-    return max(*tops, filled + problem.lift - problem.clearance - 2.0 * CONTACT_TOLERANCE)
+    return max(highest, filled + problem.lift - problem.clearance - 2.0 * CONTACT_TOLERANCE)
 
 
 def _most_value(problem: PackingProblem, counted: list[int], fraction: Floats) -> float:

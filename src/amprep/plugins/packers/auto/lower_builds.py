@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from amprep.measures.bounding_volume import points_of
+from amprep.measures.objective import greatest_height
 from amprep.measures.parts_bound import parts_bound
 from amprep.model.control import Stop, silent
 from amprep.model.packing import Packing, PackingProblem, Placement
@@ -50,7 +50,7 @@ def lower_builds(
 
 def heights_of(problem: PackingProblem, packing: Packing) -> list[float]:
     """Return the height (mm) of each build."""
-    return [_height(problem, build) for build in packing.builds] or [0.0]
+    return [greatest_height(problem, build) for build in packing.builds] or [0.0]
 
 
 def _lowered(
@@ -66,7 +66,7 @@ def _lowered(
     """Return the lowest placements of the items of a build that are found."""
     items = [placement.item for placement in build]
     own = in_lists(_alone(problem, items, number))
-    bound, height = parts_bound(own), _height(problem, build)
+    bound, height = parts_bound(own), greatest_height(problem, build)
     if height <= bound * (1.0 + NEAR):
         return build
     instance = prepare(own, enclosing=True)
@@ -93,18 +93,9 @@ def _better(
     problem: PackingProblem, build: tuple[Placement, ...], items: list[int], found: Packing
 ) -> tuple[tuple[Placement, ...], float]:
     """Return the lower one of a build and a packing of its items, and its height (mm)."""
-    height = _height(problem, build)
+    height = greatest_height(problem, build)
     if found.unplaced or len(found.builds) != 1:
         return build, height
     placed = tuple(replace(each, item=items[each.item]) for each in found.builds[0])
-    lower = _height(problem, placed)
+    lower = greatest_height(problem, placed)
     return (placed, lower) if lower < height - LOWER else (build, height)
-
-
-def _height(problem: PackingProblem, build: tuple[Placement, ...]) -> float:
-    """Return the height (mm) of a build."""
-    tops = (
-        float((points_of(problem.items[each.item].volume) @ each.rotation[2]).max() + each.translation[2])
-        for each in build
-    )
-    return max(tops, default=0.0)

@@ -4,6 +4,7 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.geometry.plates.areas import plate_area
+from amprep.measures.objective import greatest_height
 from amprep.plugins.packers.plates.shapes import PlateInstance
 
 
@@ -34,14 +35,7 @@ def height_bound(instance: PlateInstance) -> float:
 
 def fixed_top(instance: PlateInstance) -> float:
     """Return the height (mm) of the highest fixed item."""
-    from amprep.measures.bounding_volume import points_of
-
-    items = instance.problem.items
-    tops = [
-        float((points_of(items[p.item].volume) @ p.rotation[2]).max() + p.translation[2])
-        for p in instance.problem.fixed
-    ]
-    return max(tops, default=0.0)
+    return greatest_height(instance.problem, instance.problem.fixed)
 
 
 def fill_bound(instance: PlateInstance) -> float:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from amprep.measures.objective import objective_reached
 from amprep.model.control import Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packers.bounds.reasons import with_proved_reasons
@@ -71,17 +72,4 @@ def _status(instance: PlateInstance, packing: Packing, bound: float) -> Status:
         return "feasible"
     if problem.objective == "builds":
         return "optimal" if len(packing.builds) <= bound else "feasible"
-    return "optimal" if _top(instance, packing) <= bound + 1e-9 else "feasible"
-
-
-def _top(instance: PlateInstance, packing: Packing) -> float:
-    """Return the height (mm) of the highest item."""
-    from amprep.measures.bounding_volume import points_of
-
-    problem = instance.problem
-    tops = [
-        float((points_of(problem.items[p.item].volume) @ p.rotation[2]).max() + p.translation[2])
-        for build in packing.builds
-        for p in build
-    ]
-    return max(tops, default=0.0)
+    return "optimal" if objective_reached(problem, packing) <= bound + 1e-9 else "feasible"

@@ -3,6 +3,7 @@
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.measures.objective import greatest_height
 from amprep.plugins.packers.separation.shapes import ShapeInstance
 
 # Shapes may penetrate one another, and walls, by CONTACT_TOLERANCE: their volumes count less by a layer of it around
@@ -56,13 +57,7 @@ def height_bound(instance: ShapeInstance) -> float:
 
 def fixed_top(instance: ShapeInstance) -> float:
     """Return the height (mm) of the highest fixed item."""
-    from amprep.measures.bounding_volume import points_of
-
-    tops = [
-        float((points_of(instance.problem.items[p.item].volume) @ p.rotation[2]).max() + p.translation[2])
-        for p in instance.problem.fixed
-    ]
-    return max(tops, default=0.0)
+    return greatest_height(instance.problem, instance.problem.fixed)
 
 
 def fill_bound(instance: ShapeInstance) -> float:
