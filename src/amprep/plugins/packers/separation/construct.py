@@ -112,9 +112,8 @@ class LowestPositionPass:
 
     def _above(self, build: int) -> float:
         """Return the position (mm) from which on an item is above all others and the obstacles."""
-        obstacles = self.scene.no_fit.obstacles
-        tops = [float(o.position[2] + np.concatenate(o.pieces)[:, 2].max()) for o in obstacles]
-        return max(self.top.get(build, 0.0), *tops, 0.0) + self.scene.instance.problem.clearance
+        top = max(self.top.get(build, 0.0), self.scene.no_fit.obstacle_top, 0.0)
+        return top + self.scene.instance.problem.clearance
 
     def _alone(self, item: int) -> tuple[int, Floats]:
         """Return a shape and position of an item in an empty build."""

@@ -1,6 +1,7 @@
 """The no-fit solids of the shapes of an instance, and the obstacles of its builds."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,6 +61,12 @@ class NoFit:
     fields: NoFitFields
     obstacles: tuple[ShapeObstacle, ...]
     exact: bool
+
+    @cached_property
+    def obstacle_top(self) -> float:
+        """Height (mm) of the highest obstacle; 0 without any."""
+        tops = (float(o.position[2] + np.concatenate(o.pieces)[:, 2].max()) for o in self.obstacles)
+        return max(tops, default=0.0)
 
 
 def prepare_no_fit(instance: ShapeInstance, params: SeparationParams, stop: Stop) -> NoFit | None:

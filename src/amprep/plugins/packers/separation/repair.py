@@ -44,13 +44,7 @@ def _tops(scene: Scene, placed: Placed) -> list[float]:
     tops = [scene.instance.low[2]] * max(placed.builds, 1)
     for build, shape, position in zip(placed.build, placed.shape, placed.position, strict=True):
         tops[build] = max(tops[build], float(position[2] + scene.instance.size[shape, 2]))
-    return [max(top, _above_obstacles(scene)) for top in tops]
-
-
-def _above_obstacles(scene: Scene) -> float:
-    """Return the height (mm) of the highest zone or fixed item."""
-    obstacles = scene.no_fit.obstacles
-    return max((float((o.position + np.concatenate(o.pieces))[:, 2].max()) for o in obstacles), default=0.0)
+    return [max(top, scene.no_fit.obstacle_top) for top in tops]
 
 
 def _put_above(scene: Scene, placed: Placed, row: int, tops: list[float], within: PositionRange) -> bool:
@@ -73,5 +67,5 @@ def _put_alone(scene: Scene, placed: Placed, row: int, tops: list[float], most_b
         return False
     placed.build[row], placed.position[row] = len(tops), position
     top = float(position[2] + scene.instance.size[placed.shape[row], 2])
-    tops.append(max(top, _above_obstacles(scene)))
+    tops.append(max(top, scene.no_fit.obstacle_top))
     return True
