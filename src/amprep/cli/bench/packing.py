@@ -119,7 +119,7 @@ def _print_heights(instances: list[dict[str, Any]], ratio: float | None) -> None
 
     table = Table(box=box.SIMPLE)
     table.add_column("instance", no_wrap=True)
-    for heading in ("record", "mean height", "least", "ratio", "density", "CPU s", "MiB"):
+    for heading in ("record", "mean height", "least", "ratio", "MiB"):
         table.add_column(heading, justify="right")
     for each in instances:
         record, mean = each["record_height_mm"], each["mean"]
@@ -129,8 +129,6 @@ def _print_heights(instances: list[dict[str, Any]], ratio: float | None) -> None
             f"{mean['height_mm']:.3f}",
             f"{mean['least_height_mm']:.3f}",
             "-" if mean["ratio"] is None else f"{mean['ratio']:.3f}",
-            f"{mean['density']:.1%}",
-            f"{mean['process_seconds']:.1f}",
             str(mean["memory_mb"]),
         )
     Console().print(table)
