@@ -130,7 +130,9 @@ def test_the_parameters_of_a_packer_are_those_of_its_plugin():
         (lambda: amprep.pack(amprep.load(TABLE), clearance=1), JobError, "did you mean 'clearance_mm'"),
         (lambda: amprep.pack(amprep.load(TABLE), clearance_mm=500), AmprepError, "none of the parts fits"),
         (
-            lambda: amprep.pack(amprep.load(TABLE), packer="separation", stacking=True, time_limit_s=1e-6),
+            lambda: amprep.pack(
+                amprep.load(TABLE), packer="annealing", params={"start": "outside"}, time_limit_s=1e-6
+            ),
             AmprepError,
             "more time",
         ),
