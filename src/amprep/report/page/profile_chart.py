@@ -41,7 +41,8 @@ def profile_chart(number: int, entry: BuildRecord) -> str:
 def _heights(low: float, top: float) -> str:
     """Return the labels of the axis of heights."""
     ends = "".join(
-        _label(WIDTH * at, HEIGHT + 18.0, f"{low + (top - low) * at:.1f}", "middle") for at in (0.0, 0.5, 1.0)
+        _label(WIDTH * at, HEIGHT + 18.0, f"{round(low + (top - low) * at, 1) + 0.0:.1f}", "middle")
+        for at in (0.0, 0.5, 1.0)
     )
     return ends + _label(WIDTH / 2.0, HEIGHT + 38.0, "height z, mm", "middle")
 

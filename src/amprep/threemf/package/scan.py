@@ -15,8 +15,9 @@ MOST_INSTANCES = 100_000
 MOST_NESTING = 64
 """Deepest nesting of components."""
 
-_LEAF = rb'<(?:\w++:)?(?:vertex|triangle)(?:\s++[\w:]++="[^"<>]*+")*+\s*+/>\s*+'
-_LEAVES = re.compile(rb"(?>(?:" + _LEAF + rb")++)")
+_LEAF = rb'<(?:\w+:)?(?:vertex|triangle)(?:\s+[\w:]+="[^"<>]*")*\s*/>\s*'
+_LEAVES = re.compile(rb"(?:" + _LEAF + rb")+")
+"""Plain vertices and triangles; without possessive groups, which Python 3.11.2 matches wrongly."""
 _LONGEST_BUFFER = 1 << 24
 
 ObjectKey = tuple[str, str]
