@@ -16,8 +16,11 @@ MOST_NESTING = 64
 """Deepest nesting of components."""
 
 _LEAF = rb'<(?:\w+:)?(?:vertex|triangle)(?:\s+[\w:]+="[^"<>]*")*\s*/>\s*'
-_LEAVES = re.compile(rb"(?:" + _LEAF + rb")+")
-"""Plain vertices and triangles; without possessive groups, which Python 3.11.2 matches wrongly."""
+_LEAVES = re.compile(rb"(?:" + _LEAF + rb"){1,1000}")
+"""Plain vertices and triangles, at most so many that the match needs little memory.
+
+Possessive groups would need none, but Python 3.11.2 matches them wrongly.
+"""
 _LONGEST_BUFFER = 1 << 24
 
 ObjectKey = tuple[str, str]
@@ -47,7 +50,7 @@ class Scanner:
     """Takes an XML part in chunks, refuses hostile content and collects the outline.
 
     Runs of plain vertices and triangles make up nearly all of any file, and the parser would spend most of
-    its time on them. They are replaced by one empty element before the parser sees them.
+    its time on them. A thousand are replaced by one empty element before the parser sees them.
     """
 
     def __init__(self, where: str) -> None:
