@@ -28,7 +28,7 @@ def plates(
         ),
     ] = 2.0,
     rotations: Annotated[
-        str, typer.Option("--rotations", metavar="WORD", help="Allowed rotations: none, z90 or about-z.")
+        str, typer.Option("--rotations", metavar="WORD", help="Allowed rotations: none, z90, z15, about-z.")
     ] = "z90",
     packers: Annotated[
         list[str] | None,

@@ -16,6 +16,7 @@ from amprep.measures.bounding_volume import points_of
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.control import Stop
 from amprep.model.packing import Item, PackingProblem, require_values
+from amprep.model.rotations import turns_about_z
 from amprep.plugins.packers.instance.prepare import empty_space
 from amprep.plugins.packers.params import PlatesParams
 from amprep.plugins.packers.plates.shapes import LeastNeed, PlateInstance, PlateObstacle, ShadowShape, turned
@@ -101,12 +102,7 @@ def allowed_rotations(item: Item, step_deg: float) -> Floats:
     """Return the rotations ``(k, 3, 3)`` that are tried: a list, or all turns about z by multiples of a step."""
     if item.orientations.freedom == "list":
         return item.orientations.matrices
-    angle = np.radians(np.arange(0.0, 360.0 - 1e-9, step_deg))
-    found = np.zeros((len(angle), 3, 3))
-    found[:, 0, 0] = found[:, 1, 1] = np.cos(angle)
-    found[:, 1, 0], found[:, 0, 1] = np.sin(angle), -np.sin(angle)
-    found[:, 2, 2] = 1.0
-    return found
+    return turns_about_z(np.arange(0.0, 360.0 - 1e-9, step_deg))
 
 
 def _add_type(
