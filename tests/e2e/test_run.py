@@ -246,6 +246,8 @@ def test_an_interrupted_run_writes_nothing(fixtures, tmp_path, seconds, how):
     left = list((tmp_path / "out").iterdir()) if (tmp_path / "out").exists() else []
     assert left == []
     assert b"Traceback" not in err
+    if process.returncode == 130:
+        assert b"amprep: interrupted; nothing was written" in err
 
 
 def test_help_takes_little_processor_time():

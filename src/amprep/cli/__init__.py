@@ -15,6 +15,14 @@ def _say(line: str) -> None:
     sys.stderr.write(f"amprep: {line}\n")
 
 
+def _end_interrupted() -> NoReturn:
+    """Say that the run was interrupted, and end at once."""
+    _say("interrupted; nothing was written")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(INTERRUPTED)  # Python may crash when it unloads compiled libraries that were interrupted
+
+
 def main() -> NoReturn:
     """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
     debug = "--debug" in sys.argv
@@ -25,10 +33,11 @@ def main() -> NoReturn:
         app()
         sys.exit(DONE)
     except (KeyboardInterrupt, Interrupted):
-        _say("interrupted; nothing was written")
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(INTERRUPTED)  # Python may crash when it unloads compiled libraries that were interrupted
+        _end_interrupted()
+    except SystemExit as end:
+        if end.code == INTERRUPTED:  # typer makes this of a KeyboardInterrupt
+            _end_interrupted()
+        raise
     except AmprepError as error:
         if debug:
             raise
