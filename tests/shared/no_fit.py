@@ -4,7 +4,8 @@ import numpy as np
 
 from amprep.geometry.no_fit.fields import sample_fields
 from amprep.geometry.no_fit.pieces import shape_set
-from amprep.kernels.no_fit.records import MoveRules, PositionRange, SeparationState, ShapeLayout
+from amprep.kernels.guided_search import MoveRules
+from amprep.kernels.no_fit.records import PositionRange, SeparationState, ShapeLayout
 
 
 def corners_of(size):

@@ -10,8 +10,9 @@ from amprep.geometry.boxes.build_space import Space
 from amprep.geometry.no_fit.circle import outline_of
 from amprep.geometry.no_fit.contacts import contact_shapes
 from amprep.geometry.no_fit.pieces import shape_set
+from amprep.kernels.guided_search import EVERYWHERE
 from amprep.kernels.no_fit.contacts import WORK, find_contacts
-from amprep.kernels.no_fit.records import EVERYWHERE, ShapeLayout
+from amprep.kernels.no_fit.records import ShapeLayout
 
 PLACES = (24, 24, 8)
 """Number of positions along each axis that are tried."""

@@ -5,8 +5,9 @@ from numba import njit
 
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.bounding.gjk import pair_distance
+from amprep.kernels.guided_search import EVERYWHERE
 from amprep.kernels.helper import helper
-from amprep.kernels.no_fit.records import EVERYWHERE, ContactShapes, ShapeLayout
+from amprep.kernels.no_fit.records import ContactShapes, ShapeLayout
 
 # Strategy. A plane separates two convex pieces if they are on different sides of it; the gap is their distance along
 # its normal, less the clearance, and negative where they overlap or are too near. The normals that matter are those of
@@ -21,19 +22,20 @@ WORK = (8, 5)
 
 
 @helper
-def _boxes_apart(shapes, one, other, x, y, z, limit):
-    """Tell whether the boxes of pieces, the first one moved by (x, y, z), are farther apart than a limit."""
+def _boxes_apart(shapes, one, other, shift, limit):
+    """Tell whether the boxes of pieces, the first one moved, are farther apart than a limit."""
     centre, half = shapes.corners.centre, shapes.corners.half
     return (
-        abs(centre[one, 0] + x - centre[other, 0]) - half[one, 0] - half[other, 0] > limit
-        or abs(centre[one, 1] + y - centre[other, 1]) - half[one, 1] - half[other, 1] > limit
-        or abs(centre[one, 2] + z - centre[other, 2]) - half[one, 2] - half[other, 2] > limit
+        abs(centre[one, 0] + shift[0] - centre[other, 0]) - half[one, 0] - half[other, 0] > limit
+        or abs(centre[one, 1] + shift[1] - centre[other, 1]) - half[one, 1] - half[other, 1] > limit
+        or abs(centre[one, 2] + shift[2] - centre[other, 2]) - half[one, 2] - half[other, 2] > limit
     )
 
 
 @helper
-def _least(shapes, piece, u, v, w):
+def _least(shapes, piece, normal):
     """Return the least extent of a piece along a direction."""
+    u, v, w = normal
     corners, least = shapes.corners.vertices, np.inf
     for k in range(shapes.corners.first[piece], shapes.corners.first[piece + 1]):
         along = u * corners[k, 0] + v * corners[k, 1] + w * corners[k, 2]
@@ -42,17 +44,24 @@ def _least(shapes, piece, u, v, w):
 
 
 @helper
-def _try(shapes, one, other, u, v, w, x, y, z, clearance, best):
+def _keep_greater(normal, offset, shift, best):
     """Write a plane to `best` if its gap is the greatest so far: normal, offset, gap."""
-    offset = clearance - _least(shapes, other, -u, -v, -w) - _least(shapes, one, u, v, w)
-    gap = u * x + v * y + w * z - offset
+    u, v, w = normal
+    gap = u * shift[0] + v * shift[1] + w * shift[2] - offset
     if gap > best[4]:
         best[0], best[1], best[2], best[3], best[4] = u, v, w, offset, gap
 
 
 @helper
-def _try_axes(shapes, one, other, x, y, z, clearance, best):
-    centre, half, shift = shapes.corners.centre, shapes.corners.half, (x, y, z)
+def _try(shapes, one, other, normal, shift, clearance, best):
+    u, v, w = normal
+    offset = clearance - _least(shapes, other, (-u, -v, -w)) - _least(shapes, one, normal)
+    _keep_greater(normal, offset, shift, best)
+
+
+@helper
+def _try_axes(shapes, one, other, shift, clearance, best):
+    centre, half = shapes.corners.centre, shapes.corners.half
     for axis in range(3):
         between = centre[one, axis] + shift[axis] - centre[other, axis]
         gap = abs(between) - half[one, axis] - half[other, axis] - clearance
@@ -64,28 +73,20 @@ def _try_axes(shapes, one, other, x, y, z, clearance, best):
 
 
 @helper
-def _try_faces(shapes, one, other, x, y, z, clearance, limit, best):
+def _try_faces(shapes, one, other, shift, clearance, limit, best):
     """Try the normals of both pieces; end at a gap beyond the limit."""
-    for k in range(shapes.first_normal[other], shapes.first_normal[other + 1]):
-        u, v, w = shapes.normals[k, 0], shapes.normals[k, 1], shapes.normals[k, 2]
-        offset = clearance + shapes.reach[k] - _least(shapes, one, u, v, w)
-        gap = u * x + v * y + w * z - offset
-        if gap > best[4]:
-            best[0], best[1], best[2], best[3], best[4] = u, v, w, offset, gap
-            if gap > limit:
-                return
-    for k in range(shapes.first_normal[one], shapes.first_normal[one + 1]):
-        u, v, w = shapes.normals[k, 0], shapes.normals[k, 1], shapes.normals[k, 2]
-        offset = clearance + shapes.reach[k] - _least(shapes, other, u, v, w)
-        gap = -u * x - v * y - w * z - offset
-        if gap > best[4]:
-            best[0], best[1], best[2], best[3], best[4] = -u, -v, -w, offset, gap
-            if gap > limit:
+    for turn in range(2):
+        faced, facing, sign = (other, one, 1.0) if turn == 0 else (one, other, -1.0)
+        for k in range(shapes.first_normal[faced], shapes.first_normal[faced + 1]):
+            normal = shapes.normals[k, 0], shapes.normals[k, 1], shapes.normals[k, 2]
+            offset = clearance + shapes.reach[k] - _least(shapes, facing, normal)
+            _keep_greater((sign * normal[0], sign * normal[1], sign * normal[2]), offset, shift, best)
+            if best[4] > limit:
                 return
 
 
 @helper
-def _try_edges(shapes, one, other, x, y, z, clearance, limit, best):
+def _try_edges(shapes, one, other, shift, clearance, limit, best):
     """Try the normals of an edge of each piece; end at a gap beyond the limit."""
     edges = shapes.edges
     for i in range(shapes.first_edge[one], shapes.first_edge[one + 1]):
@@ -96,34 +97,36 @@ def _try_edges(shapes, one, other, x, y, z, clearance, limit, best):
             length = np.sqrt(u * u + v * v + w * w)
             if length > 1e-6:
                 u, v, w = u / length, v / length, w / length
-                _try(shapes, one, other, u, v, w, x, y, z, clearance, best)
-                _try(shapes, one, other, -u, -v, -w, x, y, z, clearance, best)
+                _try(shapes, one, other, (u, v, w), shift, clearance, best)
+                _try(shapes, one, other, (-u, -v, -w), shift, clearance, best)
                 if best[4] > limit:
                     return
 
 
 @helper
-def _try_nearest(shapes, one, other, x, y, z, clearance, pose, simplex, best):
+def _try_nearest(shapes, one, other, shift, clearance, work):
     """Try the normal from the nearest point of one piece to that of the other."""
-    pose[0, 3], pose[1, 3], pose[2, 3] = -x, -y, -z
+    best, pose, simplex = work[0], work[1:4], work[4:8]
+    pose[0, 3], pose[1, 3], pose[2, 3] = -shift[0], -shift[1], -shift[2]
     pieces = shapes.corners
     distance, u, v, w = pair_distance(pieces, one, pieces, other, pose, 0.0, np.inf, simplex)
     length = np.sqrt(u * u + v * v + w * w)
     if distance > 0.0 and length > 0.0:
-        _try(shapes, one, other, u / length, v / length, w / length, x, y, z, clearance, best)
+        _try(shapes, one, other, (u / length, v / length, w / length), shift, clearance, best)
 
 
 @helper
-def _find_plane(shapes, one, other, x, y, z, clearance, reach, pose, simplex, best):
-    """Write a plane between two pieces, the first one moved by (x, y, z): normal, offset, gap."""
+def _find_plane(shapes, one, other, shift, clearance, reach, work):
+    """Write a plane between two pieces, the first one moved, to the work array: normal, offset, gap."""
+    best = work[0]
     best[4] = -np.inf
-    _try_axes(shapes, one, other, x, y, z, clearance, best)
+    _try_axes(shapes, one, other, shift, clearance, best)
     if best[4] <= reach:
-        _try_faces(shapes, one, other, x, y, z, clearance, reach, best)
+        _try_faces(shapes, one, other, shift, clearance, reach, best)
     if best[4] <= reach:
-        _try_edges(shapes, one, other, x, y, z, clearance, reach, best)
+        _try_edges(shapes, one, other, shift, clearance, reach, best)
     if best[4] < 0.0:
-        _try_nearest(shapes, one, other, x, y, z, clearance, pose, simplex, best)
+        _try_nearest(shapes, one, other, shift, clearance, work)
 
 
 @njit(cache=True, nogil=True, _nrt=False)
@@ -152,7 +155,7 @@ def find_contacts(
     work
         Of the shape `WORK`, modified.
     """
-    best, pose, simplex = work[0], work[1:4], work[4:8]
+    best, pose = work[0], work[1:4]
     for row in range(3):
         for column in range(3):
             pose[row, column] = 1.0 if row == column else 0.0
@@ -166,7 +169,8 @@ def find_contacts(
             x = layout.position[i, 0] - layout.position[j, 0]
             y = layout.position[i, 1] - layout.position[j, 1]
             z = layout.position[i, 2] - layout.position[j, 2]
-            clearance, box, other = shapes.clearance[b], shapes.box[a], shapes.box[b]
+            shift, clearance = (x, y, z), shapes.clearance[b]
+            box, other = shapes.box[a], shapes.box[b]
             limit = reach + clearance
             if (
                 max(box[0] + x - other[3], other[0] - box[3] - x) > limit
@@ -176,9 +180,9 @@ def find_contacts(
                 continue
             for p in range(shapes.first[a], shapes.first[a + 1]):
                 for q in range(shapes.first[b], shapes.first[b + 1]):
-                    if _boxes_apart(shapes, p, q, x, y, z, limit):
+                    if _boxes_apart(shapes, p, q, shift, limit):
                         continue
-                    _find_plane(shapes, p, q, x, y, z, clearance, reach, pose, simplex, best)
+                    _find_plane(shapes, p, q, shift, clearance, reach, work)
                     if best[4] > reach:
                         continue
                     worst = min(worst, best[4])

@@ -8,12 +8,6 @@ from numpy.typing import NDArray
 from amprep.arrays import Bools, Float32s, Floats, Int64s
 from amprep.kernels.bounding.gjk import PieceArrays
 
-EVERYWHERE = -1
-"""Build of an obstacle that is in every build."""
-
-READ, MOVES, SCANS, ROUNDS = range(4)
-"""Columns of `SeparationState.spent`: field values read, moves, scans, rounds."""
-
 PAIRS, NEXT = range(2)
 """Columns of `SeparationState.progress`: pairs in the list, next item of the round (-1: overlaps are unknown)."""
 
@@ -196,28 +190,3 @@ class SeparationState(NamedTuple):
     order: Int64s
     cell: Int64s
     value: Floats
-
-
-class MoveRules(NamedTuple):
-    """Rules of the guided search.
-
-    Attributes
-    ----------
-    first, end
-        ``(n,)`` range of the shapes that an item may have.
-    builds
-        Number of builds.
-    scan_chance
-        Probability that a move scans the build volume when descent alone leaves an overlap.
-    finest
-        Step (mm) at which a descent ends.
-    enough
-        Total overlap (mm) at which the search ends.
-    """
-
-    first: Int64s
-    end: Int64s
-    builds: int
-    scan_chance: float
-    finest: float
-    enough: float

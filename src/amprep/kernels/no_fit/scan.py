@@ -4,9 +4,10 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Float32s, Floats, Int64s
+from amprep.kernels.guided_search import EVERYWHERE, keep_best
 from amprep.kernels.helper import helper, inlined
 from amprep.kernels.no_fit.depth import depth_at, outside_circle
-from amprep.kernels.no_fit.records import EVERYWHERE, NoFitFields, PositionRange, ShapeLayout
+from amprep.kernels.no_fit.records import NoFitFields, PositionRange, ShapeLayout
 
 FREE = 1e-4
 """Total overlap (mm) that counts as none; rounding of samples causes less."""
@@ -16,15 +17,13 @@ BLOCK = 4
 
 
 @helper
-def add_overlaps(fields, within, layout, weight, outside_weight, item, build, since, start, grid, sums):
-    """Add the weighted overlap of an item with others of a build at the cells of a grid; return values read.
+def add_overlaps(fields, within, layout, weights, item, since, start, grid, sums):
+    """Add the weighted overlap of an item with others of its build at the cells of a grid; return values read.
 
     Parameters
     ----------
-    weight
-        ``(n, n)`` weights of the overlaps.
-    outside_weight
-        Weight of the length outside the circle.
+    weights
+        ``(n, n)`` weights of the overlaps, and the weight of the length outside the circle.
     since
         The others are the rows of the layout from this one on. From row 0 on, the sums are set to 0 before, and lengths
         outside the circle are added.
@@ -36,7 +35,8 @@ def add_overlaps(fields, within, layout, weight, outside_weight, item, build, si
         ``(g,)``, modified.
     """
     gx, gy, gz = grid
-    shape, step = layout.shape[item], fields.step
+    weight, outside_weight = weights
+    shape, build, step = layout.shape[item], layout.build[item], fields.step
     if since == 0:
         sums[: gx * gy * gz] = np.float32(0.0)
     read = 0
@@ -118,17 +118,7 @@ def best_cells(sums, grid, cell, value):
                         for z in range(bz, min(bz + BLOCK, gz)):
                             if sums[row + z] < least:
                                 least, where = sums[row + z], row + z
-                if count < cell.size:
-                    k = count
-                    count += 1
-                elif least < value[count - 1]:
-                    k = count - 1
-                else:
-                    continue
-                while k > 0 and value[k - 1] > least:
-                    value[k], cell[k] = value[k - 1], cell[k - 1]
-                    k -= 1
-                value[k], cell[k] = least, where
+                count = keep_best(cell, value, count, where, least)
     return count
 
 
@@ -183,8 +173,7 @@ def lowest_free(
     size = (grid[0], grid[1], grid[2])
     lo = within.lo[shape]
     start = (lo[0], lo[1], lo[2])
-    build = layout.build[item]
-    read = add_overlaps(fields, within, layout, weight, 1.0, item, build, since, start, size, sums)
+    read = add_overlaps(fields, within, layout, (weight, 1.0), item, since, start, size, sums)
     read += grid[0] * grid[1] * grid[2] + 1
     best, height, beside = -1, grid[2], 0
     for x in range(grid[0]):

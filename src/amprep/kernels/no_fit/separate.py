@@ -3,17 +3,27 @@
 import numpy as np
 from numba import njit
 
-from amprep.kernels.helper import helper
-from amprep.kernels.no_fit.depth import depth_at, depth_between, outside_circle
-from amprep.kernels.no_fit.records import (
+from amprep.kernels.guided_search import (
     EVERYWHERE,
+    LONGER,
     MOVES,
-    NEXT,
-    PAIRS,
+    NEGLIGIBLE,
     READ,
     ROUNDS,
     SCANS,
+    SHORTER,
+    TRIES,
+    VALUES_A_DEPTH,
     MoveRules,
+    WeightGrowth,
+    clamped,
+    new_weight,
+)
+from amprep.kernels.helper import helper
+from amprep.kernels.no_fit.depth import depth_at, depth_between, outside_circle
+from amprep.kernels.no_fit.records import (
+    NEXT,
+    PAIRS,
     NoFitFields,
     PositionRange,
     SeparationState,
@@ -30,17 +40,7 @@ from amprep.kernels.random_numbers import uniform
 # doi:10.1016/S0377-2217(98)00099-X; Umetani et al. 2009, doi:10.1111/j.1475-3995.2009.00707.x). A scan adds the
 # samples of each near field line by line, some 1e9 a second; a descent reads a few hundred values.
 
-NEGLIGIBLE = 1e-9
-"""Weighted overlap that counts as none."""
-
-GROWTH_LEAST, GROWTH_MOST, DECAY = 1.2, 1.5, 0.95
-"""Factors of the weight of the least and the deepest overlap, and of the weights of pairs that do not overlap."""
-
-LONGER, SHORTER, TRIES = 1.3, 0.55, 2
-"""Factors of the step of a descent after a success, and after so many failures."""
-
-VALUES_A_DEPTH = 8
-"""Field values read for one depth between samples."""
+GROWTH = WeightGrowth(least=1.2, most=1.5, decay=0.95)
 
 
 @helper
@@ -140,11 +140,6 @@ def _normal(random):
 
 
 @helper
-def _clamped(value, start, reach, lo, hi):
-    return min(max(value, lo, start - reach), hi, start + reach)
-
-
-@helper
 def _descend(fields, within, layout, rules, state, i, x, y, z, step):
     """Return a position near (x, y, z) of less weighted overlap, and that overlap.
 
@@ -166,9 +161,9 @@ def _descend(fields, within, layout, rules, state, i, x, y, z, step):
         sign = step if uniform(state.random) < 0.5 else -step
         failures += 1
         for _ in range(2):
-            u = _clamped(x + sign * dx, x0, reach, lo[0], hi[0])
-            v = _clamped(y + sign * dy, y0, reach, lo[1], hi[1])
-            w = _clamped(z + sign * dz, z0, reach, lo[2], hi[2])
+            u = clamped(x + sign * dx, x0, reach, lo[0], hi[0])
+            v = clamped(y + sign * dy, y0, reach, lo[1], hi[1])
+            w = clamped(z + sign * dz, z0, reach, lo[2], hi[2])
             sign = -sign
             if u != x or v != y or w != z:
                 found = _cost(fields, within, layout, state, i, count, u, v, w, cost)
@@ -201,19 +196,8 @@ def _scan(fields, within, layout, rules, state, i, best):
     grid, start = (gx, gy, gz), (x, y, z)
     if gx * gy * gz > state.sums.size:
         return best
-    read = add_overlaps(
-        fields,
-        within,
-        layout,
-        state.weight,
-        state.outside_weight[i],
-        i,
-        layout.build[i],
-        0,
-        start,
-        grid,
-        state.sums,
-    )
+    weights = state.weight, state.outside_weight[i]
+    read = add_overlaps(fields, within, layout, weights, i, 0, start, grid, state.sums)
     state.spent[READ] += read + gx * gy * gz
     state.spent[SCANS] += 1
     for k in range(best_cells(state.sums, grid, state.cell, state.value)):
@@ -278,22 +262,15 @@ def _totals(state):
 
 
 @helper
-def _new_weight(weight, depth, deepest):
-    if depth > 1e-6:
-        return weight * (GROWTH_LEAST + (GROWTH_MOST - GROWTH_LEAST) * depth / deepest)
-    return max(1.0, weight * DECAY)
-
-
-@helper
 def _raise_weights(state, deepest):
     """Raise the weights of pairs that overlap and lower the others; pairs of weight 1 leave the list."""
     items = state.outside.size
     for i in range(items):
-        state.outside_weight[i] = _new_weight(state.outside_weight[i], state.outside[i], deepest)
+        state.outside_weight[i] = new_weight(state.outside_weight[i], state.outside[i], deepest, GROWTH)
     kept = 0
     for k in range(state.progress[PAIRS]):
         i, j = state.pairs[k, 0], state.pairs[k, 1]
-        weight = _new_weight(state.weight[i, j], state.overlap[i, j], deepest)
+        weight = new_weight(state.weight[i, j], state.overlap[i, j], deepest, GROWTH)
         state.weight[i, j] = weight
         if j < items:
             state.weight[j, i] = weight

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from amprep.kernels.guided_search import READ
 from amprep.kernels.helper import helper
 from amprep.kernels.plates.records import NONE, PHASES, UNITS, UNKNOWN
 
@@ -59,7 +60,7 @@ def field_of(outlines, cache, a, b, quarter, spent):
     first = cache.used[0]
     cache.first[a, b, quarter] = first
     cache.used[0] += nx * ny
-    spent[0] += COST * nx * ny
+    spent[READ] += COST * nx * ny
     out = cache.values[first : first + nx * ny]
     if b == outlines.bed:
         _outside_bed(outlines, a, quarter, cx, out)

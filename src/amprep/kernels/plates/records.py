@@ -7,9 +7,6 @@ from numpy.typing import NDArray
 
 from amprep.arrays import Float32s, Floats, Int16s, Int32s, Int64s
 
-EVERY_PLATE = -1
-"""Plate of an obstacle that is on every plate."""
-
 UNITS = 256
 """Units of sampled lengths in a step of the fields."""
 
@@ -18,9 +15,6 @@ PHASES = 4
 
 NONE, UNKNOWN = -2, -1
 """Entries of `FieldCache.first`: a pair without a field, and one whose field is not computed."""
-
-READ, MOVES, SCANS, ROUNDS = range(4)
-"""Columns of `PlateState.spent`: field values read or computed, moves, scans, rounds."""
 
 
 class SampledOutlines(NamedTuple):
@@ -113,7 +107,7 @@ class PlateLayout(NamedTuple):
     Attributes
     ----------
     shape, plate
-        ``(n,)``; `EVERY_PLATE` for an obstacle on all plates.
+        ``(n,)``; `EVERYWHERE` for an obstacle on all plates.
     position
         ``(n, 2)`` mm.
     """
@@ -121,31 +115,6 @@ class PlateLayout(NamedTuple):
     shape: Int64s
     plate: Int64s
     position: Floats
-
-
-class PlateRules(NamedTuple):
-    """Rules of the guided search.
-
-    Attributes
-    ----------
-    first, end
-        ``(n,)`` range of the shapes that an item may have.
-    plates
-        Number of plates.
-    scan_chance
-        Probability that a move scans plates when a descent leaves an overlap.
-    finest
-        Step (mm) at which a descent ends.
-    enough
-        Total overlap (mm) at which the search ends.
-    """
-
-    first: Int64s
-    end: Int64s
-    plates: int
-    scan_chance: float
-    finest: float
-    enough: float
 
 
 class PlateState(NamedTuple):

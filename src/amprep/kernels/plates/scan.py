@@ -4,16 +4,14 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats
+from amprep.kernels.guided_search import EVERYWHERE, READ, MoveRules, keep_best
 from amprep.kernels.helper import helper
 from amprep.kernels.plates.fields import field_of, field_size, oriented
 from amprep.kernels.plates.records import (
-    EVERY_PLATE,
     NONE,
-    READ,
     UNITS,
     FieldCache,
     PlateLayout,
-    PlateRules,
     PlateShapes,
     PlateState,
     SampledOutlines,
@@ -33,71 +31,37 @@ def scan_size(outlines, shapes, shape):
 
 
 @helper
-def add_overlaps(outlines, cache, shapes, layout, weight, item, shape, plate, x, y, gx, gy, state):
-    """Write the weighted overlap of an item with all others of a plate into `state.sums`, ``(gx, gy)`` row by row.
+def add_overlaps(outlines, cache, shapes, layout, item, start, size, state):
+    """Write the weighted overlap of an item with all others of its plate into `state.sums`, row by row.
 
     Parameters
     ----------
-    weight
-        ``(n,)`` weights of the overlaps.
-    x, y
+    start
         Position at the first cell, mm.
+    size
+        Number of cells along x and y.
     """
+    gx, gy = size
     sums, turned = state.sums[: gx * gy], state.turned[: gx * gy]
     sums[:] = np.float32(0.0)
-    columns = False
+    columns, plate = False, layout.plate[item]
     for other in range(layout.shape.size):
-        if other == item or (layout.plate[other] != plate and layout.plate[other] != EVERY_PLATE):
+        if other == item or (layout.plate[other] != plate and layout.plate[other] != EVERYWHERE):
             continue
-        a, b, quarter, turns = oriented(shapes, shape, layout.shape[other])
+        a, b, quarter, turns = oriented(shapes, layout.shape[item], layout.shape[other])
         if cache.first[a, b, quarter] == NONE:
             continue
-        dx, dy = x - layout.position[other, 0], y - layout.position[other, 1]
-        cx, cy = field_size(outlines, a, b, quarter)
+        pair, weight = (a, b, quarter), state.weight[item, other]
+        dx, dy = start[0] - layout.position[other, 0], start[1] - layout.position[other, 1]
         if turns & 1:
             if not columns:
                 turned[:] = np.float32(0.0)
                 columns = True
-            u, v = (-dy, dx) if turns == 1 else (dy, -dx)
-            sign_u, sign_v = (-1, 1) if turns == 1 else (1, -1)
-            _add_field(
-                outlines,
-                cache,
-                a,
-                b,
-                quarter,
-                cx,
-                cy,
-                u,
-                v,
-                sign_u,
-                sign_v,
-                weight[other],
-                gy,
-                gx,
-                turned,
-                state,
-            )
+            offset, sign = ((-dy, dx), (-1, 1)) if turns == 1 else ((dy, -dx), (1, -1))
+            _add_field(outlines, cache, pair, offset, sign, weight, (gy, gx), turned, state)
         else:
-            sign = 1 if turns == 0 else -1
-            _add_field(
-                outlines,
-                cache,
-                a,
-                b,
-                quarter,
-                cx,
-                cy,
-                sign * dx,
-                sign * dy,
-                sign,
-                sign,
-                weight[other],
-                gx,
-                gy,
-                sums,
-                state,
-            )
+            offset, sign = ((dx, dy), (1, 1)) if turns == 0 else ((-dx, -dy), (-1, -1))
+            _add_field(outlines, cache, pair, offset, sign, weight, size, sums, state)
     if columns:
         for i in range(gx):
             for j in range(gy):
@@ -105,18 +69,19 @@ def add_overlaps(outlines, cache, shapes, layout, weight, item, shape, plate, x,
 
 
 @helper
-def _add_field(
-    outlines, cache, a, b, quarter, cx, cy, u, v, sign_u, sign_v, weight, rows, columns, sums, state
-):
-    """Add the depths at offsets (u + sign_u * step * row, v + sign_v * step * column), between samples."""
-    u, v = u / outlines.step + cx, v / outlines.step + cy
+def _add_field(outlines, cache, pair, offset, sign, weight, size, sums, state):
+    """Add the weighted depths of a pair at the offsets of a grid, between samples.
+
+    Along each axis the offset of a cell is the first one plus or minus, by the sign, so many steps.
+    """
+    a, b, quarter = pair
+    rows, columns = size
+    cx, cy = field_size(outlines, a, b, quarter)
+    u, v = offset[0] / outlines.step + cx, offset[1] / outlines.step + cy
     fu, fv = int(np.floor(u)), int(np.floor(v))
     s, t = u - fu, v - fv
-    # rows r with 0 <= fu + sign_u * r < 2 * cx
-    r0 = max(0, -fu) if sign_u > 0 else max(0, fu - 2 * cx + 1)
-    r1 = min(rows, 2 * cx - fu) if sign_u > 0 else min(rows, fu + 1)
-    k0 = max(0, -fv) if sign_v > 0 else max(0, fv - 2 * cy + 1)
-    k1 = min(columns, 2 * cy - fv) if sign_v > 0 else min(columns, fv + 1)
+    r0, r1 = _cells_in_field(fu, sign[0], 2 * cx, rows)
+    k0, k1 = _cells_in_field(fv, sign[1], 2 * cy, columns)
     if r0 >= r1 or k0 >= k1:
         return
     first, high, n = field_of(outlines, cache, a, b, quarter, state.spent), 2 * cy + 1, k1 - k0
@@ -126,12 +91,20 @@ def _add_field(
     w10, w11 = np.float32(s * (1.0 - t) * scale), np.float32(s * t * scale)
     for r in range(r0, r1):
         to = r * columns + k0
-        at = first + (fu + sign_u * r) * high + fv + (k0 if sign_v > 0 else -(k1 - 1))
+        at = first + (fu + sign[0] * r) * high + fv + (k0 if sign[1] > 0 else -(k1 - 1))
         lower, upper = cache.values[at : at + n + 1], cache.values[at + high : at + high + n + 1]
-        if sign_v > 0:
+        if sign[1] > 0:
             _add_line(sums[to : to + n], lower, upper, w00, w01, w10, w11)
         else:
             _add_line_backwards(sums[to : to + n], lower, upper, w00, w01, w10, w11)
+
+
+@helper
+def _cells_in_field(first, sign, end, cells):
+    """Return the range of cells k among some for which ``0 <= first + sign * k < end``."""
+    if sign > 0:
+        return max(0, -first), min(cells, end - first)
+    return max(0, first - end + 1), min(cells, first + 1)
 
 
 @njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, fastmath={"nnan", "nsz", "contract"})
@@ -152,8 +125,9 @@ def _add_line_backwards(sums, lower, upper, w00, w01, w10, w11):
 
 
 @helper
-def best_cells(sums, gx, gy, cell, value):
+def best_cells(sums, size, cell, value):
     """Write the best cell of each block of cells, for the best blocks, best first; return their number."""
+    gx, gy = size
     count = 0
     for bx in range(0, gx, BLOCK):
         for by in range(0, gy, BLOCK):
@@ -162,17 +136,7 @@ def best_cells(sums, gx, gy, cell, value):
                 for y in range(by, min(by + BLOCK, gy)):
                     if sums[x * gy + y] < least:
                         least, where = sums[x * gy + y], x * gy + y
-            if count < cell.size:
-                k = count
-                count += 1
-            elif least < value[count - 1]:
-                k = count - 1
-            else:
-                continue
-            while k > 0 and value[k - 1] > least:
-                value[k], cell[k] = value[k - 1], cell[k - 1]
-                k -= 1
-            value[k], cell[k] = least, where
+            count = keep_best(cell, value, count, where, least)
     return count
 
 
@@ -183,39 +147,37 @@ def first_free(
     shapes: PlateShapes,
     layout: PlateLayout,
     state: PlateState,
-    rules: PlateRules,
+    rules: MoveRules,
     item: int,
-    plate: int,
     direction: Floats,
     free: float,
-    found: Floats,
 ) -> int:
-    """Find the position of an item, in any of its shapes, that is free and first in a direction.
+    """Move an item to the position on its plate, in any of its shapes, that is free and first in a direction.
 
     Parameters
     ----------
+    layout
+        The shape and the position of the item are written; they have no meaning if no position is free.
     state
         Its weights must be 1.
     direction
         ``(2,)`` the least product with it of the far corner of the enclosing box is first.
     free
         Overlap (mm) that counts as none.
-    found
-        ``(2,)`` written, mm.
 
     Returns
     -------
-    The shape, or -1.
+    The shape, or -1 if no position is free.
     """
-    best, chosen = np.inf, -1
+    best, chosen, u, v = np.inf, -1, 0.0, 0.0
     for shape in range(rules.first[item], rules.end[item]):
-        gx, gy = scan_size(outlines, shapes, shape)
+        size = scan_size(outlines, shapes, shape)
+        gx, gy = size
         if gx == 0:
             continue
         x, y = shapes.lo[shape, 0], shapes.lo[shape, 1]
-        add_overlaps(
-            outlines, cache, shapes, layout, state.weight[item], item, shape, plate, x, y, gx, gy, state
-        )
+        layout.shape[item] = shape
+        add_overlaps(outlines, cache, shapes, layout, item, (x, y), size, state)
         hx, hy = outlines.half[shapes.outline[shape], 0], outlines.half[shapes.outline[shape], 1]
         if shapes.quarter[shape] & 1:
             hx, hy = hy, hx
@@ -227,5 +189,7 @@ def first_free(
                     key = direction[0] * px + direction[1] * py + corner
                     if key < best:
                         best, chosen = key, shape
-                        found[0], found[1] = px, py
+                        u, v = px, py
+    if chosen >= 0:
+        layout.shape[item], layout.position[item, 0], layout.position[item, 1] = chosen, u, v
     return chosen

@@ -3,18 +3,28 @@
 import numpy as np
 from numba import njit
 
-from amprep.kernels.helper import helper
-from amprep.kernels.plates.fields import depth_at, field_size, oriented
-from amprep.kernels.plates.records import (
-    EVERY_PLATE,
+from amprep.kernels.guided_search import (
+    EVERYWHERE,
+    LONGER,
     MOVES,
-    NONE,
+    NEGLIGIBLE,
     READ,
     ROUNDS,
     SCANS,
+    SHORTER,
+    TRIES,
+    VALUES_A_DEPTH,
+    MoveRules,
+    WeightGrowth,
+    clamped,
+    new_weight,
+)
+from amprep.kernels.helper import helper
+from amprep.kernels.plates.fields import depth_at, field_size, oriented
+from amprep.kernels.plates.records import (
+    NONE,
     FieldCache,
     PlateLayout,
-    PlateRules,
     PlateShapes,
     PlateState,
     SampledOutlines,
@@ -29,17 +39,7 @@ from amprep.kernels.random_numbers import uniform
 # others decay towards 1 (guided local search: Voudouris, Tsang 1999, doi:10.1016/S0377-2217(98)00099-X; Umetani et al.
 # 2009, doi:10.1111/j.1475-3995.2009.00707.x).
 
-NEGLIGIBLE = 1e-9
-"""Weighted overlap that counts as none."""
-
-GROWTH_LEAST, GROWTH_MOST, DECAY = 1.03, 1.15, 0.97
-"""Factors of the weight of the least and the deepest overlap, and of the weights of pairs that do not overlap."""
-
-LONGER, SHORTER, TRIES = 1.3, 0.55, 2
-"""Factors of the step of a descent after a success, and after so many failures."""
-
-VALUES_A_DEPTH = 8
-"""Field values read for one depth between samples."""
+GROWTH = WeightGrowth(least=1.03, most=1.15, decay=0.97)
 
 OTHERS = 12
 """Number of other shapes and plates that a move scans."""
@@ -48,7 +48,7 @@ OTHERS = 12
 @helper
 def _together(layout, i, j):
     """Tell whether an item and another or an obstacle are on the same plate."""
-    return layout.plate[i] == layout.plate[j] or layout.plate[j] == EVERY_PLATE
+    return layout.plate[i] == layout.plate[j] or layout.plate[j] == EVERYWHERE
 
 
 @helper
@@ -102,11 +102,6 @@ def _cost(outlines, cache, shapes, layout, state, i, count, x, y, limit):
 
 
 @helper
-def _clamped(value, start, reach, lo, hi):
-    return min(max(value, lo, start - reach), hi, start + reach)
-
-
-@helper
 def _descend(outlines, cache, shapes, layout, rules, state, i, x, y, step):
     """Return a position near (x, y) of less weighted overlap, and that overlap.
 
@@ -127,8 +122,8 @@ def _descend(outlines, cache, shapes, layout, rules, state, i, x, y, step):
         sign = step if uniform(state.random) < 0.5 else -step
         failures += 1
         for _ in range(2):
-            u = _clamped(x + sign * dx, x0, reach, lo[0], hi[0])
-            v = _clamped(y + sign * dy, y0, reach, lo[1], hi[1])
+            u = clamped(x + sign * dx, x0, reach, lo[0], hi[0])
+            v = clamped(y + sign * dy, y0, reach, lo[1], hi[1])
             sign = -sign
             if u != x or v != y:
                 found = _cost(outlines, cache, shapes, layout, state, i, count, u, v, cost)
@@ -147,17 +142,17 @@ def _descend(outlines, cache, shapes, layout, rules, state, i, x, y, step):
 def _scan(outlines, cache, shapes, layout, rules, state, i, best):
     """Return the best of a position, as (x, y, cost), and of those that a scan in the present shape and plate finds."""
     shape = layout.shape[i]
-    gx, gy = scan_size(outlines, shapes, shape)
+    size = scan_size(outlines, shapes, shape)
+    gx, gy = size
     if gx * gy == 0:
         return best
     lo, hi, step = shapes.lo[shape], shapes.hi[shape], outlines.step
     x = lo[0] + uniform(state.random) * (hi[0] - lo[0] - (gx - 1) * step)
     y = lo[1] + uniform(state.random) * (hi[1] - lo[1] - (gy - 1) * step)
-    weight = state.weight[i]
-    add_overlaps(outlines, cache, shapes, layout, weight, i, shape, layout.plate[i], x, y, gx, gy, state)
+    add_overlaps(outlines, cache, shapes, layout, i, (x, y), size, state)
     state.spent[READ] += 2 * gx * gy
     state.spent[SCANS] += 1
-    for k in range(best_cells(state.sums, gx, gy, state.cell, state.value)):
+    for k in range(best_cells(state.sums, size, state.cell, state.value)):
         if best[2] <= NEGLIGIBLE or state.value[k] > 2.0 * best[2] + 0.5 * step:
             break
         u, v = x + state.cell[k] // gy * step, y + state.cell[k] % gy * step
@@ -183,7 +178,7 @@ def _move(outlines, cache, shapes, layout, rules, state, i):
             layout.shape[i] = rules.first[i] + int(uniform(state.random) * (rules.end[i] - rules.first[i]))
             layout.plate[i] = plate
             if attempt > 0:
-                layout.plate[i] = int(uniform(state.random) * rules.plates)
+                layout.plate[i] = int(uniform(state.random) * rules.builds)
             if layout.shape[i] == shape and layout.plate[i] == plate:
                 continue
             found = _scan(outlines, cache, shapes, layout, rules, state, i, best)
@@ -220,11 +215,7 @@ def _raise_weights(items, state, deepest):
     for i in range(items):
         for j in range(state.overlap.shape[1]):
             if j < i or j >= items:
-                weight, depth = state.weight[i, j], state.overlap[i, j]
-                if depth > 1e-6:
-                    weight *= GROWTH_LEAST + (GROWTH_MOST - GROWTH_LEAST) * depth / deepest
-                else:
-                    weight = max(1.0, weight * DECAY)
+                weight = new_weight(state.weight[i, j], state.overlap[i, j], deepest, GROWTH)
                 state.weight[i, j] = weight
                 if j < i:
                     state.weight[j, i] = weight
@@ -242,7 +233,7 @@ def separate_plates(
     outlines: SampledOutlines,
     cache: FieldCache,
     shapes: PlateShapes,
-    rules: PlateRules,
+    rules: MoveRules,
     layout: PlateLayout,
     best: PlateLayout,
     state: PlateState,

@@ -35,9 +35,18 @@ _ALL = replace(
 )
 
 
+_SHAPES = replace(_ALL, volumes=_ANY_VOLUME)
+
+
 @hookimpl
 def amprep_packers() -> Iterable[Packer]:
     """Yield the built-in packers."""
+    yield from _heuristics_for_boxes()
+    yield from _integer_programs()
+    yield from _packers_of_shapes()
+
+
+def _heuristics_for_boxes() -> Iterable[Packer]:
     yield Packer(
         name="extreme-points",
         summary="The best of many orderings, each item at its best extreme point (Crainic, Perboli, Tadei).",
@@ -50,7 +59,7 @@ def amprep_packers() -> Iterable[Packer]:
         name="auto",
         summary="Enclosing boxes at once, then the true shapes; of boxes alone, few builds with a proven bound.",
         run=later("amprep.plugins.packers.auto:pack_auto"),
-        accepts=replace(_ALL, volumes=_ANY_VOLUME, orientations=_ANY_LIST | {"about-z"}),
+        accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z"}),
         params=AutoParams,
         efforts={
             "fast": {"work": 20.0, "proof": 40.0, "separation": 600.0, "plates": 1500.0},
@@ -83,6 +92,9 @@ def amprep_packers() -> Iterable[Packer]:
         params=TabuParams,
         efforts={"fast": {"work": 20.0}, "thorough": {"work": 1000.0, "patience": 30}},
     )
+
+
+def _integer_programs() -> Iterable[Packer]:
     yield Packer(
         name="ip",
         summary="The thesis's integer program after extreme points, by HiGHS or any solver of pulp.",
@@ -104,19 +116,14 @@ def amprep_packers() -> Iterable[Packer]:
         accepts=replace(_BOXES, zones=True),
         params=ColumnGenerationParams,
     )
+
+
+def _packers_of_shapes() -> Iterable[Packer]:
     yield Packer(
         name="separation",
         summary="True shapes: overlapping layouts are separated by guided local search on no-fit solids.",
         run=later("amprep.plugins.packers.separation:pack_separation"),
-        accepts=PackerAccepts(
-            volumes=_ANY_VOLUME,
-            objectives=frozenset({"height", "builds", "fill"}),
-            orientations=_ANY_LIST,
-            cylinder=True,
-            zones=True,
-            fixed=True,
-            stacking=frozenset({True}),
-        ),
+        accepts=replace(_SHAPES, stacking=frozenset({True})),
         params=SeparationParams,
         efforts={"fast": {"work": 600.0}, "thorough": {"work": 60_000.0}},
         volumes="mesh",
@@ -125,15 +132,7 @@ def amprep_packers() -> Iterable[Packer]:
         name="plates",
         summary="True shadows of parts side by side, without stacking, by guided local search.",
         run=later("amprep.plugins.packers.plates:pack_plates"),
-        accepts=PackerAccepts(
-            volumes=frozenset({"box", "boxes", "convex", "solid"}),
-            objectives=frozenset({"height", "builds", "fill"}),
-            orientations=_ANY_LIST | {"about-z"},
-            cylinder=True,
-            zones=True,
-            fixed=True,
-            stacking=frozenset({False}),
-        ),
+        accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z"}, stacking=frozenset({False})),
         params=PlatesParams,
         efforts={"fast": {"work": 3000.0}, "thorough": {"work": 300_000.0}},
         volumes="mesh",
@@ -142,14 +141,7 @@ def amprep_packers() -> Iterable[Packer]:
         name="annealing",
         summary="Simulated annealing of the meshes themselves, which never intersect (thesis 2.6).",
         run=later("amprep.plugins.packers.annealing.pack:pack_annealing"),
-        accepts=PackerAccepts(
-            volumes=_ANY_VOLUME,
-            objectives=_BUILDS | _FILL | {"height"},
-            orientations=_ANY_LIST | {"about-z", "free"},
-            cylinder=True,
-            zones=True,
-            fixed=True,
-        ),
+        accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z", "free"}),
         params=AnnealingParams,
         efforts={"fast": {"moves": 400}, "thorough": {"moves": 20_000}},
         volumes="mesh",

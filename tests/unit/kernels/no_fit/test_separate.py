@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.shared.no_fit import box_shapes, boxes_overlap, in_box, layout_of, rules_for, state_for
 
-from amprep.kernels.no_fit.records import MOVES, PAIRS, READ, ROUNDS, SCANS
+from amprep.kernels.guided_search import MOVES, READ, ROUNDS, SCANS
+from amprep.kernels.no_fit.records import PAIRS
 from amprep.kernels.no_fit.separate import separate
 
 SIZES = [[4, 4, 2], [2, 4, 4], [4, 2, 4], [2, 2, 2]]

@@ -29,8 +29,10 @@ def scene_of(volumes, size=20.0):
 
 @njit
 def scan(outlines, cache, shapes, layout, state, item, shape, x, y):
-    gx, gy = scan_size(outlines, shapes, shape)
-    add_overlaps(outlines, cache, shapes, layout, state.weight[item], item, shape, 0, x, y, gx, gy, state)
+    size = scan_size(outlines, shapes, shape)
+    gx, gy = size
+    layout.shape[item] = shape
+    add_overlaps(outlines, cache, shapes, layout, item, (x, y), size, state)
     expected = np.zeros((gx, gy))
     for i in range(gx):
         for j in range(gy):
@@ -61,22 +63,21 @@ def test_a_scan_is_the_sum_of_all_depths():
 def test_the_first_free_position_is_beside_what_is_there():
     scene = scene_of([block(4, 4), block(4, 4)])
     placed = OnPlates(
-        np.arange(2), scene.instance.first, np.array([0, -2]), np.array([[2.5, 2.5], [0.0, 0.0]])
+        np.arange(2), scene.instance.first, np.array([0, 0]), np.array([[2.5, 2.5], [0.0, 0.0]])
     )
-    found, state = np.empty(2), scene.state(2)
+    layout, state = scene.layout(placed), scene.state(2)
     shape = first_free(
         scene.outlines,
         scene.cache,
         scene.instance.arrays,
-        scene.layout(placed),
+        layout,
         state,
         scene.rules(np.arange(2), 1),
         1,
-        0,
         np.array([1.0, 0.01]),
         1e-5,
-        found,
     )
     assert shape >= 0
-    assert np.allclose(found[0], 2.5)
-    assert 7.0 - 0.05 <= found[1] <= 7.0 + 1.5 * scene.outlines.step
+    x, y = layout.position[1]
+    assert np.allclose(x, 2.5)
+    assert 7.0 - 0.05 <= y <= 7.0 + 1.5 * scene.outlines.step

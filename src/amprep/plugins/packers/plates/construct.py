@@ -3,9 +3,13 @@
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
+from amprep.kernels.guided_search import READ
 from amprep.kernels.plates.scan import first_free
 from amprep.plugins.packers.plates.programs import is_exact, make_plate_exact
 from amprep.plugins.packers.plates.state import OnPlates, PlateScene, none_on_plates, placed_from
+
+OFF_PLATE = -2
+"""Plate of an item that is on none."""
 
 FREE = 1e-5
 """Weighted overlap (mm) of a free position."""
@@ -32,34 +36,24 @@ def construct(
     """
     begun = none_on_plates() if start is None else start
     n, instance = len(items), scene.instance
-    rest = OnPlates(items, instance.first[items].copy(), np.full(n, -2, np.int64), np.zeros((n, 2)))
+    rest = OnPlates(items, instance.first[items].copy(), np.full(n, OFF_PLATE, np.int64), np.zeros((n, 2)))
     placed = begun.with_rows(rest)
     layout, rules = scene.layout(placed), scene.rules(placed.items, most)
-    state, found = scene.state(len(placed.items)), np.empty(2)
+    state = scene.state(len(placed.items))
     for k in range(len(begun.items), len(placed.items)):
         used = max(int(layout.plate[: len(placed.items)].max(initial=-1)) + 1, 1)
         for plate in range(min(used + 1, most)):
             if scene.budget.over():
                 break
-            before = int(state.spent[0])
+            before = int(state.spent[READ])
+            layout.plate[k] = plate
             shape = first_free(
-                scene.outlines,
-                scene.cache,
-                instance.arrays,
-                layout,
-                state,
-                rules,
-                k,
-                plate,
-                direction,
-                FREE,
-                found,
+                scene.outlines, scene.cache, instance.arrays, layout, state, rules, k, direction, FREE
             )
-            scene.budget.left -= int(state.spent[0]) - before + 40_000.0
+            scene.budget.left -= int(state.spent[READ]) - before + 40_000.0
             if shape >= 0:
-                layout.shape[k], layout.plate[k] = shape, plate
-                layout.position[k] = found
                 break
+            layout.plate[k] = OFF_PLATE
     done = placed_from(layout, placed.items)
     return _exact(scene, done.rows(np.flatnonzero(done.plate >= 0)))
 

@@ -11,7 +11,7 @@ from amprep.geometry.no_fit.circle import Circle, find_inside_circle
 from amprep.geometry.plates.areas import needed_area
 from amprep.geometry.plates.outline import ShadowOutline, outline_of, rectangle
 from amprep.geometry.plates.shadow import SEGMENTS, shadow_of
-from amprep.kernels.plates.records import EVERY_PLATE
+from amprep.kernels.guided_search import EVERYWHERE
 from amprep.measures.bounding_volume import points_of
 from amprep.model.bounding_volume import BoundingVolume, Boxes, ConvexPieces, Solid
 from amprep.model.control import Stop
@@ -277,7 +277,7 @@ def _obstacles(
     for lo, hi in zip(problem.space.zone_lo, problem.space.zone_hi, strict=True):
         low, high = np.maximum(lo[:2], -1.0), np.minimum(hi[:2], problem.space.size[:2] + 1.0)
         if (hi > lo).all() and (high > low).all():
-            add(rectangle(low, high), (low + high) / 2.0, EVERY_PLATE, 0.0, float(lo[2]), float(hi[2]))
+            add(rectangle(low, high), (low + high) / 2.0, EVERYWHERE, 0.0, float(lo[2]), float(hi[2]))
     for fixed in problem.fixed:
         volume = problem.items[fixed.item].volume
         region, low, high = volume_shadow(volume, fixed.rotation)
@@ -287,5 +287,5 @@ def _obstacles(
         add(outline, middle, 0, problem.clearance, -np.inf, np.inf)
     if space.radius:
         edge = rectangle(np.full(2, -space.radius), np.full(2, space.radius))
-        add(edge, space.axis, EVERY_PLATE, 0.0, -np.inf, np.inf)
+        add(edge, space.axis, EVERYWHERE, 0.0, -np.inf, np.inf)
     return found

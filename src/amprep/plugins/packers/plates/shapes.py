@@ -64,7 +64,7 @@ class PlateObstacle(NamedTuple):
     outline, position
         Number of an outline, which is relative to a position ``(2,)`` mm.
     plate
-        0, or `EVERY_PLATE`.
+        0, or `EVERYWHERE`.
     clearance
         Least distance of items, mm.
     low, high

@@ -7,14 +7,13 @@ import numpy as np
 
 from amprep.arrays import Floats, Int64s, starts_of
 from amprep.geometry.plates.sampling import sample_outlines
+from amprep.kernels.guided_search import READ, MoveRules
 from amprep.kernels.plates.contacts import PlatePieces
 from amprep.kernels.plates.records import (
     NONE,
-    READ,
     UNKNOWN,
     FieldCache,
     PlateLayout,
-    PlateRules,
     PlateState,
     SampledOutlines,
 )
@@ -100,12 +99,12 @@ class PlateScene:
             np.concatenate((placed.position, positions)),
         )
 
-    def rules(self, items: Int64s, plates: int) -> PlateRules:
+    def rules(self, items: Int64s, plates: int) -> MoveRules:
         """Return the rules of moves of some items among some plates."""
         instance, finest = self.instance, FINEST * self.outlines.step
         enough = 1e-6 * max(len(items), 1)
         chance = self.params.scan_chance
-        return PlateRules(instance.first[items], instance.end[items], plates, chance, finest, enough)
+        return MoveRules(instance.first[items], instance.end[items], plates, chance, finest, enough)
 
     def state(self, items: int) -> PlateState:
         """Return overlaps, weights of 1, and work arrays."""
@@ -129,7 +128,7 @@ class PlateScene:
         self,
         layout: PlateLayout,
         best: PlateLayout,
-        rules: PlateRules,
+        rules: MoveRules,
         state: PlateState,
         rounds: int = ROUNDS,
     ) -> float:

@@ -10,7 +10,8 @@ from amprep.geometry.no_fit.contacts import contact_shapes
 from amprep.geometry.no_fit.fields import sample_fields, samples
 from amprep.geometry.no_fit.pieces import ConvexPiece, ShapeSet, convex_shape, corner_pairs, with_obstacles
 from amprep.geometry.no_fit.voxels import sample_from_voxels
-from amprep.kernels.no_fit.records import EVERYWHERE, ContactShapes, NoFitFields
+from amprep.kernels.guided_search import EVERYWHERE
+from amprep.kernels.no_fit.records import ContactShapes, NoFitFields
 from amprep.model.control import Stop
 from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation.shapes import ShapeInstance

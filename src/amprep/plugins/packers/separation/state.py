@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.no_fit.records import READ, MoveRules, PositionRange, SeparationState, ShapeLayout
+from amprep.kernels.guided_search import READ, MoveRules
+from amprep.kernels.no_fit.records import PositionRange, SeparationState, ShapeLayout
 from amprep.kernels.no_fit.separate import separate
 from amprep.model.control import Progress, Stop, silent
 from amprep.plugins.packers.params import SeparationParams
