@@ -5,9 +5,10 @@ import time
 import numpy as np
 import pytest
 from manifold3d import Manifold
+from tests.shared.solids import mesh_of
 
 from amprep.checks.packing.parts_placed import judge_placed
-from amprep.model import BuildSettings, BuildVolume, Mesh, Orientations, Part, PlacedPart, Stop
+from amprep.model import BuildSettings, BuildVolume, Orientations, Part, PlacedPart, Stop
 
 LIMIT = 30.0
 """Seconds of processor time for 640 parts; about 5 are used."""
@@ -21,8 +22,7 @@ def tangled_part(rng, side):
         centre = rng.uniform(0.0, side, 3)
         solid -= Manifold.sphere(0.3 * side, 32).translate(centre.tolist())
     solid += Manifold.cube([side, side, 0.15 * side])
-    mesh = solid.to_mesh64()
-    return Part("part", Mesh(mesh.vert_properties[:, :3], mesh.tri_verts), solid.volume())
+    return Part("part", mesh_of(solid), solid.volume())
 
 
 def diagonal_grid(kinds, side, count):

@@ -3,9 +3,9 @@
 import json
 
 import pytest
-from tests.shared.removal import arrays, hook_in_ring
+from tests.shared.removal import hook_in_ring
+from tests.shared.solids import mesh_of
 
-from amprep.model import Mesh
 from amprep.stl import write_stl
 
 JOB = """
@@ -26,7 +26,7 @@ fixed = [[1, 11, 11]]
 def job(tmp_path):
     """Two linked rings at fixed positions, which no packer may change."""
     for name, solid in zip(("hook", "ring"), hook_in_ring(), strict=True):
-        write_stl(Mesh(*arrays(solid)), tmp_path / f"{name}.stl")
+        write_stl(mesh_of(solid), tmp_path / f"{name}.stl")
     path = tmp_path / "job.toml"
     path.write_text(JOB)
     return path

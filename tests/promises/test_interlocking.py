@@ -4,14 +4,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.shared.removal import arrays, box
+from tests.shared.removal import box
+from tests.shared.solids import volume_of_solid
 
 from amprep.checks.packing.removal import check_removal_order
 from amprep.checks.packing.volumes_placed import PlacedVolume, check_packing
 from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.order import DIRECTIONS, find_removal_order
 from amprep.host import Host
-from amprep.model import Boxes, BuildVolume, Item, Mesh, Packing, PackingProblem, Solid, Stop, silent
+from amprep.model import Boxes, BuildVolume, Item, Packing, PackingProblem, Stop, silent
 from amprep.repacking.interlocking import free_locked_items
 from amprep.repacking.volume_bodies import VolumeBodies
 
@@ -41,7 +42,7 @@ def item_volume(accepts):
     """The richest volume of a C that a packer accepts."""
     if "solid" in accepts.volumes:
         solid = sum((box(lo, hi) for lo, hi in zip(*CORNERS, strict=True)), start=box((0, 0, 0), (1, 1, 1)))
-        return Solid(Mesh(*arrays(solid)))
+        return volume_of_solid(solid)
     if "boxes" in accepts.volumes:
         return Boxes(*CORNERS)
     return Boxes(CORNERS[0].min(axis=0)[None], CORNERS[1].max(axis=0)[None])

@@ -2,11 +2,12 @@
 
 import numpy as np
 from manifold3d import CrossSection, JoinType, Manifold, OpType
+from tests.shared.solids import volume_of_solid
 
 from amprep.geometry.plates.outline import ShadowOutline
 from amprep.geometry.plates.shadow import shadow_of
 from amprep.measures.bounding_volume import points_of
-from amprep.model import Boxes, BuildVolume, Item, Mesh, Orientations, PackingProblem, Stop, silent
+from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Stop, silent
 from amprep.model.bounding_volume import Solid
 from amprep.plugins.packers.params import PlatesParams
 from amprep.plugins.packers.plates import pack_plates
@@ -41,23 +42,22 @@ def distance_of(one, other, limit=50.0):
     return high
 
 
-def solid(manifold):
-    mesh = manifold.to_mesh64()
-    return Solid(Mesh(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, np.int64)))
-
-
 def ring(outer, inner, height=4.0):
-    return solid(Manifold.cylinder(height, outer, outer, 48) - Manifold.cylinder(height, inner, inner, 48))
+    return volume_of_solid(
+        Manifold.cylinder(height, outer, outer, 48) - Manifold.cylinder(height, inner, inner, 48)
+    )
 
 
 def disc(radius, height=4.0):
-    return solid(Manifold.cylinder(height, radius, radius, 48))
+    return volume_of_solid(Manifold.cylinder(height, radius, radius, 48))
 
 
 def mushroom(radius, stem, height=6.0):
     """A cap on a stem: an overhang all around."""
     cap = Manifold.cylinder(1.0, radius, radius, 48).translate([0.0, 0.0, height - 1.0])
-    return solid(Manifold.batch_boolean([cap, Manifold.cylinder(height, stem, stem, 48)], OpType.Add))
+    return volume_of_solid(
+        Manifold.batch_boolean([cap, Manifold.cylinder(height, stem, stem, 48)], OpType.Add)
+    )
 
 
 def block(x, y, z=2.0):

@@ -2,6 +2,7 @@
 
 import numpy as np
 from manifold3d import CrossSection, Manifold
+from tests.shared.solids import arrays
 
 from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.bodies import CollisionShape, movable_body
@@ -48,11 +49,6 @@ def bayonet():
     case -= box((24, 5, 12), (35, 25, 30))
     bolt = box((7, 7, 6), (15, 23, 11)) + box((9, 13, 11), (13, 17, 26))
     return [case, bolt]
-
-
-def arrays(solid):
-    mesh = solid.to_mesh64()
-    return np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, np.int64)
 
 
 def blocking_of(solids, directions=DIRECTIONS):

@@ -3,11 +3,22 @@
 import numpy as np
 from manifold3d import CrossSection, Manifold, OpType
 
+from amprep.model import Mesh, Solid
+
 
 def arrays(solid):
     """Vertices and triangles of a solid."""
     mesh = solid.to_mesh64()
     return np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, np.int64)
+
+
+def mesh_of(solid):
+    return Mesh(*arrays(solid))
+
+
+def volume_of_solid(solid):
+    """A solid of manifold3d as a bounding volume."""
+    return Solid(mesh_of(solid))
 
 
 def gear(teeth=20):

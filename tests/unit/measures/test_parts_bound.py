@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import CrossSection, Manifold
 from tests.shared.examples import examples
+from tests.shared.solids import volume_of_solid
 
 from amprep.measures.objective import objective_reached
 from amprep.measures.parts_bound import parts_bound, shadow_area
@@ -13,11 +14,9 @@ from amprep.model import (
     Boxes,
     BuildVolume,
     Item,
-    Mesh,
     Orientations,
     PackingProblem,
     Placement,
-    Solid,
     Stop,
     silent,
 )
@@ -26,17 +25,12 @@ from amprep.plugins.packers.extreme_points import pack_extreme_points
 from amprep.plugins.packers.params import ExtremePointsParams
 
 
-def solid(shape):
-    mesh = shape.to_mesh64()
-    return Solid(Mesh(np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts).astype(np.int64)))
-
-
 def plate(side, hole=0.0, height=10.0):
     """A square plate with a square hole through it."""
     outline = CrossSection.square((side, side), True)
     if hole:
         outline -= CrossSection.square((hole, hole), True)
-    return solid(Manifold.extrude(outline, height))
+    return volume_of_solid(Manifold.extrude(outline, height))
 
 
 def problem(volumes, room, objective="builds", orientations=None, **rules):

@@ -1,10 +1,11 @@
 """Which parts of a build can be taken out, with their supports."""
 
 import numpy as np
-from tests.shared.removal import arrays, box, hook_in_ring
+from tests.shared.removal import box, hook_in_ring
+from tests.shared.solids import mesh_of
 
 from amprep.measures.removal_order import measure_removal_order
-from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody
+from amprep.model import Build, BuildSettings, BuildVolume, Part, PlacedPart, SupportBody
 from amprep.testing.problems import box_mesh
 
 SETTINGS = BuildSettings("b", BuildVolume(np.full(3, 100.0)))
@@ -18,7 +19,7 @@ def placed(name, mesh, at=(0, 0, 0)):
 
 def bracket():
     """A post with an arm over its neighbour."""
-    return Mesh(*arrays(box((0, 0, 0), (5, 5, 30)) + box((0, 0, 25), (30, 5, 30))))
+    return mesh_of(box((0, 0, 0), (5, 5, 30)) + box((0, 0, 25), (30, 5, 30)))
 
 
 def test_a_part_below_an_arm_is_lifted_off_after_it():
@@ -45,7 +46,7 @@ def test_parts_that_share_a_support_leave_together():
 
 
 def test_locked_parts_are_named_also_where_they_are_surfaces():
-    hook, ring = (Mesh(*arrays(solid)) for solid in hook_in_ring())
+    hook, ring = (mesh_of(solid) for solid in hook_in_ring())
     surface = PlacedPart("hook", Part("hook", hook, 1.0, is_solid=False), np.eye(4))
     order = measure_removal_order(Build(SETTINGS, (surface, placed("ring", ring))))
     assert order.locked == ((0, 1),)

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import CrossSection, Manifold
 from tests.shared.examples import examples
+from tests.shared.solids import volume_of_solid
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.measures.too_large import proved_too_large
@@ -13,22 +14,15 @@ from amprep.model import (
     Boxes,
     BuildVolume,
     Item,
-    Mesh,
     Orientations,
     Packing,
     PackingProblem,
     Placement,
-    Solid,
 )
 
 
-def solid(manifold):
-    mesh = manifold.to_mesh64()
-    return Solid(Mesh(mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)))
-
-
 def block(x, y, z):
-    return solid(Manifold.cube([x, y, z]))
+    return volume_of_solid(Manifold.cube([x, y, z]))
 
 
 def one_item(volume, size, allowed=None, shape="box", zones=(), **rules):
@@ -59,14 +53,14 @@ def test_size_decides_without_zones(volume, allowed, size, expected):
 
 
 def test_a_round_part_as_large_as_a_round_plate_is_not_too_large():
-    cylinder = solid(Manifold.cylinder(20.0, 15.0, 15.0, 200))
+    cylinder = volume_of_solid(Manifold.cylinder(20.0, 15.0, 15.0, 200))
     assert not proved_too_large(one_item(cylinder, (30, 30, 20), shape="cylinder"), [0])
     assert proved_too_large(one_item(block(30, 30, 5), (30, 30, 20), shape="cylinder"), [0])
 
 
 def test_beside_a_zone_only_upright_boxes_are_proved_too_large():
     zone = [(20, 20, 0, 40, 40, 40)]
-    prism = solid(Manifold.extrude(CrossSection([[(0, 0), (30, 0), (0, 30)]]), 30.0))
+    prism = volume_of_solid(Manifold.extrude(CrossSection([[(0, 0), (30, 0), (0, 30)]]), 30.0))
     assert not proved_too_large(one_item(prism, (30, 30, 30), zones=zone), [0])
     box = Boxes(np.zeros(3), np.full(3, 30.0))
     assert proved_too_large(one_item(box, (30, 30, 30), zones=zone), [0])
@@ -80,7 +74,7 @@ def test_beside_a_zone_only_upright_boxes_are_proved_too_large():
 @given(seed=st.integers(0, 10**6), shape=st.sampled_from(["box", "cylinder"]))
 def test_what_the_judge_accepts_is_never_called_too_large(seed, shape):
     rng = np.random.default_rng(seed)
-    volume = solid(Manifold.hull_points(rng.uniform(0.0, 10.0, (8, 3))))
+    volume = volume_of_solid(Manifold.hull_points(rng.uniform(0.0, 10.0, (8, 3))))
     rotation = about_z(rng.uniform(0.0, 6.0))
     points = volume.mesh.vertices @ rotation.T
     size = np.ptp(points, axis=0)

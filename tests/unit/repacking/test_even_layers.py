@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
-from tests.shared.removal import arrays, cup
+from tests.shared.removal import cup
+from tests.shared.solids import volume_of_solid
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.measures.objective import objective_reached
-from amprep.model import Boxes, BuildVolume, Item, Mesh, Packing, PackingProblem, Part, Placement, Solid, Stop
+from amprep.model import Boxes, BuildVolume, Item, Packing, PackingProblem, Part, Placement, Stop
 from amprep.repacking.even_layers import even_layers
 from amprep.testing.problems import box_mesh
 
@@ -61,7 +62,7 @@ def test_parts_do_not_pass_through_each_other():
 
 
 def test_true_shapes_move_within_each_other():
-    solid = Solid(Mesh(*arrays(cup(0))))
+    solid = volume_of_solid(cup(0))
     items = tuple(Item(0, k, solid, 1.0) for k in range(3))
     parts = [Part("cup", solid.mesh, 1.0)]
     problem = PackingProblem(items, BuildVolume(np.full(3, 80.0)), "height", clearance=0.4)

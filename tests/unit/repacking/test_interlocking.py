@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.shared.removal import arrays, blocking_of, box, hook_in_ring, ring
+from tests.shared.removal import blocking_of, box, hook_in_ring, ring
+from tests.shared.solids import volume_of_solid
 
 from amprep.checks.packing.removal import check_removal_order
 from amprep.checks.packing.volumes_placed import check_packing
@@ -14,11 +15,9 @@ from amprep.model import (
     Boxes,
     BuildVolume,
     Item,
-    Mesh,
     Packing,
     PackingProblem,
     Placement,
-    Solid,
     Stop,
     Unplaced,
 )
@@ -26,9 +25,7 @@ from amprep.repacking.interlocking import free_locked_items
 
 
 def problem_of(solids, size, **rules):
-    items = tuple(
-        Item(k, 0, Solid(Mesh(*arrays(solid))), float(solid.volume())) for k, solid in enumerate(solids)
-    )
+    items = tuple(Item(k, 0, volume_of_solid(solid), float(solid.volume())) for k, solid in enumerate(solids))
     return PackingProblem(items, BuildVolume(np.array(size, float)), interlocking="forbid", **rules)
 
 

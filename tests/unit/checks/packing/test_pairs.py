@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.examples import examples
+from tests.shared.solids import arrays
 
 from amprep.checks.packing.pairs import PairCounts, PlacedBody, judge_pairs
 from amprep.geometry.meshes.box_tree import box_tree
@@ -45,8 +46,7 @@ class Judged(NamedTuple):
 
 
 def body(solid):
-    mesh = solid.to_mesh64()
-    vertices, triangles = np.array(mesh.vert_properties[:, :3]), mesh.tri_verts.astype(np.int64)
+    vertices, triangles = arrays(solid)
     return PlacedBody(vertices, lambda: box_tree(vertices, triangles), lambda: solid)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from manifold3d import Manifold
+from tests.shared.solids import mesh_of
 
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.packing.parts_placed import check_placed, judge_placed
@@ -12,10 +13,7 @@ ROOM = BuildVolume(np.array([100.0, 100.0, 50.0]))
 
 
 def part(solid, *, name="part", is_solid=True, **more):
-    mesh = solid.to_mesh64()
-    return Part(
-        name, Mesh(mesh.vert_properties[:, :3], mesh.tri_verts), solid.volume(), is_solid=is_solid, **more
-    )
+    return Part(name, mesh_of(solid), solid.volume(), is_solid=is_solid, **more)
 
 
 def cube(side=10.0, **more):

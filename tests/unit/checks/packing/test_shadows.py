@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import CrossSection, Manifold
 from tests.shared.examples import examples
+from tests.shared.solids import mesh_of
 
 from amprep.checks.packing.shadows import Shadow, check_shadows, shadow_of, shadows_of
 from amprep.model import BuildVolume, Mesh, Part, PlacedPart
@@ -14,8 +15,7 @@ PLATE = BuildVolume(np.array([100.0, 80.0, 50.0]))
 
 
 def part(solid):
-    mesh = solid.to_mesh64()
-    return Part("part", Mesh(mesh.vert_properties[:, :3], mesh.tri_verts), solid.volume())
+    return Part("part", mesh_of(solid), solid.volume())
 
 
 def placed(shape, x, y, angle=0.0, label="a"):

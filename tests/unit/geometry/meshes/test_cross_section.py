@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.examples import examples
-from tests.shared.removal import arrays, ring
+from tests.shared.removal import ring
+from tests.shared.solids import arrays
 
 from amprep.geometry.meshes import cross_section
 from amprep.geometry.meshes.cross_section import cross_section_areas

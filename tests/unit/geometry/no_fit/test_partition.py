@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 from manifold3d import CrossSection, Manifold, OpType
+from tests.shared.solids import arrays
 
 from amprep.geometry.no_fit.partition import exact_pieces, hull_volume, winding_number
-
-
-def arrays(solid):
-    mesh = solid.to_mesh64()
-    return np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, np.int64)
 
 
 def pieces_of(vertices, triangles):

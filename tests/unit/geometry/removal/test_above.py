@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.examples import examples
-from tests.shared.removal import arrays, blocking_of, box, cup
+from tests.shared.removal import blocking_of, box, cup
+from tests.shared.solids import arrays
 
 from amprep.geometry.removal import above
 from amprep.geometry.removal.above import is_above

@@ -1,7 +1,8 @@
 """Bodies of several shapes."""
 
 import numpy as np
-from tests.shared.removal import arrays, box
+from tests.shared.removal import box
+from tests.shared.solids import arrays
 
 from amprep.geometry.removal.bodies import CollisionShape, movable_body
 

@@ -5,7 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.examples import examples
-from tests.shared.removal import arrays, box, cup
+from tests.shared.removal import box, cup
+from tests.shared.solids import arrays
 
 from amprep.geometry.removal.bodies import CollisionShape, movable_body
 from amprep.geometry.removal.insertion import box_drops, drop

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from tests.shared.examples import examples
-from tests.shared.removal import arrays, box
+from tests.shared.removal import box
+from tests.shared.solids import arrays
 
 from amprep.geometry.removal.bodies import CollisionShape, movable_body
 from amprep.geometry.removal.vertical import too_near, vertical_travel

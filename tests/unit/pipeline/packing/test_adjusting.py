@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from tests.shared.removal import arrays, hook_in_ring
+from tests.shared.removal import hook_in_ring
+from tests.shared.solids import mesh_of
 
 from amprep.job import PackingSettings
-from amprep.model import BuildVolume, Item, Mesh, Packing, PackingProblem, Part, Placement, Solid, Stop
+from amprep.model import BuildVolume, Item, Packing, PackingProblem, Part, Placement, Solid, Stop
 from amprep.pipeline.packing.adjusting import adjusted
 
-MESHES = [Mesh(*arrays(solid)) for solid in hook_in_ring()]
+MESHES = [mesh_of(solid) for solid in hook_in_ring()]
 PARTS = [Part(name, mesh, 1.0) for name, mesh in zip(("hook", "ring"), MESHES, strict=True)]
 PROBLEM = PackingProblem(
     tuple(Item(k, 0, Solid(mesh), 1.0) for k, mesh in enumerate(MESHES)),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from manifold3d import Manifold
-from tests.shared.solids import PRINTABLE, arrays
+from tests.shared.solids import PRINTABLE, mesh_of
 
 from amprep.checks.volumes import check_volume
 from amprep.errors import MeshError
@@ -17,7 +17,7 @@ RNG = np.random.default_rng(1)
 
 
 def part_of(solid):
-    return Part("part", Mesh(*arrays(solid)), solid.volume())
+    return Part("part", mesh_of(solid), solid.volume())
 
 
 def make(part, stop=None, **params):

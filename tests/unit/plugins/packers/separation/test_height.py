@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold, OpType
+from tests.shared.solids import volume_of_solid
 
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.measures.objective import objective_reached
@@ -10,11 +11,9 @@ from amprep.model import (
     Boxes,
     BuildVolume,
     Item,
-    Mesh,
     Orientations,
     PackingProblem,
     Placement,
-    Solid,
     Stop,
     silent,
 )
@@ -23,20 +22,15 @@ from amprep.plugins.packers.params import SeparationParams
 from amprep.plugins.packers.separation import no_fit, pack_separation
 
 
-def solid(manifold):
-    mesh = manifold.to_mesh64()
-    return Solid(Mesh(mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)))
-
-
 def wedge():
     """Half of a cube of side 4, cut along a diagonal plane."""
     points = np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0], [0, 0, 4], [0, 4, 4]])
-    return solid(Manifold.hull_points(points))
+    return volume_of_solid(Manifold.hull_points(points))
 
 
 def channel():
     """A block of 6 x 4 x 4 with a channel 2 wide and 3 deep along y, open at the top."""
-    return solid(Manifold.cube([6, 4, 4]) - Manifold.cube([2, 4, 3]).translate([2, 0, 1]))
+    return volume_of_solid(Manifold.cube([6, 4, 4]) - Manifold.cube([2, 4, 3]).translate([2, 0, 1]))
 
 
 def bar():
@@ -78,8 +72,8 @@ def test_a_bar_goes_into_the_channel_of_a_block():
 
 @pytest.mark.parametrize("clearance", [0.0, 0.5, 3.0])
 def test_curved_and_concave_parts_keep_the_clearance(clearance):
-    ball = solid(Manifold.sphere(3.0, 12))
-    cross = solid(
+    ball = volume_of_solid(Manifold.sphere(3.0, 12))
+    cross = volume_of_solid(
         Manifold.batch_boolean([Manifold.cube([8, 2, 2], True), Manifold.cube([2, 8, 2], True)], OpType.Add)
     )
     size = np.array([16.0, 16, 200]) + 2 * clearance
@@ -91,9 +85,11 @@ def test_curved_and_concave_parts_keep_the_clearance(clearance):
 @pytest.mark.parametrize("clearance", [0.0, 0.5, 3.0])
 def test_layouts_found_with_voxels_keep_the_clearance(clearance, monkeypatch):
     monkeypatch.setattr(no_fit, "MOST_CORNER_PAIRS", 0)
-    ball = solid(Manifold.sphere(5.0, 16))
-    ring = solid(Manifold.revolve(CrossSection.circle(1.5, 8).translate([6, 0]), 16))
-    bracket = solid(Manifold.cube([12, 3, 9]) + Manifold.cube([12, 10, 3]) - Manifold.cylinder(20, 2.0))
+    ball = volume_of_solid(Manifold.sphere(5.0, 16))
+    ring = volume_of_solid(Manifold.revolve(CrossSection.circle(1.5, 8).translate([6, 0]), 16))
+    bracket = volume_of_solid(
+        Manifold.cube([12, 3, 9]) + Manifold.cube([12, 10, 3]) - Manifold.cylinder(20, 2.0)
+    )
     size = np.array([24.0, 24, 400]) + 2 * clearance
     items = items_of(*[ball] * 3, *[ring] * 3, *[bracket] * 3, orientations=HALF_TURN)
     _, packing, _ = pack(items, size, work=15.0, clearance=clearance, lift=clearance)
@@ -102,8 +98,10 @@ def test_layouts_found_with_voxels_keep_the_clearance(clearance, monkeypatch):
 
 def test_the_tallest_curved_part_is_a_bound_that_is_met_in_spite_of_the_rounding_of_pieces():
     """The check of claims refuses a bound above the height, and an optimal packing above its bound."""
-    tower = solid(Manifold.cylinder(31.7, 3.1, 4.3, 48) - Manifold.cylinder(40.0, 2.2, 2.2, 48))
-    _, packing, height = pack(items_of(tower, solid(Manifold.sphere(5.0, 32))), (30, 30, 99), work=5.0)
+    tower = volume_of_solid(Manifold.cylinder(31.7, 3.1, 4.3, 48) - Manifold.cylinder(40.0, 2.2, 2.2, 48))
+    _, packing, height = pack(
+        items_of(tower, volume_of_solid(Manifold.sphere(5.0, 32))), (30, 30, 99), work=5.0
+    )
     assert packing.status == "optimal"
     assert height == pytest.approx(31.7, abs=1e-6)
 
