@@ -1,9 +1,8 @@
 """With interlocking forbidden, the parts of every packing can be taken out, whichever packer made it."""
 
-from typing import Any
-
 import numpy as np
 import pytest
+from tests.shared.packers import PACKERS, accepted_by, packed_by
 from tests.shared.removal import box
 from tests.shared.solids import volume_of_solid
 
@@ -11,25 +10,9 @@ from amprep.checks.packing.removal import check_removal_order
 from amprep.checks.packing.volumes_placed import PlacedVolume, check_packing
 from amprep.geometry.removal.blocking import Blocking
 from amprep.geometry.removal.order import DIRECTIONS, find_removal_order
-from amprep.host import Host
-from amprep.model import Boxes, BuildVolume, Item, Packing, PackingProblem, Stop, silent
+from amprep.model import Boxes, BuildVolume, Item, PackingProblem, Stop
 from amprep.repacking.interlocking import free_locked_items
 from amprep.repacking.volume_bodies import VolumeBodies
-
-HOST = Host.load()
-PACKERS = sorted(HOST.offers("packer"))
-
-BUDGETS: dict[str, dict[str, Any]] = {
-    "annealing": {"moves": 30},
-    "auto": {"work": 5.0},
-    "block-building": {"work": 5.0},
-    "ip": {"effort": 0.001},
-    "ip-local-search": {"effort": 0.001, "steps": 2},
-    "column-generation": {"effort": 0.001, "proof": 5.0},
-    "plates": {"work": 5.0, "failures": 2},
-    "separation": {"work": 2.0},
-}
-"""Small budgets of work: the promise does not depend on them."""
 
 CORNERS = (
     np.array([[0, 0, 0], [0, 0, 0], [0, 0, 8]], float),
@@ -56,8 +39,7 @@ def order_of(problem, build):
 
 @pytest.mark.parametrize("packer", PACKERS)
 def test_all_parts_can_be_taken_out(packer):
-    listed = HOST.choose("packer", packer)
-    accepts = listed.offer.accepts
+    accepts = accepted_by(packer)
     volume = item_volume(accepts)
     problem = PackingProblem(
         tuple(Item(0, copy, volume, 1.0) for copy in range(8)),
@@ -67,10 +49,8 @@ def test_all_parts_can_be_taken_out(packer):
         stacking=True in accepts.stacking,
         interlocking="forbid",
     )
-    params = HOST.params(listed, BUDGETS.get(packer, {}))
-    rng = np.random.default_rng(1)
-    packing: Packing = HOST.call(listed, problem, params=params, rng=rng, stop=Stop(), progress=silent)
-    freed = free_locked_items(problem, packing, Stop()).packing
+    freed = free_locked_items(problem, packed_by(packer, problem), Stop()).packing
+    assert freed.builds
     assert check_packing(problem, freed) == []
     for build in freed.builds:
         blocking, order = order_of(problem, build)

@@ -1,31 +1,14 @@
 """Every packer on offer keeps the promise of a packing, on generated problems that it says it accepts."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
+from tests.shared.packers import PACKERS, accepted_by, packed_by
 
 from amprep.checks.packing.volumes_placed import check_packing
-from amprep.host import Host
-from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop, silent
-
-HOST = Host.load()
-PACKERS = sorted(HOST.offers("packer"))
-
-BUDGETS: dict[str, dict[str, Any]] = {
-    "annealing": {"moves": 50},
-    "auto": {"work": 20.0},
-    "block-building": {"work": 20.0},
-    "ip": {"effort": 0.005},
-    "ip-local-search": {"effort": 0.002, "steps": 4},
-    "column-generation": {"effort": 0.001, "proof": 20.0},
-    "plates": {"work": 20.0, "failures": 3},
-    "separation": {"work": 5.0},
-}
-"""Smaller budgets of work for packers that solve programs or search long: their promise does not depend on it."""
+from amprep.model import Boxes, BuildVolume, Item, Orientations, PackingProblem, Placement, Stop
 
 TURN = {axis: np.roll(np.roll([[1, 0, 0], [0, 0, -1], [0, 1, 0]], axis, 0), axis, 1) for axis in range(3)}
 AXIS_TURNS = np.array([np.eye(3), TURN[2], TURN[0], TURN[1], TURN[2] @ TURN[0], TURN[0] @ TURN[2]], float)
@@ -86,36 +69,23 @@ def problems(draw, accepts):
     )
 
 
-def run(packer, problem, stop=None):
-    listed = HOST.choose("packer", packer)
-    rng = np.random.default_rng(1)
-    return HOST.call(
-        listed,
-        problem,
-        params=HOST.params(listed, BUDGETS.get(packer, {})),
-        rng=rng,
-        stop=stop or Stop(),
-        progress=silent,
-    )
-
-
 @pytest.mark.parametrize("packer", PACKERS)
 @examples(80)
 @given(data=st.data())
 def test_a_packing_keeps_its_promise(packer, data):
-    problem = data.draw(problems(HOST.choose("packer", packer).offer.accepts))
-    assert check_packing(problem, run(packer, problem)) == []
+    problem = data.draw(problems(accepted_by(packer)))
+    assert check_packing(problem, packed_by(packer, problem)) == []
 
 
 @pytest.mark.parametrize("packer", PACKERS)
 @examples(30)
 @given(data=st.data())
 def test_what_stands_already_stays_and_is_avoided(packer, data):
-    accepts = HOST.choose("packer", packer).offer.accepts
+    accepts = accepted_by(packer)
     if not accepts.fixed:
         pytest.skip("accepts no fixed placements")
     problem = data.draw(problems(accepts))
-    first = run(packer, problem)
+    first = packed_by(packer, problem)
     assume(first.builds and len(first.builds[0]) > 1)
     kept = first.builds[0][:: data.draw(st.integers(1, 3))]
     fixed = tuple(Placement(p.item, p.rotation, p.translation) for p in kept)
@@ -128,7 +98,7 @@ def test_what_stands_already_stays_and_is_avoided(packer, data):
         problem.lift,
         problem.stacking,
     )
-    assert check_packing(with_fixed, run(packer, with_fixed)) == []
+    assert check_packing(with_fixed, packed_by(packer, with_fixed)) == []
 
 
 @pytest.mark.parametrize("packer", PACKERS)
@@ -137,12 +107,12 @@ def test_the_same_seed_gives_the_same_packing(packer):
     items = tuple(
         Item(i, 0, Boxes(np.zeros((1, 3)), s[None]), 1.0) for i, s in enumerate(rng.uniform(2, 9, (30, 3)))
     )
-    accepts = HOST.choose("packer", packer).offer.accepts
+    accepts = accepted_by(packer)
     objective = "builds" if "builds" in accepts.objectives else sorted(accepts.objectives)[0]
     problem = PackingProblem(
         items, BuildVolume(np.full(3, 20.0)), objective, stacking=True in accepts.stacking
     )
-    one, other = run(packer, problem), run(packer, problem)
+    one, other = packed_by(packer, problem), packed_by(packer, problem)
     assert [[p.matrix.tolist() for p in b] for b in one.builds] == [
         [p.matrix.tolist() for p in b] for b in other.builds
     ]
@@ -154,9 +124,9 @@ def test_a_packer_that_is_stopped_at_once_still_keeps_its_promise(packer):
     items = tuple(
         Item(i, 0, Boxes(np.zeros((1, 3)), s[None]), 1.0) for i, s in enumerate(rng.uniform(2, 9, (60, 3)))
     )
-    accepts = HOST.choose("packer", packer).offer.accepts
+    accepts = accepted_by(packer)
     objective = "builds" if "builds" in accepts.objectives else sorted(accepts.objectives)[0]
     problem = PackingProblem(
         items, BuildVolume(np.full(3, 20.0)), objective, stacking=True in accepts.stacking
     )
-    assert check_packing(problem, run(packer, problem, Stop.after(0.0))) == []
+    assert check_packing(problem, packed_by(packer, problem, Stop.after(0.0))) == []
