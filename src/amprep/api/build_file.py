@@ -35,7 +35,7 @@ class Verification:
 
     def __str__(self) -> str:
         """One line per broken promise."""
-        lines = (f"{each.promise}: {each.subject}: {each.message}" for each in self.violations)
+        lines = map(str, self.violations)
         return "\n".join(lines) or "every promise holds"
 
 

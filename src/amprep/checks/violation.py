@@ -20,3 +20,7 @@ class Violation:
     promise: str
     subject: str
     message: str
+
+    def __str__(self) -> str:
+        """Return the violation in one line."""
+        return f"{self.promise}: {self.subject}: {self.message}"

@@ -100,10 +100,7 @@ def _issues(record: RunRecord) -> list[str]:
     lines = list(record.warnings)
     lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in _lost(record)]
     for number, entry in enumerate(record.builds, start=1):
-        lines += [
-            f"build {number}: {found.promise}: {found.subject}: {found.message}"
-            for found in entry.verification or ()
-        ]
+        lines += [f"build {number}: {found}" for found in entry.verification or ()]
         lines += [f"build {number}: unsupported: {line}" for line in _unsupported(entry)]
         lines += [f"build {number}: {line}" for line in _trapped_powder(entry)]
         lines += [f"build {number}: {line}" for line in hindrances_of(entry)]

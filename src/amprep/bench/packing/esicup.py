@@ -2,7 +2,6 @@
 
 import json
 import re
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.bench.memory import peak_mb, reset_peak
+from amprep.bench.measuring import Spent, measured
 from amprep.bench.packing.run import PackerRun
 from amprep.checks.packing.parts_placed import check_placed
 from amprep.checks.packing.volumes_placed import check_packing
@@ -198,11 +197,8 @@ class EsicupBench:
     ) -> EsicupResult:
         """Pack with a seed, a time limit and parameters of the packer, and check the packing on the meshes."""
         run = PackerRun(self.host, self.packer, dict(params), seconds, seed)
-        reset_peak()
-        start, process = time.monotonic(), time.process_time()
-        packing = run.pack(self.problem)
-        spent = time.monotonic() - start, time.process_time() - process
-        return self._result(seed, packing, spent, peak_mb())
+        packing, spent = measured(lambda: run.pack(self.problem))
+        return self._result(seed, packing, spent)
 
     def _volume(self, part: Part) -> BoundingVolume:
         """Return the bounding volume that the packer asks for; the exact pieces of a mesh that is not a solid."""
@@ -214,9 +210,7 @@ class EsicupBench:
         params, rng = self.host.params(maker, {}), np.random.default_rng(0)
         return as_turned(self.host.call(maker, part, params=params, rng=rng, stop=Stop())).volume
 
-    def _result(
-        self, seed: int, packing: Packing, spent: tuple[float, float], memory: int | None
-    ) -> EsicupResult:
+    def _result(self, seed: int, packing: Packing, spent: Spent) -> EsicupResult:
         height = objective_reached(self.problem, packing)
         placed = [placement.item for build in packing.builds for placement in build]
         of_part = [
@@ -231,10 +225,8 @@ class EsicupBench:
             ratio=None if record is None or packing.unplaced else height / record,
             density=total / (area * height) if height > 0.0 else 0.0,
             unplaced=len(packing.unplaced),
-            seconds=spent[0],
-            process_seconds=spent[1],
-            memory_mb=memory,
             faults=self._faults(packing),
+            **spent._asdict(),
         )
 
     @property
@@ -251,7 +243,7 @@ class EsicupBench:
                 part = self.instance.parts[item.part]
                 placed.append(PlacedPart(f"{part.name}-{item.copy + 1}", part, placement.matrix))
             found += check_placed(placed, BuildSettings("esicup", self.problem.space), Stop())
-        return tuple(f"{fault.promise}: {fault.subject} {fault.message}" for fault in found)
+        return tuple(map(str, found))
 
 
 def _hull(points: Floats) -> Mesh:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from amprep.bench.measuring import Spent, measured
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.host import Host
 from amprep.measures.bounding_volume import volume_of
@@ -123,10 +124,8 @@ class PackerRun:
     def run(self, instance: PackingInstance) -> PackingResult:
         """Pack an instance and check the packing."""
         self.host.refuse_mismatch(self.packer, instance.problem)
-        start, worked = time.monotonic(), time.process_time()
-        packing = self.pack(instance.problem)
-        worked = time.process_time() - worked
-        return replace(_result(instance, packing, time.monotonic() - start), processor_seconds=worked)
+        packing, spent = measured(lambda: self.pack(instance.problem))
+        return _result(instance, packing, spent)
 
     def pack(self, problem: PackingProblem) -> Packing:
         """Pack a problem; only the time limit and the packer itself end the search."""
@@ -202,9 +201,8 @@ def fill_ratio(problem: PackingProblem, packing: Packing) -> float:
     return total / (problem.space.volume_mm3 * max(len(packing.builds), 1))
 
 
-def _result(instance: PackingInstance, packing: Packing, seconds: float) -> PackingResult:
+def _result(instance: PackingInstance, packing: Packing, spent: Spent) -> PackingResult:
     problem = instance.problem
-    faults = check_packing(problem, packing)
     return PackingResult(
         name=instance.name,
         measure=_MEASURES[problem.objective],
@@ -214,7 +212,8 @@ def _result(instance: PackingInstance, packing: Packing, seconds: float) -> Pack
         unplaced=len(packing.unplaced),
         status=packing.status,
         stop_reason=packing.stop_reason,
-        seconds=seconds,
-        faults=tuple(f"{fault.promise}: {fault.subject} {fault.message}" for fault in faults),
+        seconds=spent.seconds,
+        processor_seconds=spent.process_seconds,
+        faults=tuple(map(str, check_packing(problem, packing))),
         found_by=packing.found_by,
     )

@@ -1,13 +1,12 @@
 """Pack the same shadows with the 2D nesting package spyrrow, for comparison."""
 
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.bench.memory import peak_mb, reset_peak
+from amprep.bench.measuring import measured
 from amprep.bench.plates.run import PlatesResult, PlatesScene, judge_plates
 from amprep.checks.packing.shadows import shadow_of
 from amprep.errors import InputError
@@ -70,20 +69,8 @@ def spyrrow_plates(scene: PlatesScene, *, seconds: float, seed: int) -> PlatesRe
     plate_area = float(np.prod(scene.space.size[:2]))
     expected = int(np.ceil(sum(each.area for each in outlines) / (0.75 * plate_area)))
     trial_seconds = max(1, int(seconds / (TRIALS * expected)))
-    reset_peak()
-    start, process = time.monotonic(), time.process_time()
-    fitting = [each for each in outlines if _fits_alone(each, scene, angles[each.part])]
-    left, plates = sorted(fitting, key=lambda each: -each.area), []
-    while left:
-        placed = _fullest_plate(left, scene, angles, trial_seconds, seed)
-        if not placed:
-            break
-        plates.append(placed)
-        taken = {(each.outline.part, each.outline.copy) for each in placed}
-        left = [each for each in left if (each.part, each.copy) not in taken]
-    spent, memory = (time.monotonic() - start, time.process_time() - process), peak_mb()
-    checked = time.process_time()
-    judged = judge_plates(scene, [_placed_parts(scene, plate) for plate in plates])
+    plates, spent = measured(lambda: _all_plates(outlines, scene, angles, trial_seconds, seed))
+    judged, checked = measured(lambda: judge_plates(scene, [_placed_parts(scene, plate) for plate in plates]))
     return PlatesResult(
         packer="spyrrow",
         seed=seed,
@@ -92,13 +79,31 @@ def spyrrow_plates(scene: PlatesScene, *, seconds: float, seed: int) -> PlatesRe
         bound_for="",
         filled=judged.filled,
         unplaced=len(outlines) - sum(len(plate) for plate in plates),
-        seconds=spent[0],
-        process_seconds=spent[1],
-        memory_mb=memory,
-        check_seconds=time.process_time() - checked,
+        check_seconds=checked.process_seconds,
         pairs=judged.pairs,
         faults=judged.faults,
+        **spent._asdict(),
     )
+
+
+def _all_plates(
+    outlines: Sequence[PolygonItem],
+    scene: PlatesScene,
+    angles: Sequence[list[float] | None],
+    seconds: int,
+    seed: int,
+) -> list[list[PlacedPolygon]]:
+    """Return plates, filled one after another, until no outline is left that fits one."""
+    fitting = [each for each in outlines if _fits_alone(each, scene, angles[each.part])]
+    left, plates = sorted(fitting, key=lambda each: -each.area), []
+    while left:
+        placed = _fullest_plate(left, scene, angles, seconds, seed)
+        if not placed:
+            break
+        plates.append(placed)
+        taken = {(each.outline.part, each.outline.copy) for each in placed}
+        left = [each for each in left if (each.part, each.copy) not in taken]
+    return plates
 
 
 def _fits_alone(item: PolygonItem, scene: PlatesScene, angles: list[float] | None) -> bool:

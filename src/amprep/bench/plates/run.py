@@ -1,6 +1,5 @@
 """Pack parts on as few plates as possible, and check every plate as polygons and on the meshes."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from amprep.bench.memory import peak_mb, reset_peak
+from amprep.bench.measuring import Spent, measured
 from amprep.bench.packing.run import PackerRun
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.packing.parts_placed import judge_placed
@@ -149,21 +148,11 @@ class PlatesBench:
     def run(self, seed: int, seconds: float) -> PlatesResult:
         """Pack with a seed and a time limit, and check every plate."""
         run = PackerRun(self.host, self.packer, {}, seconds, seed)
-        reset_peak()
-        start, process = time.monotonic(), time.process_time()
-        packing = run.pack(self.problem)
-        spent = time.monotonic() - start, time.process_time() - process
-        return self._result(seed, packing, spent, peak_mb())
+        packing, spent = measured(lambda: run.pack(self.problem))
+        return self._result(seed, packing, spent)
 
-    def _result(
-        self, seed: int, packing: Packing, spent: tuple[float, float], memory: int | None
-    ) -> PlatesResult:
-        start = time.process_time()
-        plates = placed_builds(self.scene.parts, self.problem, packing) if any(packing.builds) else []
-        faults = [
-            f"{each.promise}: {each.subject} {each.message}" for each in check_packing(self.problem, packing)
-        ]
-        judged = judge_plates(self.scene, plates)
+    def _result(self, seed: int, packing: Packing, spent: Spent) -> PlatesResult:
+        (faults, judged), checked = measured(lambda: self._judged(packing))
         return PlatesResult(
             packer=self.packer.offer.name,
             seed=seed,
@@ -172,13 +161,16 @@ class PlatesBench:
             bound_for=packing.bound_for,
             filled=judged.filled,
             unplaced=len(packing.unplaced),
-            seconds=spent[0],
-            process_seconds=spent[1],
-            memory_mb=memory,
-            check_seconds=time.process_time() - start,
+            check_seconds=checked.process_seconds,
             pairs=judged.pairs,
             faults=(*faults, *judged.faults),
+            **spent._asdict(),
         )
+
+    def _judged(self, packing: Packing) -> tuple[list[str], "JudgedPlates"]:
+        """Return the violations of the bounding volumes, and those of the plates."""
+        plates = placed_builds(self.scene.parts, self.problem, packing) if any(packing.builds) else []
+        return list(map(str, check_packing(self.problem, packing))), judge_plates(self.scene, plates)
 
 
 def ratios_to(name: str, results: Sequence[PlatesResult]) -> dict[str, float]:
@@ -212,6 +204,6 @@ def judge_plates(scene: PlatesScene, plates: Sequence[Sequence[PlacedPart]]) -> 
         violations, counts = judge_placed(plate, settings, Stop())
         pairs += counts
         for each in [*check_shadows(shadows, scene.space, scene.clearance), *violations]:
-            found.append(f"plate {number}: {each.promise}: {each.subject} {each.message}")
+            found.append(f"plate {number}: {each}")
     area = float(np.prod(scene.space.size[:2])) * max(len(plates), 1)
     return JudgedPlates(tuple(found), pairs, covered / area)
