@@ -1,5 +1,6 @@
 """The packing problem, and the packing that solves it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -170,6 +171,8 @@ class Packing:
     found_by
         The method that found the packing, where the packer has several: `ip` names its solver, or the heuristic that
         the solver started from. Else empty.
+    excess
+        For each solid that is placed as convex pieces, their total volume over that of the solid, less 1.
     """
 
     builds: tuple[tuple[Placement, ...], ...]
@@ -180,3 +183,4 @@ class Packing:
     found_by: str = ""
     bound_for: BoundFor = "volumes"
     steps: tuple[PackingStep, ...] = ()
+    excess: Mapping[int, float] = field(default_factory=dict)

@@ -97,6 +97,7 @@ def run_record(
         parts_bound=packed.parts_bound,
         packed_as=kind_of_volumes(item.volume for item in items),
         steps=packing.steps,
+        excess=_excess(loaded, packed),
         warnings=(*loaded.resolved.host.warnings, *left, *advice),
         notes=(
             *(f"{part.name}: {note}" for part in loaded.parts for note in part.notes),
@@ -105,6 +106,20 @@ def run_record(
         ),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )
+
+
+def _excess(loaded: LoadedParts, packed: PackedParts) -> dict[str, float]:
+    """Return the greatest excess of the convex pieces of each placed part by its name, sorted.
+
+    Surfaces have none, since they have no volume.
+    """
+    items, found = packed.problem.items, packed.packing.excess
+    greatest: dict[str, float] = {}
+    for number in (each.item for build in packed.packing.builds for each in build if each.item in found):
+        part = loaded.parts[items[number].part]
+        if part.is_solid:
+            greatest[part.name] = max(found[number], greatest.get(part.name, 0.0))
+    return dict(sorted(greatest.items()))
 
 
 def _volumes(packed: PackedParts, number: int) -> tuple[ShownVolume, ...]:

@@ -49,6 +49,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "parts_bound": record.parts_bound,
         "packed_as": record.packed_as,
         "steps": [_step(step) for step in record.steps],
+        "excess": dict(record.excess),
         "gap": gap_of(record),
         "total_value": total_value(record) if fill else None,
         "builds": [_build(entry, fill) for entry in record.builds],

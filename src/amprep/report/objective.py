@@ -11,6 +11,9 @@ from amprep.report.record import RunRecord
 ROUNDING = 1e-9
 """Gap that is rounding."""
 
+EXACT = 5e-4
+"""Excess of convex pieces below which it is 0.0 % when rounded."""
+
 
 @dataclass(frozen=True)
 class PartValue:
@@ -68,6 +71,22 @@ def step_rows(record: RunRecord) -> list[tuple[str, str, str, str]]:
         (step.method, _amount_reached(record, step.reached), f"{step.height:.1f} mm", f"{step.seconds:.1f} s")
         for step in record.steps
     ]
+
+
+def excess_words(record: RunRecord) -> str:
+    """Return by how much the convex pieces that were packed are larger than the parts; empty without such pieces."""
+    parts = [placed.part for entry in record.builds for placed in entry.build.parts]
+    packed = [part for part in parts if part.name in record.excess]
+    total = sum(part.volume_mm3 for part in packed)
+    if not total > 0.0:
+        return ""
+    wasted = sum(record.excess[part.name] * part.volume_mm3 for part in packed)
+    worst = max(packed, key=lambda part: record.excess[part.name])
+    most = record.excess[worst.name]
+    if most < EXACT:
+        return "packed as convex pieces as large as the parts"
+    words = f"packed as convex pieces {100.0 * wasted / total:.1f} % larger than the parts"
+    return f"{words}; most: {worst.name}, {100.0 * most:.1f} %"
 
 
 def objective_words(record: RunRecord) -> str:

@@ -216,6 +216,8 @@ class RunRecord(Summarised):
         What was packed: ``enclosing boxes``, ``boxes``, ``convex pieces`` or ``bounding volumes``.
     steps
         Steps of the packer, where it has several.
+    excess
+        For each part that was packed as convex pieces, their volume over that of the part, less 1.
     warnings, notes
         One sentence each: what needs attention; what was repaired or found in an input.
     settings
@@ -247,6 +249,7 @@ class RunRecord(Summarised):
     parts_bound: float | None = None
     packed_as: str = "bounding volumes"
     steps: tuple[PackingStep, ...] = ()
+    excess: Mapping[str, float] = field(default_factory=dict)
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 from amprep.checks.packing.pairs import PairCounts
 from amprep.model.counting import counted
-from amprep.report.objective import amount, objective_words, part_values, status_words, step_words
+from amprep.report.objective import (
+    amount,
+    excess_words,
+    objective_words,
+    part_values,
+    status_words,
+    step_words,
+)
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
 from amprep.report.removal_order import hindrances_of, waiting_parts
 
@@ -26,6 +33,8 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
     if record.steps:
         blocks.append(Text(printable(step_words(record)), style="dim"))
+    if pieces := excess_words(record):
+        blocks.append(Text(printable(pieces), style="dim"))
     blocks += [Text(printable(line), style="dim") for line in _listed(_values(record), "in the report")]
     blocks += [Text(printable(line), style="dim") for line in _listed(_waiting(record), "in the report")]
     issues = _listed(_issues(record), "in the report")

@@ -132,6 +132,24 @@ def test_the_steps_of_a_packer_are_shown_with_what_they_gained(filled):
     assert [each["reached"] for each in to_json(record)["steps"]] == [3.0, 2.0]
 
 
+def test_what_convex_pieces_cost_is_said_in_all_and_for_the_worst_part(filled):
+    parts = {placed.part.name: placed.part for entry in filled.builds for placed in entry.build.parts}
+    copies = [placed.part for entry in filled.builds for placed in entry.build.parts]
+    excess = {name: 0.05 * (k + 1) for k, name in enumerate(parts)}
+    whole = sum(part.volume_mm3 for part in copies)
+    larger = sum((1.0 + excess[part.name]) * part.volume_mm3 for part in copies)
+    record, worst = replace(filled, excess=excess), list(parts)[-1]
+    words = f"convex pieces {100 * (larger / whole - 1):.1f} % larger than the parts"
+    words = f"{words}; most: {worst}, {100 * excess[worst]:.1f} %"
+    assert words in printed(record)
+    assert words in html_text(record)
+    assert to_json(record)["excess"] == excess
+    exact = replace(filled, excess=dict.fromkeys(parts, 0.0))
+    assert "packed as convex pieces as large as the parts" in printed(exact)
+    assert "convex pieces" not in printed(filled)
+    assert "convex pieces" not in printed(replace(filled, builds=(), excess=excess))
+
+
 def test_large_values_keep_all_digits_before_the_point():
     assert [amount(value) for value in (1234567.8, 99999.5, 0.125, 0.0)] == [
         "1,234,568",

@@ -4,6 +4,7 @@ from html import escape
 
 from amprep.report.objective import (
     amount,
+    excess_words,
     gap_of,
     objective_words,
     part_values,
@@ -44,14 +45,18 @@ def objective_figures(record: RunRecord) -> list[tuple[str, str, bool]]:
 
 
 def packing_section(record: RunRecord) -> str:
-    """Return what the packing reached, what its bounds bound, and the steps of the packer."""
+    """Return what the packing reached, what its bounds bound, the excess of pieces, and the steps of the packer."""
     found = filter(None, (status_words(record).capitalize(), objective_words(record)))
     words = "" if record.reached is None else ": ".join(found)
     steps: list[tuple[Cell, ...]] = [
         (name, *(("number", each) for each in figures)) for name, *figures in step_rows(record)
     ]
     headings = ("Step", "Reached|", "Height|", "Duration|")
-    return (f"<p>{escape(words)}.</p>" if words else "") + (table(headings, steps) if steps else "")
+    pieces = excess_words(record)
+    sentences = [found for found in (words, pieces[:1].upper() + pieces[1:]) if found]
+    return "".join(f"<p>{escape(found)}.</p>" for found in sentences) + (
+        table(headings, steps) if steps else ""
+    )
 
 
 def values_section(record: RunRecord) -> str:

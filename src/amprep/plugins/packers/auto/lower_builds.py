@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,14 @@ LOWER = 1e-6
 """Height (mm) by which a build must be lower to replace another."""
 
 
+class LowBuild(NamedTuple):
+    """The placements of a build, their height (mm), and the excess of the convex pieces of items (`Packing.excess`)."""
+
+    placements: tuple[Placement, ...]
+    height: float
+    excess: dict[int, float]
+
+
 def lower_builds(
     problem: PackingProblem,
     packing: Packing,
@@ -37,15 +46,21 @@ def lower_builds(
     The last build, which is least full, comes first. Each build is packed as enclosing boxes, and if that leaves it
     higher than its bound, as true shapes.
     """
-    builds = list(packing.builds)
+    builds = [_as_it_is(problem, packing, build) for build in packing.builds]
     share = 0.3 * params.separation / max(len(builds), 1)
     for number in reversed(range(len(builds))):
         if stop():
             break
         part = stop.within(stop.remaining() / (number + 1)) if stop.deadline is not None else stop
         builds[number] = _lowered(problem, builds[number], number, pack_boxes, params, share, rng, part)
-    lowered = tuple(builds)
-    return packing if lowered == packing.builds else replace(packing, builds=lowered)
+    lowered = tuple(build.placements for build in builds)
+    excess = {item: value for build in builds for item, value in build.excess.items()}
+    return packing if lowered == packing.builds else replace(packing, builds=lowered, excess=excess)
+
+
+def _as_it_is(problem: PackingProblem, packing: Packing, build: tuple[Placement, ...]) -> LowBuild:
+    excess = {each.item: packing.excess[each.item] for each in build if each.item in packing.excess}
+    return LowBuild(build, greatest_height(problem, build), excess)
 
 
 def heights_of(problem: PackingProblem, packing: Packing) -> list[float]:
@@ -55,30 +70,30 @@ def heights_of(problem: PackingProblem, packing: Packing) -> list[float]:
 
 def _lowered(
     problem: PackingProblem,
-    build: tuple[Placement, ...],
+    build: LowBuild,
     number: int,
     pack_boxes: Callable[..., PackerResult],
     params: AutoParams,
     work: float,
     rng: np.random.Generator,
     stop: Stop,
-) -> tuple[Placement, ...]:
+) -> LowBuild:
     """Return the lowest placements of the items of a build that are found."""
-    items = [placement.item for placement in build]
+    items = [placement.item for placement in build.placements]
     own = in_lists(_alone(problem, items, number))
-    bound, height = parts_bound(own), greatest_height(problem, build)
-    if height <= bound * (1.0 + NEAR):
+    bound = parts_bound(own)
+    if build.height <= bound * (1.0 + NEAR):
         return build
     instance = prepare(own, enclosing=True)
     budget = replace(params, work=BOXES_FRACTION * params.work, patience=0)
     found = pack_boxes(instance, params=budget, rng=rng, stop=stop, progress=silent)
-    build, height = _better(problem, build, items, as_packing(instance, found))
-    if height <= bound * (1.0 + NEAR) or work <= 0.0 or stop():
+    build = _better(problem, build, items, as_packing(instance, found))
+    if build.height <= bound * (1.0 + NEAR) or work <= 0.0 or stop():
         return build
     from amprep.plugins.packers.separation import pack_separation
 
     shaped = pack_separation(own, params=SeparationParams(work=work), rng=rng, stop=stop, progress=silent)
-    return _better(problem, build, items, shaped)[0]
+    return _better(problem, build, items, shaped)
 
 
 def _alone(problem: PackingProblem, items: list[int], number: int) -> PackingProblem:
@@ -89,13 +104,11 @@ def _alone(problem: PackingProblem, items: list[int], number: int) -> PackingPro
     return replace(problem, items=own, objective="height", fixed=fixed)
 
 
-def _better(
-    problem: PackingProblem, build: tuple[Placement, ...], items: list[int], found: Packing
-) -> tuple[tuple[Placement, ...], float]:
-    """Return the lower one of a build and a packing of its items, and its height (mm)."""
-    height = greatest_height(problem, build)
+def _better(problem: PackingProblem, build: LowBuild, items: list[int], found: Packing) -> LowBuild:
+    """Return the lower one of a build and a packing of its items."""
     if found.unplaced or len(found.builds) != 1:
-        return build, height
+        return build
     placed = tuple(replace(each, item=items[each.item]) for each in found.builds[0])
     lower = greatest_height(problem, placed)
-    return (placed, lower) if lower < height - LOWER else (build, height)
+    excess = {items[item]: value for item, value in found.excess.items()}
+    return LowBuild(placed, lower, excess) if lower < build.height - LOWER else build

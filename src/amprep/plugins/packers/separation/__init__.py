@@ -14,6 +14,7 @@ from amprep.measures.bounding_volume import points_of
 from amprep.measures.objective import objective_reached
 from amprep.measures.parts_bound import parts_bound
 from amprep.measures.too_large import proved_too_large
+from amprep.model.bounding_volume import Solid
 from amprep.model.control import Progress, Stop
 from amprep.model.packing import Packing, PackingProblem, Placement, Status, Unplaced
 from amprep.plugins.packers.params import SeparationParams
@@ -90,8 +91,15 @@ def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> 
         bound=bound,
         stop_reason=_stop_reason(budget),
         bound_for=problem.bound_for,
+        excess=_excess(instance, placed),
     )
     return replace(packing, status=_status(problem, packing, infeasible=bool(too_large)))
+
+
+def _excess(instance: ShapeInstance, placed: Placed) -> dict[int, float]:
+    """Return the excess of the pieces of each placed solid; other volumes are pieces themselves."""
+    items = instance.problem.items
+    return {k: float(instance.excess[k]) for k in placed.items.tolist() if isinstance(items[k].volume, Solid)}
 
 
 def _stop_reason(budget: WorkBudget) -> str:

@@ -30,6 +30,7 @@ def better_as_boxes(
         unplaced=tuple(unplaced.get(each.item, each) for each in boxes.unplaced),
         status="infeasible" if packing.status == "infeasible" else "feasible",
         found_by="extreme-points",
+        excess={},
     )
 
 

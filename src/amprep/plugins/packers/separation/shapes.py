@@ -87,6 +87,8 @@ class ShapeInstance:
         ``(n,)`` mm3.
     pieces
         For each item the convex pieces of its volume, not turned.
+    excess
+        ``(n,)`` total volume of these pieces over that of the volume, less 1.
     """
 
     problem: PackingProblem
@@ -97,6 +99,7 @@ class ShapeInstance:
     too_large: Bools
     volumes: Floats
     pieces: tuple[tuple[Floats, ...], ...]
+    excess: Floats
 
     @cached_property
     def size(self) -> Floats:
@@ -162,7 +165,10 @@ def prepare_shapes(problem: PackingProblem, stop: Stop) -> ShapeInstance:
     free[[placement.item for placement in problem.fixed]] = False
     volumes = np.array([row[2] for row in rows], np.float64)
     pieces = tuple(found[id(item.volume)].pieces for item in problem.items)
-    return ShapeInstance(problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes, pieces)
+    excess = np.array([found[id(item.volume)].excess for item in problem.items], np.float64)
+    return ShapeInstance(
+        problem, tuple(shapes), first, end, free & fits, free & ~fits, volumes, pieces, excess
+    )
 
 
 def _pieces(problem: PackingProblem, stop: Stop) -> dict[int, PieceSet]:

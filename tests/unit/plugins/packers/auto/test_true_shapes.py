@@ -79,6 +79,7 @@ def test_nothing_but_boxes_is_packed_where_they_are_proved_best_for_the_shapes(m
     packing = packed(problem(4, (90, 90, 50)))
     assert (packing.status, packing.bound) == ("optimal", 1.0)
     assert packing.steps[0].method == "enclosing boxes"
+    assert packing.excess == {}
     low = packed(problem(4, (90, 90, 50), "height"))
     assert (low.status, low.bound) == ("optimal", pytest.approx(20.0))
     assert len(low.steps) == 1
@@ -98,6 +99,7 @@ def test_a_build_that_need_not_be_high_is_low():
     packing = packed(given)
     assert [step.height for step in packing.steps] == [pytest.approx(40.0), pytest.approx(20.0, abs=0.1)]
     assert packing.steps[-1].method == "lower builds"
+    assert packing.excess == {0: pytest.approx(0.0, abs=1e-4), 1: pytest.approx(0.0, abs=1e-4)}
     assert overlap(given, packing) < 1e-2
     assert check_packing(given, packing) == []
 

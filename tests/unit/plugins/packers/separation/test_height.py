@@ -82,6 +82,17 @@ def test_curved_and_concave_parts_keep_the_clearance(clearance):
     assert not packing.unplaced
 
 
+def test_the_excess_of_the_pieces_of_each_solid_is_stated():
+    ball = volume_of_solid(Manifold.sphere(3.0, 32))
+    knee = volume_of_solid(Manifold.cube([6, 2, 2]) + Manifold.cube([2, 2, 6]))
+    _, packing, _ = pack(items_of(ball, ball, knee, bar()), (16, 16, 99), work=5.0)
+    assert set(packing.excess) == {0, 1, 2}, "a box is packed as it is"
+    assert packing.excess[2] == pytest.approx(0.0, abs=1e-4)
+    hull = Manifold.hull_points(ball.mesh.vertices).volume()
+    assert packing.excess[0] == packing.excess[1]
+    assert hull / ball.mesh.signed_volume - 1.0 - 1e-9 <= packing.excess[0] < 0.2
+
+
 @pytest.mark.parametrize("clearance", [0.0, 0.5, 3.0])
 def test_layouts_found_with_voxels_keep_the_clearance(clearance, monkeypatch):
     monkeypatch.setattr(no_fit, "MOST_CORNER_PAIRS", 0)
@@ -151,6 +162,7 @@ def test_without_time_for_the_shapes_their_boxes_are_packed():
     assert not packing.unplaced
     assert packing.stop_reason == "time limit"
     assert packing.bound < height <= 12.0
+    assert packing.excess == {}
 
 
 def test_a_bar_that_stands_lowest_between_zones_stays_on_the_plate():
