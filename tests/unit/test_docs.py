@@ -17,6 +17,7 @@ from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.model.supports import REASONS
+from amprep.model.supports.rules import OverhangRules, SectionRules
 from amprep.printers.catalogue import PrinterProfile
 
 ROOT = Path(__file__).parents[2]
@@ -41,7 +42,11 @@ SECTIONS = {
     "`[[part]]`": PartSettings,
     "Printers": PrinterProfile,
 }
-BY_OTHER_KEYS = {"stacking", "enabled", "strut_angle_deg", "volume_params"}
+BY_OTHER_KEYS = {
+    *("stacking", "enabled", "strut_angle_deg", "volume_params", "territory", "territory_margin_mm"),
+    *("clearance_mm", "lift_mm", "drift_ratio", "drift_mm"),
+    *(field.name for each in (OverhangRules, SectionRules) for field in fields(each)),
+}
 
 
 def python_blocks(page):

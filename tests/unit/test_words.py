@@ -37,7 +37,7 @@ REPLACED = {
     "sortings": "orderings",
     "homes": "feasible positions",
     "stock": "demand",
-    "worth": "value",
+    r"worth(?! a check)": "value",
     "standing": "obstacles",
     "heat|most_ruined": "temperature, ruin size",
     "set partitioning": "set covering",

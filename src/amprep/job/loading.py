@@ -11,13 +11,15 @@ from amprep.job.settings.job import InputSpec, Job, ReadingSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.supports import SupportSettings
+from amprep.materials.catalogue import DEFAULT_MATERIALS, find_material
+from amprep.materials.profile import MaterialProfile
 from amprep.model.build import Target
 from amprep.printers.catalogue import DEFAULT_PRINTER, Printer, find_printer, printer_from_table
 from amprep.typed import convert, make
 from amprep.validation import read_table
 
 T = TypeVar("T")
-KEYS = ("printer", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
+KEYS = ("printer", "material", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
 
 
 def job_of(inputs: Sequence[str | Path], source: str = "command line") -> Job:
@@ -97,6 +99,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         if key not in KEYS:
             raise JobError(f"{source}: unknown key {key!r}{_hint(key)}")
     printer = _printer(table.get("printer", DEFAULT_PRINTER), folder, source)
+    material = _material(table, printer, folder, source)
     parts = tuple(
         make(PartSettings, _is_table(entry, f"{source}: [[part]] {number}"), f"{source}: [[part]] {number}")
         for number, entry in enumerate(convert(table.get("part", []), tuple[Any, ...], f"{source}: part"), 1)
@@ -106,11 +109,14 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         inputs=_inputs(table, parts, folder, source),
         printer=printer,
         folder=folder,
+        material=material,
         seed=_seed(table, source),
         target=convert(table.get("target", "generic"), Target, f"{source}: target"),
         reading=_section(ReadingSettings, table, "reading", source),
         packing=_section(PackingSettings, table, "packing", source, stacking=printer.stacks),
-        supports=_section(SupportSettings, table, "supports", source, **_support_defaults(table, printer)),
+        supports=_section(
+            SupportSettings, table, "supports", source, **_support_defaults(table, printer, material)
+        ),
         cells=_cells(table, folder, source),
         parts=parts,
         source=source,
@@ -158,12 +164,25 @@ def _is_table(value: Any, where: str) -> Mapping[str, Any]:
     return checked
 
 
-def _support_defaults(table: Mapping[str, Any], printer: Printer) -> dict[str, Any]:
-    """Return the defaults that depend on the technology of the printer and on the overhang angle."""
-    section = table.get("supports", {})
-    angle = section.get("overhang_angle_deg", 45.0) if isinstance(section, Mapping) else 45.0
-    number = float(angle) if isinstance(angle, int | float) else 45.0
-    return {"enabled": printer.needs_supports, "strut_angle_deg": min(max(number, 10.0), 80.0)}
+def _support_defaults(
+    table: Mapping[str, Any], printer: Printer, material: MaterialProfile
+) -> dict[str, Any]:
+    """Return the defaults that depend on the printer, on the material, and on the overhang angle."""
+    section, defaults = table.get("supports", {}), material.support_defaults
+    angle = section.get("overhang_angle_deg") if isinstance(section, Mapping) else None
+    number = float(angle) if isinstance(angle, int | float) else material.overhang_angle_deg
+    return {**defaults, "enabled": printer.needs_supports, "strut_angle_deg": min(max(number, 10.0), 80.0)}
+
+
+def _material(
+    table: Mapping[str, Any], printer: Printer, folder: Path | None, source: str
+) -> MaterialProfile:
+    default = DEFAULT_MATERIALS[printer.technology]
+    name: str = convert(table.get("material", default), str, f"{source}: material")
+    try:
+        return find_material(name, folder)
+    except JobError as error:
+        raise JobError(f"{source}: material: {error}") from error
 
 
 def _printer(value: Any, folder: Path | None, source: str) -> Printer:

@@ -201,5 +201,5 @@ def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) ->
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
     """Return the figures of each support body of `build`."""
     cells = job.cells
-    rules = RemovalRules(cells.layer_mm, cells.density_g_cm3, cells.powder_hole_mm, cells.removability)
+    rules = RemovalRules(job.supports.layer_mm, cells.density_g_cm3, cells.powder_hole_mm, cells.removability)
     return measure_removal(build, rules)

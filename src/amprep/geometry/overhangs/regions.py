@@ -7,7 +7,11 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int32s, Int64s
 from amprep.geometry.overhangs.surface import Surface
 
-Kind = Literal["face", "edge", "tip"]
+Kind = Literal["face", "ledge", "bridge", "bore", "flat", "edge", "tip"]
+"""Kinds of overhangs. Faces are ledges, bridges, bores or flats where limits apply, else ``face``."""
+
+NOT_FACES = ("edge", "tip")
+"""Kinds of overhangs that are no faces."""
 
 
 class OverhangRegion(NamedTuple):
@@ -16,20 +20,42 @@ class OverhangRegion(NamedTuple):
     Attributes
     ----------
     kind
-        ``face``, ``edge`` or ``tip``.
+        ``edge``, ``tip``, or a kind of faces: ``ledge`` (carried on one side), ``bridge`` (on two sides), ``bore`` (an
+        arch), ``flat`` (on no side), or ``face`` where the angle alone counts.
     measure
         Area in mm2, length in mm, or 0 for a tip.
     centre
         ``(3,)`` mm, weighted by area or length.
+    size_mm
+        Length of a ledge, span of a bridge, or diameter of a bore that is the largest of the region, mm; of an edge
+        that is carried at its ends its length or span; 0 where nothing carries the region.
+    limit_mm
+        Limit of that size.
+    starts_in_air
+        Whether the part starts in the air in the region.
+    is_self_supporting
+        Whether the part itself carries all of the region.
+    angle_deg
+        Smallest angle of its faces to the plate.
+    lowest_mm
+        Height of its lowest point.
     """
 
     kind: Kind
     measure: float
     centre: Floats
+    size_mm: float = 0.0
+    limit_mm: float = 0.0
+    starts_in_air: bool = False
+    is_self_supporting: bool = False
+    angle_deg: float = 0.0
+    lowest_mm: float = 0.0
 
 
 class Overhangs(NamedTuple):
     """All overhangs of a mesh, in connected regions.
+
+    Faces, edges and tips are those that need support. Regions that the part itself carries are in `regions`, too.
 
     Attributes
     ----------
@@ -45,6 +71,8 @@ class Overhangs(NamedTuple):
         ``(t,)`` int32, vertex indices.
     tip_region
         ``(t,)`` int32.
+    beside
+        ``(b,)`` int32, other triangles of regions that need support; contacts may extend to them.
     """
 
     faces: Int32s
@@ -54,6 +82,7 @@ class Overhangs(NamedTuple):
     tips: Int32s
     tip_region: Int32s
     regions: tuple[OverhangRegion, ...]
+    beside: Int32s = np.empty(0, np.int32)
 
 
 def connected_components(start: Int64s, end: Int64s, count: int) -> Int64s:

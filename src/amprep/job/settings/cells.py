@@ -28,9 +28,8 @@ class CellSettings(ConnectorRules, BaseRules):
         Whether contact areas and trapped powder are measured for the report.
     powder_hole_mm
         Diameter of a ball that must be able to leave a cavity; otherwise its powder counts as trapped.
-    layer_mm, density_g_cm3
-        Layer height and density of the supports, for scanned area and mass; without a density that of the part's
-        material is used.
+    density_g_cm3
+        Density of the supports, for their mass; without it that of the part's material is used, or of the profile.
     """
 
     strategy: str = "x-wall"
@@ -38,7 +37,6 @@ class CellSettings(ConnectorRules, BaseRules):
     lattice: Literal["beams", "mesh"] | None = None
     removability: bool = False
     powder_hole_mm: float = 0.2
-    layer_mm: float = 0.04
     density_g_cm3: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
 
@@ -47,7 +45,7 @@ class CellSettings(ConnectorRules, BaseRules):
         BaseRules.__post_init__(self)
         require_bounds(self, "overlap_mm", at_least=0)
         require_bounds(self, "powder_hole_mm", at_least=0.02)
-        require_bounds(self, "layer_mm", "density_g_cm3", above=0)
+        require_bounds(self, "density_g_cm3", above=0)
 
     @property
     def file(self) -> Path | None:

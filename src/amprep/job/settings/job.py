@@ -10,6 +10,7 @@ from amprep.job.settings.cells import CellSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.supports import SupportSettings
+from amprep.materials.profile import MaterialProfile
 from amprep.model.build import Target
 from amprep.printers.catalogue import Printer
 from amprep.validation import require
@@ -59,6 +60,7 @@ class Job:
     inputs: tuple[InputSpec, ...]
     printer: Printer
     folder: Path | None = None
+    material: MaterialProfile = field(default_factory=MaterialProfile)
     seed: int = 0
     target: Target = "generic"
     reading: ReadingSettings = field(default_factory=ReadingSettings)

@@ -50,10 +50,11 @@ def find_column_surfaces(layout: SupportLayout) -> ColumnSurfaces:
     supported, surface = [], []
     first = 0
     for part, (mesh, overhangs) in enumerate(layout.overhangs):
-        features = (np.asarray(each, np.int64) for each in (overhangs.faces, overhangs.edges, overhangs.tips))
+        faces = np.concatenate([overhangs.faces, overhangs.beside]).astype(np.int64)
+        features = (faces, *(np.asarray(each, np.int64) for each in (overhangs.edges, overhangs.tips)))
         corners = supported_triangles(mesh.vertices, mesh.triangles, *features, width=width)
-        bands = -1 - np.arange(len(corners) - len(overhangs.faces))
-        number = np.concatenate([first + overhangs.faces, bands]).astype(np.int64)
+        bands = -1 - np.arange(len(corners) - len(faces))
+        number = np.concatenate([first + faces, bands]).astype(np.int64)
         own_columns = layout.connected & (layout.red.part == part)
         supported.append(clip_to_columns(columns, corners, number, own_columns))
         number = first + np.arange(len(mesh.triangles))

@@ -10,7 +10,7 @@ from amprep.model.build import TARGETS, BuildSettings, SupportsAs, Target, Unsup
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
-from amprep.model.supports.rules import Grounding, SupportRules
+from amprep.model.supports.rules import Grounding, OverhangJudgement, SupportRules, Territory
 from amprep.threemf.build.values import (
     JsonObject,
     as_list,
@@ -46,13 +46,20 @@ def numbered(name: str, number: int) -> str:
 _SETTING_STRINGS = ("build_id", "printer")
 _SETTING_NUMBERS = ("clearance", "lift", "overlap", "reach")
 _RULE_NUMBERS = ("overhang_angle_deg", "strut_angle_deg", "min_area_mm2", "min_length_mm", "gap_mm")
+_LATER_RULE_NUMBERS = (
+    *("noncritical_angle_deg", "ledge_mm", "bridge_mm", "bore_mm", "plate_mm", "layer_mm"),
+    *("least_wall_mm", "least_contact_mm2", "leg_ratio", "contact_spacing_mm"),
+    *("territory_margin_mm", "drift_ratio", "drift_mm"),
+)
+_LATER_RULE_CHOICES = {"rules": get_args(OverhangJudgement), "territory": get_args(Territory)}
+_RULE_NAMES = (*_RULE_NUMBERS, *_LATER_RULE_NUMBERS, *_LATER_RULE_CHOICES, "grounding")
 _OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
 
 
 def settings_record(settings: BuildSettings) -> JsonObject:
     """Return the settings of a build without its build volume."""
     names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "supports_as")
-    rules = {name: getattr(settings.rules, name) for name in (*_RULE_NUMBERS, "grounding")}
+    rules = {name: getattr(settings.rules, name) for name in _RULE_NAMES}
     return {name: getattr(settings, name) for name in names} | rules
 
 
@@ -63,7 +70,11 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     numbers = {name: number(values, name) for name in _SETTING_NUMBERS}
     target = cast("Target", choice(values, "target", TARGETS))
     grounding = cast("Grounding", choice(values, "grounding", get_args(Grounding)))
-    limits = {name: number(values, name) for name in _RULE_NUMBERS}
+    limits: dict[str, Any] = {name: number(values, name) for name in _RULE_NUMBERS}
+    limits |= {name: number(values, name) for name in _LATER_RULE_NUMBERS if name in values}
+    limits |= {
+        name: choice(values, name, known) for name, known in _LATER_RULE_CHOICES.items() if name in values
+    }
     supports_as = cast(
         "SupportsAs",
         choice(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",

@@ -1,0 +1,1 @@
+"""The material profiles: limits of overhangs and supports, density, layer height, and the speed of the machine."""
