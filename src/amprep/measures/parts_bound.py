@@ -31,7 +31,7 @@ ROUNDING = 1e-9
 # Strategy. Grown by half the clearance, shapes are disjoint, and inside the build volume less half the clearance. So
 # are their shadows on the plate, where nothing may be above another. The volume of a grown shape is at least that of a
 # ball of the same volume, grown as much (Brunn and Minkowski); the area of a grown shadow is computed. A shape counts
-# with the least area and height over its orientations.
+# with the least area over its orientations, and with the least height over those in which it is not too wide.
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def shape_extents(item: Item, problem: PackingProblem) -> ShapeExtents:
     volume = max(volume_of(item.volume) - layer, 0.0)
     grown = (np.cbrt(volume) + max(radius, 0.0) * np.cbrt(4.0 * np.pi / 3.0)) ** 3
     area = 0.0 if problem.stacking else _least_shadow(item, radius)
-    return ShapeExtents(float(grown), area, _least_extent(item))
+    return ShapeExtents(float(grown), area, _least_extent(item, problem))
 
 
 def shadow_area(volume: BoundingVolume, rotation: Floats, radius: float) -> float:
@@ -137,13 +137,22 @@ def _least_shadow(item: Item, radius: float) -> float:
     return min(shadow_area(item.volume, rotation, radius) for rotation in upright.values())
 
 
-def _least_extent(item: Item) -> float:
-    """Return the least height (mm) over the orientations; 0 for an item that may be turned in any way."""
+def _least_extent(item: Item, problem: PackingProblem) -> float:
+    """Return the least height (mm) over the orientations; 0 for an item that may be turned in any way.
+
+    Orientations in which the item is wider than the build volume do not count, if there are others.
+    """
     allowed = item.orientations
     if allowed.freedom == "free":
         return 0.0
-    ups = allowed.matrices[:, 2] if allowed.freedom == "list" else np.eye(3)[2:]
-    return float(np.ptp(points_of(item.volume) @ ups.T, axis=0).min())
+    points = points_of(item.volume)
+    rotations = allowed.matrices if allowed.freedom == "list" else np.eye(3)[None]
+    heights = np.ptp(points @ rotations[:, 2].T, axis=0)
+    widest = problem.space.size[:2] - 2.0 * problem.clearance + 2.0 * CONTACT_TOLERANCE
+    for number in np.argsort(heights, kind="stable").tolist():
+        if (np.ptp(points @ rotations[number, :2].T, axis=0) <= widest).all():
+            return float(heights[number])
+    return float(heights.min())
 
 
 def _taken_of_room(problem: PackingProblem, extents: list[ShapeExtents]) -> tuple[list[Floats], list[float]]:

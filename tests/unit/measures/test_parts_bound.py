@@ -9,7 +9,7 @@ from tests.shared.examples import examples
 from tests.shared.solids import volume_of_solid
 
 from amprep.measures.objective import objective_reached
-from amprep.measures.parts_bound import parts_bound, shadow_area
+from amprep.measures.parts_bound import parts_bound, shadow_area, shape_extents
 from amprep.model import (
     Boxes,
     BuildVolume,
@@ -77,6 +77,17 @@ def test_the_height_is_at_least_that_of_the_highest_part_and_that_of_all_volume(
     assert parts_bound(problem([plate(50)] * 8, (50, 50, 200), "height")) == pytest.approx(80.0, abs=0.1)
     free = Orientations("free")
     assert parts_bound(problem([plate(20)], (50, 50, 200), "height", free)) < 10.0
+
+
+@pytest.mark.parametrize(
+    ("width", "clearance", "height"),
+    [(30.0, 0.0, 10.0), (29.9, 0.0, 30.0), (32.0, 1.0, 10.0), (31.9, 1.0, 30.0), (5.0, 0.0, 10.0)],
+)
+def test_a_part_that_is_too_long_to_lie_counts_as_high_as_it_stands(width, clearance, height):
+    """Where it is too wide in every orientation, all count."""
+    turns = Orientations("list", axis_rotations())
+    given = problem([plate(10, height=30.0)], (width, width, 100), "height", turns, clearance=clearance)
+    assert shape_extents(given.items[0], given).height == pytest.approx(height)
 
 
 def test_the_greatest_value_is_that_of_the_parts_that_share_the_build():

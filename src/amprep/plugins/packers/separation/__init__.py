@@ -50,12 +50,12 @@ def pack_separation(
     budget = WorkBudget(stop, _work(params, stop))
     progress(0.0, "no-fit solids of the parts")
     no_fit = prepare_no_fit(instance, params, stop) if instance.free.any() else None
-    placed = nothing_placed()
+    bound, placed = parts_bound(problem, np.flatnonzero(instance.too_large).tolist()), nothing_placed()
     if no_fit is not None:
         scene = Scene(instance, no_fit, params, rng, budget, progress)
         pack = {"height": pack_lowest, "builds": pack_builds, "fill": pack_most}[problem.objective]
-        placed = _below_top(instance, pack(scene))
-    packing = _as_packing(instance, placed, budget)
+        placed = _below_top(instance, pack(scene, bound))
+    packing = _as_packing(instance, placed, budget, bound)
     early = no_fit is None or budget.over()
     if early and any(unplaced.reason != "too large" for unplaced in packing.unplaced):
         return better_as_boxes(problem, packing, rng, stop)
@@ -78,13 +78,18 @@ def _below_top(instance: ShapeInstance, placed: Placed) -> Placed:
     return placed if fits.all() or not len(tops) else only(placed, np.flatnonzero(fits))
 
 
-def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget) -> Packing:
-    """Return a layout as a packing, with a reason for every item that is left out."""
+def _as_packing(instance: ShapeInstance, placed: Placed, budget: WorkBudget, bound: float) -> Packing:
+    """Return a layout as a packing, with a reason for every item that is left out.
+
+    The bound is for packings without all items that have no known position, also those not proved to be too large.
+    """
     problem, builds = instance.problem, _builds(instance, placed)
     left = np.setdiff1d(np.flatnonzero(instance.free | instance.too_large), placed.items)
     reason = "out of time" if budget.stop() else "no room left"
-    too_large = proved_too_large(problem, np.flatnonzero(instance.too_large).tolist())
-    bound = parts_bound(problem, too_large)
+    claimed = set(np.flatnonzero(instance.too_large).tolist())
+    too_large = proved_too_large(problem, claimed)
+    if too_large != claimed:
+        bound = parts_bound(problem, too_large)
     packing = Packing(
         builds=builds,
         unplaced=tuple(Unplaced(int(i), "too large" if i in too_large else reason) for i in left),

@@ -5,7 +5,6 @@ from functools import partial
 import numpy as np
 
 from amprep.kernels.no_fit.records import PositionRange
-from amprep.plugins.packers.separation.bounds import builds_bound
 from amprep.plugins.packers.separation.construct import best_constructed, by_size, construct, random_order
 from amprep.plugins.packers.separation.guided import AttemptPool, disturbed, put_at_random, separated
 from amprep.plugins.packers.separation.state import Placed, Scene, joined
@@ -18,9 +17,9 @@ MISSING = 1e9
 """Value, in builds, of an item that is not placed."""
 
 
-def pack_builds(scene: Scene) -> Placed:
-    """Return a layout in few builds."""
-    return run_workers(scene, float(max(builds_bound(scene.instance), 1)), _search)
+def pack_builds(scene: Scene, bound: float) -> Placed:
+    """Return a layout in few builds, at the bound if possible."""
+    return run_workers(scene, bound, _search)
 
 
 def _search(worker: SearchWorker) -> None:

@@ -6,7 +6,6 @@ import numpy as np
 
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.no_fit.records import PositionRange
-from amprep.plugins.packers.separation.bounds import fill_bound
 from amprep.plugins.packers.separation.construct import best_constructed
 from amprep.plugins.packers.separation.guided import put_at_random, separated
 from amprep.plugins.packers.separation.state import Placed, Scene, joined, only
@@ -22,10 +21,10 @@ MOST_ADDED, TRIES = 4, 20
 """Largest number of items that an exchange puts in, and tries to find an exchange that would gain."""
 
 
-def pack_most(scene: Scene) -> Placed:
-    """Return a layout of great value in one build."""
-    bound = fill_bound(scene.instance)
-    goal = -bound + 1e-9 * max(1.0, abs(bound))
+def pack_most(scene: Scene, bound: float) -> Placed:
+    """Return a layout of great value in one build; the bound applies to it together with the fixed items."""
+    fixed = sum(scene.item_values[placement.item] for placement in scene.instance.problem.fixed)
+    goal = float(fixed) - bound + 1e-9 * max(1.0, abs(bound))
     return run_workers(scene, goal, _search)
 
 

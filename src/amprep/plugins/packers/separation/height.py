@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from amprep.plugins.packers.separation.bounds import fixed_top, height_bound
+from amprep.measures.objective import greatest_height
 from amprep.plugins.packers.separation.construct import best_constructed
 from amprep.plugins.packers.separation.guided import AttemptPool, disturbed, separated
 from amprep.plugins.packers.separation.programs import compacted, height_of
@@ -27,13 +27,12 @@ MISSING = 1e12
 """Value (mm) of an item that is not placed."""
 
 
-def pack_lowest(scene: Scene) -> Placed:
-    """Return a layout of little height; it may be higher than the build volume."""
-    goal = max(height_bound(scene.instance), fixed_top(scene.instance)) + MET
-    return run_workers(scene, goal, _search)
+def pack_lowest(scene: Scene, bound: float) -> Placed:
+    """Return a layout of little height (mm), at the bound if possible; it may be higher than the build volume."""
+    return run_workers(scene, bound + MET, partial(_search, bound))
 
 
-def _search(worker: SearchWorker) -> None:
+def _search(bound: float, worker: SearchWorker) -> None:
     """Publish lower and lower layouts.
 
     The height is reduced by a fraction, overlaps are allowed and removed; after a failure the layout is disturbed and
@@ -46,7 +45,6 @@ def _search(worker: SearchWorker) -> None:
     worker.publish(height, best)
     if height >= MISSING:
         return
-    bound = height_bound(instance)
     start, failures, pool, reduction = best, 0, AttemptPool(), params.shrink
     while not worker.over() and not scene.gives_up(failures):
         news = worker.better_than(height)
@@ -93,4 +91,4 @@ def _any_height(scene: Scene) -> float:
     )
     zones = float(problem.space.zone_hi[:, 2].max(initial=0.0))
     total = float((highest + problem.clearance + 4.0 * scene.no_fit.fields.step).sum())
-    return problem.lift + fixed_top(instance) + zones + total + problem.clearance
+    return problem.lift + greatest_height(problem, problem.fixed) + zones + total + problem.clearance

@@ -1,20 +1,19 @@
 """The moving state of the separation search: layouts, work arrays, and the budget of work."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Event
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import CONTACT_TOLERANCE, Floats, Int64s
 from amprep.kernels.guided_search import READ, MoveRules
 from amprep.kernels.no_fit.records import PositionRange, SeparationState, ShapeLayout
 from amprep.kernels.no_fit.separate import separate
 from amprep.model.control import Progress, Stop, silent
 from amprep.plugins.packers.params import SeparationParams
-from amprep.plugins.packers.separation.bounds import build_room
 from amprep.plugins.packers.separation.no_fit import NoFit
 from amprep.plugins.packers.separation.shapes import ShapeInstance
 
@@ -141,8 +140,10 @@ class Scene:
         return np.array([item.value for item in self.instance.problem.items])
 
     def free_volume(self, placed: Placed) -> float:
-        """Return the volume (mm3) of one build that the items of a layout leave free."""
-        return build_room(self.instance) - float(self.instance.volumes[placed.items].sum())
+        """Return the volume (mm3) of one build, with the tolerance, that the items of a layout leave free."""
+        space = self.instance.problem.space
+        room = replace(space, size=space.size + 2.0 * CONTACT_TOLERANCE).volume_mm3
+        return room - float(self.instance.volumes[placed.items].sum())
 
     def gives_up(self, failures: int) -> bool:
         """Tell whether the search ends after some failures."""

@@ -165,6 +165,14 @@ def test_without_time_for_the_shapes_their_boxes_are_packed():
     assert packing.excess == {}
 
 
+def test_the_search_ends_when_poles_that_are_too_long_to_lie_stand():
+    pole = Boxes(np.zeros(3), np.array([2.0, 2.0, 14.0]))
+    turns = Orientations("list", axis_rotations())
+    _, packing, height = pack(items_of(pole, pole, orientations=turns), (9, 9, 40))
+    assert (packing.status, packing.stop_reason) == ("optimal", "finished")
+    assert height == pytest.approx(14.0)
+
+
 def test_a_bar_that_stands_lowest_between_zones_stays_on_the_plate():
     """Lying on the zones it would be higher, and a lower build has room for neither position."""
     zones = np.array([[3.5, 0, 0, 12, 12, 9.5], [0, 3.5, 0, 12, 12, 9.5]])
