@@ -13,7 +13,7 @@ from amprep.measures.height_profile import measure_profile
 from amprep.measures.objective import objective_reached
 from amprep.measures.removal_order import measure_removal_order
 from amprep.measures.slenderness import measure_slenderness
-from amprep.model import Build, Stop, Unsupported
+from amprep.model import Stop, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
@@ -36,7 +36,7 @@ def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
 
     The search for the removal order ends at the stop.
     """
-    build, layout = supported.build, supported.layout
+    build, layouts = supported.build, supported.layouts
     return BuildRecord(
         build=build,
         density=build_density(build),
@@ -47,11 +47,11 @@ def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
         removal_order=measure_removal_order(build, stop),
         profile=measure_profile(build),
         slenderness=tuple(measure_slenderness(body) for body in build.supports),
-        overhangs=() if layout is None else _overhangs(build, layout),
-        demand_squares=0 if layout is None else len(layout.red.square),
-        unconnected=() if layout is None else _unconnected(supported, layout),
-        shared_supports=() if layout is None else layout.shared,
-        notes=() if layout is None else layout.notes,
+        overhangs=_overhangs(supported),
+        demand_squares=sum(len(layout.red.square) for layout in layouts),
+        unconnected=tuple(each for layout in layouts for each in _unconnected(supported, layout)),
+        shared_supports=tuple(words for layout in layouts for words in layout.shared),
+        notes=tuple(words for layout in layouts for words in layout.notes),
     )
 
 
@@ -133,16 +133,19 @@ def _volumes(packed: PackedParts, number: int) -> tuple[ShownVolume, ...]:
     )
 
 
-def _overhangs(build: Build, layout: SupportLayout) -> tuple[OverhangRecord, ...]:
-    """Return a record of each overhang of each part."""
+def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
+    """Return a record of each overhang of each part, with the red squares of all passes."""
+    build, layouts = supported.build, supported.layouts
     unsupported: dict[str, list[Unsupported]] = {}
     for each in build.unsupported:
         unsupported.setdefault(each.label, []).append(each)
     records = []
-    for part, (placed, (_, found)) in enumerate(zip(build.parts, layout.overhangs, strict=True)):
-        own = layout.red.part == part
-        squares = np.bincount(layout.red.region[own], minlength=len(found.regions))
-        connected = np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
+    for part, (placed, (_, found)) in enumerate(zip(build.parts, supported.overhangs, strict=bool(layouts))):
+        squares, connected = np.zeros((2, len(found.regions)), np.int64)
+        for layout in layouts:
+            own = layout.red.part == part
+            squares += np.bincount(layout.red.region[own], minlength=len(found.regions))
+            connected += np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
         for number, region in enumerate(found.regions):
             name = region_name(number, placed.label)
             left = unsupported.get(name, ())

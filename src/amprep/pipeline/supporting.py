@@ -1,6 +1,8 @@
 """Support one build: plan the supports, replace their edges by cells, and list the unsupported regions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from amprep.model import (
     Stop,
 )
 from amprep.model.summary import Summarised
+from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
@@ -33,8 +36,10 @@ class SupportedBuild(Summarised):
     ----------
     build
         Parts, supports, unsupported regions, and the rules they were made under.
-    layout
-        Layout of the supports; None when the job has no supports.
+    layouts
+        Layouts of the supports, one for each pass of planning; empty when the job has no supports.
+    overhangs
+        The overhangs of each part; empty when the job has no supports.
     advice
         Settings to try where something stays unsupported, one sentence each.
     removal
@@ -42,7 +47,8 @@ class SupportedBuild(Summarised):
     """
 
     build: Build
-    layout: SupportLayout | None = None
+    layouts: tuple[SupportLayout, ...] = ()
+    overhangs: tuple[PartOverhangs, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
 
@@ -56,6 +62,21 @@ class SupportedBuild(Summarised):
         )
 
 
+class PlannedPass(NamedTuple):
+    """One pass of planning: some of the overhangs of a build, supported with the same settings.
+
+    Attributes
+    ----------
+    pitch_mm
+        Horizontal size of a voxel of the support grid.
+    layout
+        Layout of the supports.
+    """
+
+    pitch_mm: float
+    layout: SupportLayout
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PlannedBuild(Summarised):
     """A build with the layout of its supports, before edges are replaced by cells.
@@ -64,24 +85,41 @@ class PlannedBuild(Summarised):
     ----------
     build
         The placed parts with their job.
-    pitch_mm
-        Horizontal size of a voxel of the support grid.
-    layout
-        Layout of the supports; None when the job has no supports.
+    passes
+        The passes of planning, each with its settings and its layout; the first has the settings of the job. Empty
+        when the job has no supports.
+    overhangs
+        The overhangs of each part.
     """
 
     build: PackedBuild
-    pitch_mm: float
-    layout: SupportLayout | None
+    passes: tuple[PlannedPass, ...] = ()
+    overhangs: tuple[PartOverhangs, ...] = ()
+
+    @property
+    def layout(self) -> SupportLayout | None:
+        """Layout of the first pass; None when the job has no supports."""
+        return self.passes[0].layout if self.passes else None
+
+    @property
+    def layouts(self) -> tuple[SupportLayout, ...]:
+        """Layouts of all passes."""
+        return tuple(each.layout for each in self.passes)
+
+    @property
+    def pitch_mm(self) -> float:
+        """Horizontal size of a voxel of the support grid of the first pass; 1 when the job has no supports."""
+        return self.passes[0].pitch_mm if self.passes else 1.0
 
     def __str__(self) -> str:
         """Summary in one line."""
-        if self.layout is None:
+        if not self.passes:
             return f"{self.build.build_id}: no supports"
-        connected = int(self.layout.connected.sum())
+        connected = sum(int(layout.connected.sum()) for layout in self.layouts)
+        pitches = ", ".join(f"{pitch:g}" for pitch in dict.fromkeys(each.pitch_mm for each in self.passes))
         return (
-            f"{self.build.build_id}: {connected} of {len(self.layout.red.square)} red squares connected, "
-            f"pitch {self.pitch_mm:g} mm"
+            f"{self.build.build_id}: {connected} of {sum(len(each.red.square) for each in self.layouts)} red squares "
+            f"connected, pitch {pitches} mm"
         )
 
 
@@ -111,10 +149,12 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     """
     job = build.resolved.job
     if not job.supports.enabled:
-        return PlannedBuild(build, pitch_mm=1.0, layout=None)
+        return PlannedBuild(build)
     pitch = choose_pitch(build.parts, job.printer.space, job.supports)
     with clock.stage("route") as progress:
-        return PlannedBuild(build, pitch, _layout(build, pitch, stop, progress))
+        overhangs = tuple(overhangs_of(placed, job.supports) for placed in build.parts)
+        layout = _layout(build, overhangs, pitch, stop, progress)
+    return PlannedBuild(build, (PlannedPass(pitch, layout),), overhangs)
 
 
 def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
@@ -157,10 +197,11 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             progress=progress,
         )
     with clock.stage("judge"):
-        unsupported = find_unsupported(parts, layout.overhangs, bodies, settings, layout.reason_at)
+        unsupported = find_unsupported(parts, planned.overhangs, bodies, settings, layout.reason_at)
         build = Build(settings, parts, bodies, unsupported)
         removal = removal_of(job, build)
-    return SupportedBuild(build, layout, tuple(advice_for(job, build, planned.pitch_mm)), removal)
+    advice = tuple(advice_for(job, build, planned.pitch_mm))
+    return SupportedBuild(build, planned.layouts, planned.overhangs, advice, removal)
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -180,7 +221,9 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
     )
 
 
-def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) -> SupportLayout:
+def _layout(
+    build: PackedBuild, overhangs: Sequence[PartOverhangs], pitch: float, stop: Stop, progress: Progress
+) -> SupportLayout:
     job, resolved = build.resolved.job, build.resolved
     rules = replace(job.supports, pitch_mm=pitch)
     rng = np.random.default_rng([job.seed, build.number])
@@ -189,6 +232,7 @@ def _layout(build: PackedBuild, pitch: float, stop: Stop, progress: Progress) ->
         build.parts,
         job.printer.space,
         rules,
+        overhangs=overhangs,
         material=material,
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress

@@ -39,6 +39,7 @@ def plan_supports(
     rules: PlanningRules,
     *,
     route: Route,
+    overhangs: Sequence[PartOverhangs] | None = None,
     material: tuple[float, float] = (1.0, 1.0),
     choose: Choose | None = None,
     stop: Stop,
@@ -56,6 +57,8 @@ def plan_supports(
         Rules for overhangs, grid, routing and bracing.
     route
         The router; it may be called once for each part.
+    overhangs
+        The overhangs of each part that are to be supported; None for all that the rules find.
     material
         Material of a vertical and of an oblique edge in the chosen cell, mm3.
     choose
@@ -72,7 +75,8 @@ def plan_supports(
     PluginError
         If the router returns a plan that `amprep.checks.supports.plan.check_plan` rejects.
     """
-    overhangs = [overhangs_of(placed, rules) for placed in parts]
+    if overhangs is None:
+        overhangs = [overhangs_of(placed, rules) for placed in parts]
     progress(0.05, "overhangs found")
     laid = make_grid(parts, overhangs, space, rules, choose)
     progress(0.15, "grid laid")
