@@ -10,6 +10,7 @@ inputs = ["{mesh}"]
 
 [packing]
 clearance_mm = 1
+lift_mm = 0
 
 [supports]
 enabled = false

@@ -113,7 +113,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         seed=_seed(table, source),
         target=convert(table.get("target", "generic"), Target, f"{source}: target"),
         reading=_section(ReadingSettings, table, "reading", source),
-        packing=_section(PackingSettings, table, "packing", source, stacking=printer.stacks),
+        packing=_section(PackingSettings, table, "packing", source, **printer.packing_defaults),
         supports=_section(
             SupportSettings, table, "supports", source, **_support_defaults(table, printer, material)
         ),

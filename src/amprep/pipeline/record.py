@@ -104,6 +104,7 @@ def run_record(
             *loaded.notes,
             *packed.notes,
         ),
+        by_default=tuple(filter(None, [job.default_distances])),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
     )
 

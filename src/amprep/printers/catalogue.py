@@ -79,9 +79,19 @@ class Printer:
     origin: Origin = "built-in"
 
     @property
+    def packing_defaults(self) -> dict[str, Any]:
+        """The defaults of the job's section ``[packing]`` that depend on the technology.
+
+        Loose powder of polymers holds parts above one another. Parts of metal are cut off the plate, which takes some
+        height, and they are farther from each other because of spatter and of supports beside them.
+        """
+        distances = {"clearance_mm": 5.0, "lift_mm": 3.0} if self.technology == "metal-powder-bed" else {}
+        return {"clearance_mm": 2.0, "lift_mm": 0.0, "stacking": self.stacks, **distances}
+
+    @property
     def stacks(self) -> bool:
         """Default of stacking: whether parts may be above one another."""
-        return self.technology == "polymer-powder-bed"  # loose powder holds the parts
+        return self.technology == "polymer-powder-bed"
 
     @property
     def needs_supports(self) -> bool:

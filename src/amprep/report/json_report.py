@@ -57,6 +57,7 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "stages": stages_json(record.stages),
         "warnings": list(record.warnings),
         "notes": list(record.notes),
+        "by_default": list(record.by_default),
         "settings": dict(record.settings),
     }
     result: dict[str, Any] = plain(report)

@@ -220,6 +220,8 @@ class RunRecord(Summarised):
         For each part that was packed as convex pieces, their volume over that of the part, less 1.
     warnings, notes
         One sentence each: what needs attention; what was repaired or found in an input.
+    by_default
+        One sentence each: settings that no key states and that the printer determines.
     settings
         The job's settings as nested plain values.
     objective
@@ -241,6 +243,7 @@ class RunRecord(Summarised):
     bound: float | None = None
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    by_default: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     objective: Objective = "builds"
     reached: float | None = None

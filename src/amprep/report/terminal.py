@@ -35,6 +35,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
         blocks.append(Text(printable(step_words(record)), style="dim"))
     if pieces := excess_words(record):
         blocks.append(Text(printable(pieces), style="dim"))
+    blocks += [Text(printable(line), style="dim") for line in record.by_default]
     blocks += [Text(printable(line), style="dim") for line in _listed(_values(record), "in the report")]
     blocks += [Text(printable(line), style="dim") for line in _listed(_waiting(record), "in the report")]
     issues = _listed(_issues(record), "in the report")

@@ -161,7 +161,7 @@ def test_progress_is_reported_as_fractions_with_the_stage(tmp_path):
 
 
 def test_a_plan_without_time_leaves_every_square_unconnected_and_says_so():
-    packed = amprep.pack(amprep.load(TABLE))
+    packed = amprep.pack(amprep.load(TABLE), lift_mm=0)
     planned = amprep.plan_supports(packed.builds[0], stop=Stop.after(0.0), cell="prism", **COARSE)
     assert (
         str(planned)

@@ -7,7 +7,7 @@ import pytest
 from tests.shared.optional import present
 
 from amprep.errors import JobError
-from amprep.job import apply_part_settings, apply_sets, job_from_inputs, load_job, override
+from amprep.job import apply_part_settings, apply_sets, find_printer, job_from_inputs, load_job, override
 from amprep.model import Mesh, Overrides, Part
 from amprep.model.rotations import quarter_turns
 
@@ -52,6 +52,37 @@ def test_stacking_and_supports_follow_the_printers_technology_unless_the_job_say
     job = load_job(job_file(f"{said}[supports]\nenabled = {str(not supported).lower()}"))
     assert (job.packing.stacking, job.supports.enabled) == (not stacking, not supported)
     assert not job.printer_is_default
+
+
+METAL_DISTANCES = "lift 3 mm and part distance 5 mm by default for metal powder beds"
+
+
+@pytest.mark.parametrize(
+    ("keys", "clearance", "lift", "words"),
+    [
+        ("", 5.0, 3.0, METAL_DISTANCES),
+        ("printer = {size_mm = [60, 60, 60]}", 5.0, 3.0, METAL_DISTANCES),
+        ("[packing]\nlift_mm = 0", 5.0, 0.0, "part distance 5 mm by default for metal powder beds"),
+        ("[packing]\nclearance_mm = 5", 5.0, 3.0, "lift 3 mm by default for metal powder beds"),
+        ("[packing]\nclearance_mm = 2\nlift_mm = 3", 2.0, 3.0, ""),
+        ('printer = "Prusa MK4"', 2.0, 0.0, ""),
+        ('printer = "EOS P 396"', 2.0, 0.0, ""),
+    ],
+)
+def test_parts_are_lifted_and_farther_apart_on_metal_powder_beds_unless_the_job_says_otherwise(
+    job_file, keys, clearance, lift, words
+):
+    job = load_job(job_file(keys))
+    assert (job.packing.clearance_mm, job.packing.lift_mm) == (clearance, lift)
+    assert job.default_distances == words
+
+
+def test_another_printer_has_its_own_default_distances(job_file):
+    job = load_job(job_file("[packing]\nlift_mm = 1"))
+    assert job.distances_on(find_printer("EOS M290")) == (5.0, 1.0)
+    assert job.distances_on(find_printer("Prusa MK4")) == (2.0, 1.0)
+    changed = override(load_job(job_file("")), {"printer": "Prusa MK4"})
+    assert (changed.packing.clearance_mm, changed.packing.lift_mm) == (2.0, 0.0)
 
 
 @pytest.mark.parametrize(("overhang", "strut"), [(45, 45), (30, 30), (5, 10), (85, 80)])

@@ -16,6 +16,7 @@ from amprep.measures.density import build_density, build_height, support_volume
 from amprep.model import Build, BuildSettings, BuildVolume
 from amprep.report.json_report import to_json, write_json
 from amprep.report.json_values import json_text
+from amprep.report.page.html import html_text
 from amprep.report.record import BuildRecord, RunRecord, StageTime, UnconnectedSquare, UnplacedRecord
 from amprep.report.terminal import MOST_LINES, summary
 
@@ -176,3 +177,11 @@ def test_the_terminal_names_the_reports_and_the_folder_of_every_file(record):
     assert written == [
         f"out/job.{name}" for name in ("report.html", "report.json", "build-1.3mf", "build-1.png")
     ]
+
+
+def test_terminal_json_and_page_state_the_settings_that_follow_from_the_printer(record):
+    words = "lift 3 mm and part distance 5 mm by default for metal powder beds"
+    record = replace(record, by_default=(words,))
+    assert to_json(record)["by_default"] == [words]
+    assert words in printed(record)
+    assert words in html_text(record)

@@ -77,6 +77,25 @@ class Job:
         return "printer" not in self.table
 
     @property
+    def default_distances(self) -> str:
+        """Sentence on lift and part distance where the defaults of metal powder beds apply; else empty."""
+        words = {"lift_mm": "lift", "clearance_mm": "part distance"}
+        defaults = self.printer.packing_defaults
+        stated = self.table.get("packing", {})
+        found = [
+            f"{name} {defaults[key]:g} mm"
+            for key, name in words.items()
+            if key not in stated and getattr(self.packing, key) == defaults[key]
+        ]
+        metal = self.printer.technology == "metal-powder-bed"
+        return f"{' and '.join(found)} by default for metal powder beds" if metal and found else ""
+
+    def distances_on(self, printer: Printer) -> tuple[float, float]:
+        """Return clearance and lift (mm) as the job states them, or else the defaults of another printer."""
+        distances = {**printer.packing_defaults, **self.table.get("packing", {})}
+        return distances["clearance_mm"], distances["lift_mm"]
+
+    @property
     def beams(self) -> bool | None:
         """Whether struts become beams; None leaves it to the parameters of the cell. Slicers read no beams."""
         if self.target != "generic" or self.cells.lattice == "mesh":

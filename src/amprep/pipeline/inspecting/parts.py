@@ -4,14 +4,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from amprep.job import Job, list_printers
+from amprep.job import Job, Printer, list_printers
 from amprep.measures.contents import MeshContents, measure_contents
 from amprep.measures.overhangs import measure_overhangs
-from amprep.measures.printer_fit import poses_of
+from amprep.measures.printer_fit import PartPoses, poses_of
 from amprep.measures.thin_walls import ThinWall, measure_thin_walls
 from amprep.model import Part, PlacedPart
 from amprep.model.counting import counted
-from amprep.report.inspection.record import InspectedPart, PrinterFit
+from amprep.report.inspection.record import InspectedPart, PrinterFit, fit_words
 
 SMALL_MM, LARGE_MM = 1.0, 2000.0
 """Longest sides below and above which the unit of a file is doubtful."""
@@ -70,7 +70,7 @@ def _misfits(fits: tuple[PrinterFit, ...], job: Job) -> Iterator[str]:
     which = f"{job.printer.name}" if len(fits) == 1 else "no known printer"
     words = f"it does not fit {which}" if len(fits) == 1 else f"it fits {which}"
     advice = f"; it would fit {turned[0]} if it may be turned" if turned else ""
-    yield f"{words} with a clearance of {job.packing.clearance_mm:g} mm{advice}"
+    yield f"{words} with {fit_words(fits)}{advice}"
 
 
 def _findings(contents: MeshContents) -> Iterator[str]:
@@ -98,9 +98,10 @@ def _thin(walls: Sequence[ThinWall], contents: MeshContents) -> Iterator[str]:
 
 def _fits(part: Part, job: Job) -> tuple[PrinterFit, ...]:
     """Return whether the part fits the printer that the job names, or else each known printer."""
-    poses, packing = poses_of(part.mesh.vertices, part.orientations), job.packing
+    poses = poses_of(part.mesh.vertices, part.orientations)
     printers = list_printers(job.folder)[0] if job.printer_is_default else [job.printer]
-    return tuple(
-        PrinterFit(each.name, poses.fit(each.space, packing.clearance_mm, packing.lift_mm))
-        for each in printers
-    )
+    return tuple(_fit(poses, each, *job.distances_on(each)) for each in printers)
+
+
+def _fit(poses: PartPoses, printer: Printer, clearance: float, lift: float) -> PrinterFit:
+    return PrinterFit(printer.name, poses.fit(printer.space, clearance, lift), clearance, lift)

@@ -11,7 +11,7 @@ from amprep.arrays import Floats
 from amprep.files import replacing
 from amprep.model.counting import counted
 from amprep.report.inspection.compare import compare_makers
-from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
+from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord, fit_words
 from amprep.report.inspection.words import (
     contents_words,
     file_words,
@@ -174,8 +174,9 @@ def _row(volume: InspectedVolume) -> tuple[Cell, ...]:
 
 
 def _footer(record: InspectionRecord) -> str:
-    room = f"{record.clearance_mm:g} mm from the walls and is {record.lift_mm:g} mm above the plate"
+    fits = [fit for each in record.parts for fit in each.printers]
+    room = f" A part fits a printer with {fit_words(fits)}." if fits else ""
     return (
-        f"<footer>Made by amprep {escape(record.version)}. A part fits a printer if it keeps {room}. The ratio is "
+        f"<footer>Made by amprep {escape(record.version)}.{room} The ratio is "
         "the volume of the bounding volume over that of the part.</footer>\n"
     )

@@ -1,5 +1,6 @@
 """The results of inspecting parts, from which all reports about them are made."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from amprep.checks.violation import Violation
@@ -39,10 +40,29 @@ class InspectedFile:
 
 @dataclass(frozen=True)
 class PrinterFit:
-    """Whether a part fits the build volume of a printer, and how."""
+    """Whether a part fits the build volume of a printer, and how.
+
+    Attributes
+    ----------
+    clearance_mm, lift_mm
+        Distance from the walls and above the plate that the part keeps there.
+    """
 
     printer: str
     fit: Fit
+    clearance_mm: float = 0.0
+    lift_mm: float = 0.0
+
+
+def fit_words(fits: Sequence[PrinterFit]) -> str:
+    """Return the distances that a part keeps to fit printers, in words."""
+
+    def between(values: list[float]) -> str:
+        return f"{min(values):g}" if min(values) == max(values) else f"{min(values):g} to {max(values):g}"
+
+    clearance, lift = between([fit.clearance_mm for fit in fits]), between([fit.lift_mm for fit in fits])
+    by_printer = ", by printer" if " to " in clearance + lift else ""
+    return f"clearance {clearance} mm, lift {lift} mm{by_printer}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +184,7 @@ class InspectionRecord:
     version
         Version of amprep.
     clearance_mm, lift_mm
-        Distance from the walls and above the plate that a part keeps to fit a printer.
+        Distance from the walls and above the plate that a part keeps to fit the job's printer.
     report_files
         Names of the files that were written.
     """

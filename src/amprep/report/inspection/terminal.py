@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from amprep.model.counting import counted
 from amprep.report.inspection.compare import compare_makers
-from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
+from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord, fit_words
 from amprep.report.inspection.words import (
     contents_words,
     file_words,
@@ -36,7 +36,7 @@ def summary(record: InspectionRecord, folder: Path = Path()) -> "RenderableType"
         Text(printable(file_words(file)), style="red" if file.problem else "dim") for file in record.files
     ]
     for each in record.parts:
-        blocks += _part(each, record)
+        blocks += _part(each)
     blocks += [Text(f"! {printable(line)}", style="yellow") for line in record.warnings]
     if len(record.parts) > 1 and any(each.volumes for each in record.parts):
         blocks.append(_makers(record))
@@ -69,7 +69,7 @@ def _makers(record: InspectionRecord) -> "Table":
     return table
 
 
-def _part(each: InspectedPart, record: InspectionRecord) -> "Iterator[RenderableType]":
+def _part(each: InspectedPart) -> "Iterator[RenderableType]":
     from rich.text import Text
 
     verdict = counted(len(each.problems), "problem") if each.problems else "nothing wrong"
@@ -80,7 +80,7 @@ def _part(each: InspectedPart, record: InspectionRecord) -> "Iterator[Renderable
         yield Text(f"  ! {printable(problem)}", style="red")
     yield from (Text(f"  - {printable(finding)}", style="yellow") for finding in each.findings)
     if each.contents is not None:
-        yield _figures(each, record)
+        yield _figures(each)
     if each.volumes:
         yield _volumes(each)
         for volume in each.volumes:
@@ -88,7 +88,7 @@ def _part(each: InspectedPart, record: InspectionRecord) -> "Iterator[Renderable
                 yield Text(printable(f"  ! {volume.makers}: {line}"), style=_verdict(volume)[1])
 
 
-def _figures(each: InspectedPart, record: InspectionRecord) -> "Table":
+def _figures(each: InspectedPart) -> "Table":
     from rich.table import Table
     from rich.text import Text
 
@@ -101,7 +101,7 @@ def _figures(each: InspectedPart, record: InspectionRecord) -> "Table":
         rows += [(f"{name}", words) for name, words in overhang_words(each.overhangs)]
         rows.append(("overhang angle", f"{each.overhangs.angle_deg:g}°, the part as it lies"))
     rows += printer_words(each, _MOST_PRINTERS)
-    rows.append(("to fit", f"clearance {record.clearance_mm:g} mm, lift {record.lift_mm:g} mm"))
+    rows += [("to fit", fit_words(each.printers))] if each.printers else []
     for name, words in rows:
         table.add_row(name, Text(printable(words)))
     return table

@@ -288,10 +288,11 @@ def _verification(record: RunRecord) -> str:
 
 def _remarks(record: RunRecord) -> str:
     supports = [text for entry in record.builds for text in (*entry.notes, *entry.shared_supports)]
-    if not (record.warnings or record.notes or supports):
+    plain = (*record.by_default, *record.notes, *supports)
+    if not (record.warnings or plain):
         return ""
     items = [f'<li class="bad">{escape(text)}</li>' for text in record.warnings]
-    items += [f"<li>{escape(text)}</li>" for text in (*record.notes, *supports)]
+    items += [f"<li>{escape(text)}</li>" for text in plain]
     return f'<ul class="remarks">{"".join(items)}</ul>'
 
 
