@@ -1,8 +1,11 @@
-"""Judge coverage: every overhang is within reach of a contact, or listed as unsupported."""
+"""Judge coverage: every overhang that needs support is within reach of a contact, or listed as unsupported."""
 
 import numpy as np
 
-from amprep.checks.supports.overhangs import KINDS, border_of, overhang_samples
+from amprep.arrays import Int64s
+from amprep.checks.overhangs.modifiers import border_of
+from amprep.checks.overhangs.needs import are_needed
+from amprep.checks.overhangs.samples import KINDS, JudgedSamples, judged_overhangs
 from amprep.checks.violation import Violation
 from amprep.model.build import Build
 from amprep.overhangs.contacts import NUDGE, find_held, is_near, sample_spacing
@@ -11,9 +14,10 @@ PROMISE = "coverage"
 
 
 def check_coverage(build: Build) -> list[Violation]:
-    """Judge a finished build from its meshes alone: every sample point of an overhang is held or listed.
+    """Judge a finished build from its meshes alone: every sample point of an overhang is held, carried or listed.
 
-    The judge finds the overhangs itself (`amprep.checks.supports.overhangs`), independently of the planner.
+    The judge finds the overhangs itself, and what the part itself carries (`amprep.checks.overhangs`), independently of
+    the planner.
     """
     found: list[Violation] = []
     settings = build.settings
@@ -21,21 +25,33 @@ def check_coverage(build: Build) -> list[Violation]:
         return found
     for part, placed in enumerate(build.parts):
         spacing = sample_spacing(placed, settings.rules, settings.reach)
-        samples = overhang_samples(placed, settings.rules, spacing)
-        reach = settings.reach + NUDGE + border_of(placed)
-        held = find_held(samples.points, placed.mesh, build.supports, spacing, reach)
-        for listed in build.unsupported:
-            if listed.part == part and not held.all():
-                left = np.flatnonzero(~held)
-                held[left] = is_near(
-                    listed.points, samples.points[left], listed.radius + NUDGE + border_of(placed)
-                )
-        for kind in np.unique(samples.region[~held]):
-            left = np.flatnonzero(~held & (samples.region == kind))
-            x, y, z = samples.points[left[0]]
-            message = (
-                f"an overhanging {KINDS[kind]} of {placed.label} has {len(left)} sample points over "
-                f"{settings.reach:g} mm from any contact and is not listed, first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
-            )
-            found.append(Violation(PROMISE, placed.label, message))
+        overhangs = judged_overhangs(placed, settings.rules, spacing)
+        left = _left_over(build, part, overhangs.samples, spacing)
+        left = left[are_needed(overhangs, settings.rules, left)]
+        kinds = overhangs.samples.kind[left]
+        found += [
+            _violation(build, part, kind, overhangs.samples, left[kinds == kind]) for kind in np.unique(kinds)
+        ]
     return found
+
+
+def _left_over(build: Build, part: int, samples: JudgedSamples, spacing: float) -> Int64s:
+    """Return the samples of a part that are neither within reach of a contact nor listed."""
+    placed, reach = build.parts[part], build.settings.reach
+    border = NUDGE + border_of(placed)
+    held = find_held(samples.points, placed.mesh, build.supports, spacing, reach + border)
+    for listed in build.unsupported:
+        if listed.part == part and not held.all():
+            left = np.flatnonzero(~held)
+            held[left] = is_near(listed.points, samples.points[left], listed.radius + border)
+    return np.flatnonzero(~held)
+
+
+def _violation(build: Build, part: int, kind: int, samples: JudgedSamples, left: Int64s) -> Violation:
+    label = build.parts[part].label
+    x, y, z = samples.points[left[0]]
+    message = (
+        f"an overhanging {KINDS[kind]} of {label} has {len(left)} sample points over {build.settings.reach:g} mm from "
+        f"any contact and is not listed, first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
+    )
+    return Violation(PROMISE, label, message)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.shared.builds import box_mesh
 from tests.shared.examples import examples
 
-from amprep.checks.supports.overhangs import KINDS, overhang_samples
+from amprep.checks.overhangs.samples import KINDS, judged_overhangs
 from amprep.geometry.meshes.sampling import sample_overhangs
 from amprep.model import Mesh, Overrides, Part, PlacedPart, Region
 from amprep.model.supports import SupportRules
@@ -32,8 +32,8 @@ def by_kind(samples, kinds):
 
 
 def judged(part, rules):
-    samples = overhang_samples(part, rules, SPACING)
-    return by_kind(samples, np.array(KINDS)[samples.region])
+    samples = judged_overhangs(part, rules, SPACING).samples
+    return by_kind(samples, np.array(KINDS)[samples.kind])
 
 
 def planned(part, rules):
@@ -92,7 +92,11 @@ def test_small_faces_count_only_where_the_part_starts_in_the_air():
 def test_a_part_without_supports_has_no_samples():
     solid = Solid.cube((10, 10, 10)).translate((0, 0, 5))
     assert (
-        len(overhang_samples(placed(solid, overrides=Overrides(supports=False)), SupportRules(), 1.0).points)
+        len(
+            judged_overhangs(
+                placed(solid, overrides=Overrides(supports=False)), SupportRules(), 1.0
+            ).samples.points
+        )
         == 0
     )
 
@@ -100,10 +104,10 @@ def test_a_part_without_supports_has_no_samples():
 def test_blockers_remove_and_enforcers_add_points_up_to_the_uncertainty_of_their_borders():
     slab = Solid.cube((20, 20, 3)).translate((0, 0, 10))
     blocker = Region("blocker", "b", mesh=box_mesh((-1, -1, 9), (11, 22, 2)))
-    points = overhang_samples(placed(slab, regions=(blocker,)), SupportRules(), SPACING).points
+    points = judged_overhangs(placed(slab, regions=(blocker,)), SupportRules(), SPACING).samples.points
     assert 10.7 < points[:, 0].min() < 11.4
     enforcer = Region("enforcer", "e", mesh=box_mesh((-1, -1, -1), (40, 40, 10)))
     steep = Solid.cylinder(20, 5, 9, 64).translate((15, 15, 0))
-    assert len(overhang_samples(placed(steep), SupportRules(), SPACING).points) == 0
-    points = overhang_samples(placed(steep, regions=(enforcer,)), SupportRules(), SPACING).points
+    assert len(judged_overhangs(placed(steep), SupportRules(), SPACING).samples.points) == 0
+    points = judged_overhangs(placed(steep, regions=(enforcer,)), SupportRules(), SPACING).samples.points
     assert 7.5 < points[:, 2].max() < 9.0

@@ -1,0 +1,1 @@
+"""What the judges find of overhangs; no code is shared with the planner's search."""
