@@ -169,7 +169,7 @@ def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
 
 def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported:
     """Return the extent to which a region is supported; `left` lists its unsupported regions."""
-    if all(each.minor for each in left):
+    if all(each.is_small for each in left):
         return "fully"
     return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"
 

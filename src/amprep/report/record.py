@@ -186,7 +186,7 @@ class BuildRecord:
     @property
     def unsupported_minor_mm2(self) -> float:
         """Area of the minor unsupported faces in mm2."""
-        return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
+        return sum(each.measure for each in self.build.unsupported if each.is_small and each.kind == "face")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
