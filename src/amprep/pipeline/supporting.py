@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.job import Job
+from amprep.materials.catalogue import densities_of
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
     Build,
@@ -309,5 +310,13 @@ def _layout(
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
     """Return the figures of each support body of `build`."""
     cells = job.cells
-    rules = RemovalRules(job.supports.layer_mm, cells.density_g_cm3, cells.powder_hole_mm, cells.removability)
+    density = cells.density_g_cm3
+    densities = part_densities(job, build) if density is None else (density,) * len(build.parts)
+    rules = RemovalRules(job.supports.layer_mm, densities, cells.powder_hole_mm, cells.removability)
     return measure_removal(build, rules)
+
+
+def part_densities(job: Job, build: Build) -> tuple[float | None, ...]:
+    """Return the density (g/cm3) of each part: that of its own material, or else that of the job's."""
+    materials = [placed.part.appearance.material for placed in build.parts]
+    return densities_of(materials, job.material, job.folder)

@@ -9,6 +9,7 @@ from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.violation import Violation
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
+from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -150,6 +151,8 @@ class BuildRecord:
         How the parts can be taken out of the build, by their indices in it.
     profile
         Area of the cross-section of the parts at each height.
+    printing
+        Mass, use of the plate, layers and hours, for the head of the report.
     """
 
     build: Build
@@ -172,6 +175,7 @@ class BuildRecord:
     removal_order: RemovalOrder = field(default_factory=RemovalOrder)
     profile: HeightProfile = NO_PROFILE
     pairs: PairCounts = field(default_factory=PairCounts)
+    printing: PrintingEstimate = field(default_factory=PrintingEstimate)
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
