@@ -7,23 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.job import Job
-from amprep.materials.catalogue import densities_of
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
     Build,
     BuildSettings,
     Progress,
     Stop,
-    SupportBody,
-    Unsupported,
 )
 from amprep.model.summary import Summarised
-from amprep.model.supports import EXCEPTED
-from amprep.overhangs.of_part import PartOverhangs
+from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
-from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.plan import SupportLayout, plan_supports
@@ -72,15 +67,12 @@ class PlannedPass(NamedTuple):
 
     Attributes
     ----------
-    rules
-        Numbers of the ``[[rule]]`` entries with these settings, from 1; 0 for the settings of the job.
     pitch_mm
         Horizontal size of a voxel of the support grid.
     layout
         Layout of the supports.
     """
 
-    rules: tuple[int, ...]
     pitch_mm: float
     layout: SupportLayout
 
@@ -96,13 +88,13 @@ class PlannedBuild(Summarised):
     passes
         The passes of planning, each with its settings and its layout; the first has the settings of the job. Empty
         when the job has no supports.
-    taken
-        The overhangs of the parts, and the rules that take them; None when the job has no supports.
+    overhangs
+        The overhangs of each part.
     """
 
     build: PackedBuild
     passes: tuple[PlannedPass, ...] = ()
-    taken: TakenRegions | None = None
+    overhangs: tuple[PartOverhangs, ...] = ()
 
     @property
     def layout(self) -> SupportLayout | None:
@@ -158,23 +150,11 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     job = build.resolved.job
     if not job.supports.enabled:
         return PlannedBuild(build)
+    pitch = choose_pitch(build.parts, job.printer.space, job.supports)
     with clock.stage("route") as progress:
-        taken = take_regions(build.resolved, build.parts)
-        divided, excepted = passes_of(build.resolved, taken)
-        planned: list[PlannedPass] = []
-        for number, each in enumerate(divided):
-            own = replace(build, resolved=each.resolved)
-            pitch = choose_pitch(build.parts, job.printer.space, each.resolved.job.supports)
-            earlier = [done.layout for done in planned]
-            overhangs = taken.chosen(each.rules, excepted)
-            layout = _layout(own, overhangs, earlier, pitch, stop, _part_of(progress, number, len(divided)))
-            planned.append(PlannedPass(each.rules, pitch, layout))
-    return PlannedBuild(build, tuple(planned), taken)
-
-
-def _part_of(progress: Progress, number: int, count: int) -> Progress:
-    """Return a progress callback for one of `count` equal steps of the work."""
-    return lambda fraction, message: progress((number + fraction) / count, message)
+        overhangs = tuple(overhangs_of(placed, job.supports) for placed in build.parts)
+        layout = _layout(build, overhangs, pitch, stop, progress)
+    return PlannedBuild(build, (PlannedPass(pitch, layout),), overhangs)
 
 
 def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
@@ -194,73 +174,34 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
     PluginError
         When the cell fails.
     """
-    parts, resolved = planned.build.parts, planned.build.resolved
+    parts, layout, resolved = planned.build.parts, planned.layout, planned.build.resolved
     job = resolved.job
-    settings = [
-        build_settings(resolved.for_rule(each.rules[0]).job, planned.build.build_id, each.pitch_mm)
-        for each in planned.passes
-    ]
-    if planned.taken is None:
-        return SupportedBuild(Build(build_settings(job, planned.build.build_id, planned.pitch_mm), parts))
-    bodies: list[SupportBody] = []
+    settings = build_settings(job, planned.build.build_id, planned.pitch_mm)
+    if layout is None:
+        return SupportedBuild(Build(settings, parts))
     with clock.stage("cells") as progress:
-        for number in range(len(planned.passes)):
-            bodies += _bodies(planned, number, bodies, stop, _part_of(progress, number, len(planned.passes)))
+        bodies = build_supports(
+            layout,
+            parts,
+            lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
+            SolidRules(
+                connector=job.cells,
+                base=job.cells,
+                overlap=settings.overlap,
+                allow_surface=job.target == "generic",
+                beams=job.beams,
+                gap=job.supports.gap_mm,
+                space=job.printer.space,
+            ),
+            stop=stop,
+            progress=progress,
+        )
     with clock.stage("judge"):
-        reach = max(each.reach for each in settings)
-        unsupported = _unsupported(planned, planned.taken, bodies, settings)
-        build = Build(replace(settings[0], reach=reach), parts, tuple(bodies), unsupported)
+        unsupported = find_unsupported(parts, planned.overhangs, bodies, settings, layout.reason_at)
+        build = Build(settings, parts, bodies, unsupported)
         removal = removal_of(job, build)
     advice = tuple(advice_for(job, build, planned.pitch_mm))
-    return SupportedBuild(build, planned.layouts, planned.taken.overhangs, advice, removal)
-
-
-def _bodies(
-    planned: PlannedBuild, number: int, earlier: Sequence[SupportBody], stop: Stop, progress: Progress
-) -> tuple[SupportBody, ...]:
-    """Return the support bodies of one pass; they keep out of the bodies of earlier passes."""
-    own, parts = planned.passes[number], planned.build.parts
-    resolved = planned.build.resolved.for_rule(own.rules[0])
-    job = resolved.job
-    bodies = build_supports(
-        own.layout,
-        parts,
-        lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
-        SolidRules(
-            connector=job.cells,
-            base=job.cells,
-            overlap=job.cells.overlap_mm,
-            allow_surface=job.target == "generic",
-            beams=job.beams,
-            gap=job.supports.gap_mm,
-            space=job.printer.space,
-        ),
-        earlier=earlier,
-        later=planned.layouts[number + 1 :],
-        stop=stop,
-        progress=progress,
-    )
-    if number == 0:
-        return bodies
-    return tuple(replace(body, name=f"{body.name}, rule {own.rules[0]}") for body in bodies)
-
-
-def _unsupported(
-    planned: PlannedBuild,
-    taken: TakenRegions,
-    bodies: Sequence[SupportBody],
-    settings: Sequence[BuildSettings],
-) -> tuple[Unsupported, ...]:
-    """List the unsupported overhangs of every pass, and those that a rule excepts, which are no fault."""
-    parts = planned.build.parts
-    found: list[Unsupported] = []
-    for each, rules in zip(planned.passes, settings, strict=True):
-        found += find_unsupported(parts, each.layout.overhangs, bodies, rules, each.layout.reason_at)
-    excepted = [number for number, rule in enumerate(planned.build.resolved.job.rules, 1) if not rule.support]
-    left = find_unsupported(
-        parts, taken.chosen(excepted, ()), bodies, settings[0], lambda _, points: [EXCEPTED] * len(points)
-    )
-    return (*found, *(replace(each, minor=True) for each in left))
+    return SupportedBuild(build, planned.layouts, planned.overhangs, advice, removal)
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -281,12 +222,7 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
 
 
 def _layout(
-    build: PackedBuild,
-    overhangs: Sequence[PartOverhangs],
-    earlier: Sequence[SupportLayout],
-    pitch: float,
-    stop: Stop,
-    progress: Progress,
+    build: PackedBuild, overhangs: Sequence[PartOverhangs], pitch: float, stop: Stop, progress: Progress
 ) -> SupportLayout:
     job, resolved = build.resolved.job, build.resolved
     rules = replace(job.supports, pitch_mm=pitch)
@@ -297,7 +233,6 @@ def _layout(
         job.printer.space,
         rules,
         overhangs=overhangs,
-        earlier=earlier,
         material=material,
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress
@@ -310,13 +245,5 @@ def _layout(
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
     """Return the figures of each support body of `build`."""
     cells = job.cells
-    density = cells.density_g_cm3
-    densities = part_densities(job, build) if density is None else (density,) * len(build.parts)
-    rules = RemovalRules(job.supports.layer_mm, densities, cells.powder_hole_mm, cells.removability)
+    rules = RemovalRules(job.supports.layer_mm, cells.density_g_cm3, cells.powder_hole_mm, cells.removability)
     return measure_removal(build, rules)
-
-
-def part_densities(job: Job, build: Build) -> tuple[float | None, ...]:
-    """Return the density (g/cm3) of each part: that of its own material, or else that of the job's."""
-    materials = [placed.part.appearance.material for placed in build.parts]
-    return densities_of(materials, job.material, job.folder)

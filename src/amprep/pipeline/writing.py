@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from amprep.job import Job
 from amprep.model import Build, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.record import build_record
@@ -14,7 +13,6 @@ from amprep.report.record import BuildRecord, RunRecord
 
 def finish_build(
     supported: SupportedBuild,
-    job: Job,
     number: int,
     outputs: OutputFolder,
     dry_run: bool,
@@ -28,8 +26,6 @@ def finish_build(
     ----------
     supported
         The build with its supports.
-    job
-        Its job, of which material and layer height determine mass and hours.
     number
         Number of the build, from 1.
     outputs
@@ -43,7 +39,7 @@ def finish_build(
     """
     build = supported.build
     with clock.stage("measure"):
-        record = build_record(supported, job, stop)
+        record = build_record(supported, stop)
     if not dry_run:
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)

@@ -9,7 +9,6 @@ from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.violation import Violation
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
-from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -151,8 +150,6 @@ class BuildRecord:
         How the parts can be taken out of the build, by their indices in it.
     profile
         Area of the cross-section of the parts at each height.
-    printing
-        Mass, use of the plate, layers and hours, for the head of the report.
     """
 
     build: Build
@@ -175,7 +172,6 @@ class BuildRecord:
     removal_order: RemovalOrder = field(default_factory=RemovalOrder)
     profile: HeightProfile = NO_PROFILE
     pairs: PairCounts = field(default_factory=PairCounts)
-    printing: PrintingEstimate = field(default_factory=PrintingEstimate)
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
@@ -190,7 +186,7 @@ class BuildRecord:
     @property
     def unsupported_minor_mm2(self) -> float:
         """Area of the minor unsupported faces in mm2."""
-        return sum(each.measure for each in self.build.unsupported if each.is_small and each.kind == "face")
+        return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -256,7 +256,7 @@ def _unsupported(record: RunRecord) -> str:
         for region in entry.build.unsupported:
             unit = {"face": " mm²", "edge": " mm"}.get(region.kind, "")
             size = f"{region.measure:.2f}{unit}" if unit else ""
-            reason = f"{region.reason} (below the minimum size)" if region.is_small else region.reason
+            reason = f"{region.reason} (below the minimum size)" if region.minor else region.reason
             rows.append((number, region.label, region.kind, ("number", size), reason))
     listed = table(("Build|", "Region", "Kind", "Size|", "Reason"), rows) if rows else ""
     squares = Counter(

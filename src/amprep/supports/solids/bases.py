@@ -5,12 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.geometry.merging.union import finish
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports import footprints
-from amprep.model import CONTACT_TOLERANCE, BuildVolume, Mesh, PlacedPart, SupportBody
+from amprep.model import CONTACT_TOLERANCE, BuildVolume, PlacedPart
 from amprep.model.contacts import BaseRules
-from amprep.supports.layout import SupportLayout
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -20,12 +18,11 @@ LEAST_GAP = 0.3
 
 
 def make_bases(
-    solids: Sequence[Mesh | None],
+    supports: Sequence["Manifold | None"],
     parts: Sequence[PlacedPart],
     rules: BaseRules,
     space: BuildVolume | None,
     gap: float,
-    beside: "CrossSection | None" = None,
 ) -> list["Manifold | None"]:
     """Return the base of each support, None where it has none.
 
@@ -35,7 +32,7 @@ def make_bases(
 
     Parameters
     ----------
-    solids
+    supports
         Solid of each support group, None for a group without.
     parts
         Placed parts of the build.
@@ -45,17 +42,15 @@ def make_bases(
         Build volume, if it limits the bases.
     gap
         XY distance (mm) between supports and parts.
-    beside
-        Plan of the supports of other passes of planning.
     """
     if rules.base == "direct":
-        return [None] * len(solids)
+        return [None] * len(supports)
     gap = max(gap, LEAST_GAP)
     height = rules.base_height_mm + gap
-    supports = [None if mesh is None or not len(mesh.triangles) else _manifold(mesh) for mesh in solids]
-    taken = [footprints.shadow(_manifold(each.mesh), height) for each in parts if _is_low(each, height)]
+    taken = [
+        footprints.shadow(as_manifold(*each.mesh.arrays), height) for each in parts if _is_low(each, height)
+    ]
     shadows = [None if each is None else footprints.shadow(each, height) for each in supports]
-    taken += [] if beside is None else [beside]
     zones = _zones(space, rules.base_height_mm)
     found: list[Manifold | None] = []
     for group, support in enumerate(supports):
@@ -69,31 +64,6 @@ def make_bases(
         taken.append(plan)
         found.append(None if plan.is_empty() else plan.extrude(rules.base_height_mm))
     return found
-
-
-def plan_of_others(
-    earlier: Sequence[SupportBody], later: Sequence[SupportLayout], rules: BaseRules
-) -> "CrossSection | None":
-    """Return the plan of the supports of other passes near the plate; None where there are no bases or no others.
-
-    Parameters
-    ----------
-    earlier
-        Finished supports.
-    later
-        Layouts of supports that are not finished.
-    rules
-        Shape of the bases.
-    """
-    if rules.base == "direct" or not (earlier or later):
-        return None
-    height = rules.base_height_mm + LEAST_GAP
-    plans = [footprints.shadow(_manifold(each.mesh), height) for each in earlier if not each.surface]
-    for layout in later:
-        low = layout.edges[layout.edges.plane * layout.grid.step <= height + layout.grid.step].voxels
-        lo = layout.grid.origin + np.unique(low[:, ::-1], axis=0) * layout.grid.size
-        plans += [footprints.box(corner, corner + layout.grid.size) for corner in lo]
-    return footprints.union_of(plans)
 
 
 def _plan(
@@ -123,15 +93,3 @@ def _zones(space: BuildVolume | None, height: float) -> list["CrossSection"]:
 
 def _is_low(placed: PlacedPart, height: float) -> bool:
     return bool(placed.part.is_solid and placed.mesh.bounds[0][2] < height)
-
-
-def _manifold(mesh: Mesh) -> "Manifold":
-    return as_manifold(*mesh.arrays)
-
-
-def with_base(mesh: Mesh | None, base: "Manifold | None") -> Mesh | None:
-    """Return the union of a support and its base."""
-    if base is None:
-        return mesh
-    solids = [base] if mesh is None or not len(mesh.triangles) else [_manifold(mesh), base]
-    return Mesh(*finish(solids))

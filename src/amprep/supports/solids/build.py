@@ -1,6 +1,6 @@
 """Build the support bodies of a layout: cells for its edges, connectors up to the parts, bases, all united."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,13 +12,13 @@ from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop,
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
-from amprep.supports.solids.bases import make_bases, plan_of_others, with_base
+from amprep.supports.solids.bases import make_bases
 from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
 from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
 from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.request import make_request
-from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of
+from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -61,8 +61,6 @@ def build_supports(
     emit: Emit,
     rules: SolidRules,
     *,
-    earlier: Sequence[SupportBody] = (),
-    later: Sequence[SupportLayout] = (),
     stop: Stop,
     progress: Progress,
 ) -> tuple[SupportBody, ...]:
@@ -81,10 +79,6 @@ def build_supports(
         Calls the chosen lattice cell.
     rules
         Connectors, bases, distances, and the kinds of bodies that the target reads.
-    earlier
-        Bodies of earlier passes of planning; connectors and bases keep out of them.
-    later
-        Layouts of later passes; bases keep clear of the squares on the plate that they stand on.
     stop
         Checked between groups; groups that are not finished by then are left out.
     progress
@@ -118,7 +112,7 @@ def build_supports(
         _require_no_feet(layout, rules.base)
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
-    obstacles = PartObstacles(parts, clearance, earlier)
+    obstacles = PartObstacles(parts, clearance)
     surfaces = find_column_surfaces(layout)
     builder = _SupportBuilder(
         SupportContext(layout, surfaces, obstacles, rules.connector, depth), parts, instances, as_beams, rules
@@ -130,8 +124,7 @@ def build_supports(
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
         solids.append(builder.drained_solid(group))
-    beside = plan_of_others(earlier, later, rules.base)
-    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside)
+    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap)
     bodies: list[SupportBody] = []
     for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
         bodies += builder.bodies(group, name, solid, own_base)
@@ -193,20 +186,22 @@ class _SupportBuilder(NamedTuple):
     as_beams: CellInstances | None
     rules: SolidRules
 
-    def drained_solid(self, group: int) -> Mesh | None:
-        """Return the solid of a group, with drain holes where the cell promises them."""
+    def drained_solid(self, group: int) -> "Manifold | None":
+        """Return the solid of a group, with drain holes where the cell promises them; its pieces may float."""
         solid, diameter = solid_of(self.context, group, self.instances), self.instances.cells.hole
         if solid is None or diameter == 0.0:
             return solid
         held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
         return cut_drain_holes(solid, held, diameter, self.context.foot_boxes(group))
 
-    def bodies(self, group: int, name: str, solid: Mesh | None, base: "Manifold | None") -> list[SupportBody]:
+    def bodies(
+        self, group: int, name: str, solid: "Manifold | None", base: "Manifold | None"
+    ) -> list[SupportBody]:
         """Return the bodies of a group: its solid with its base, and its walls without thickness."""
-        held = self.context.layout.group_parts[group]
-        whole, found = with_base(solid, base), []
+        held, found = self.context.layout.group_parts[group], []
+        whole = stored_solid(solid, base, self.context.foot_boxes(group))
         sheet = sheet_of(self.context, group, self.instances) if self.instances.sheet.any() else None
-        if whole is not None and len(whole.triangles):
+        if whole is not None:
             lattice = None
             if self.as_beams is not None and self.rules.space is not None:
                 lattice = self._lattice(group, self.as_beams, whole, base, self.rules.space)
@@ -223,9 +218,9 @@ class _SupportBuilder(NamedTuple):
         context, held = self.context, self.context.layout.group_parts[group]
         own = beams_of_group(as_beams.cells, group)
         beams = clip_beams(own, self.parts, held, space, overlap=context.overlap, gap=self.rules.gap)
-        coarse = None
+        coarse, feet = None, context.foot_boxes(group)
         if len(whole.triangles) > MAX_STAND_IN_TRIANGLES:
             prisms = classify(as_beams.request, whole_prisms(as_beams.request))
-            coarse = with_base(solid_of(context, group, prisms), base)
-        solids = with_base(solid_of(context, group, as_beams, on_beams=True), base)
-        return lattice_of(beams, solids, whole, coarse, context.foot_boxes(group), space)
+            coarse = stored_solid(solid_of(context, group, prisms), base, feet)
+        solids = stored_solid(solid_of(context, group, as_beams, on_beams=True), base, None)
+        return lattice_of(beams, solids, whole, coarse, feet, space)

@@ -1,13 +1,16 @@
 """Cut drain holes into finished supports that would trap powder, for cells that promise to release it."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from amprep.arrays import Floats
-from amprep.geometry.merging.union import arrays_of, evaluated, finish
-from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.powder.drain_holes import find_drain_holes
 from amprep.model import Mesh
 from amprep.supports.solids.keep_out import drop_floating
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 _ROUNDS = 4
 """Largest number of rounds; a drain hole may end in another pocket, which the next round opens."""
@@ -17,14 +20,14 @@ _CRUMB = 1e-3
 
 
 def cut_drain_holes(
-    solid: Mesh, parts: Sequence[Mesh], diameter: float, boxes: tuple[Floats, Floats]
-) -> Mesh:
+    solid: "Manifold", parts: Sequence[Mesh], diameter: float, boxes: tuple[Floats, Floats]
+) -> "Manifold":
     """Return a support with drain holes for a ball, wherever short straight holes exist.
 
     Parameters
     ----------
     solid
-        The support.
+        The support; pieces of it that float stay.
     parts
         Parts that the support holds.
     diameter
@@ -35,16 +38,16 @@ def cut_drain_holes(
     from manifold3d import Manifold, OpType
 
     around = [(part.vertices, part.triangles) for part in parts]
-    whole = as_manifold(solid.vertices, solid.triangles)
-    arrays, found = (solid.vertices, solid.triangles), False
+    grounded = Mesh(*drop_floating(*arrays_of(solid), boxes))
     for _ in range(_ROUNDS):
-        holes = find_drain_holes(arrays, around, diameter)
+        holes = find_drain_holes(grounded.arrays, around, diameter) if len(grounded.triangles) else []
         if not holes:
             break
         cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in holes]
-        opened = evaluated(whole - Manifold.batch_boolean(cuts, OpType.Add))
+        opened = evaluated(solid - Manifold.batch_boolean(cuts, OpType.Add))
         rest = Mesh(*drop_floating(*arrays_of(opened), boxes))
-        if rest.signed_volume < opened.volume() - _CRUMB:
+        # as much must stand as stood before, apart from the holes
+        if rest.signed_volume - grounded.signed_volume < opened.volume() - solid.volume() - _CRUMB:
             break
-        whole, arrays, found = opened, (rest.vertices, rest.triangles), True
-    return Mesh(*finish([as_manifold(*arrays)])) if found else solid
+        solid, grounded = opened, rest
+    return solid

@@ -62,8 +62,8 @@ class SupportContext(NamedTuple):
 
 def solid_of(
     context: SupportContext, group: int, instances: CellInstances, *, on_beams: bool = False
-) -> Mesh | None:
-    """Return the closed solid of a support group, None when it has none.
+) -> "Manifold | None":
+    """Return the solid of a support group, whose pieces may float; None when it has none.
 
     Parameters
     ----------
@@ -74,13 +74,13 @@ def solid_of(
     instances
         Answer of the cell emitter.
     on_beams
-        Whether beams carry the solid: then its floating pieces are kept, and connectors begin no deeper than `SEAT`.
+        Whether beams carry the solid: then connectors begin no deeper than `SEAT`.
     """
     layout = context.layout
     mine = instances.of(group) & ~instances.sheet
     if instances.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(instances, group)
-        return Mesh(*finish(solids)) if solids else None
+        return union(solids) if solids else None
     red = layout.connected & (layout.red_group == group)
     seat = np.where(layout.red.square[:, 0] > 0, context.seat, 0.0)
     # beams carry connectors by their ends, so these must not begin deeper
@@ -103,10 +103,25 @@ def solid_of(
     cells = [*(as_manifold(*mesh) for mesh in below), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
     solids = context.obstacles.clip(cells + connectors)
-    if not solids:
-        return None
-    whole = finish(solids)
-    return Mesh(*whole) if on_beams else Mesh(*drop_floating(*whole, context.foot_boxes(group)))
+    return union(solids) if solids else None
+
+
+def stored_solid(
+    solid: "Manifold | None", base: "Manifold | None", feet: tuple[Floats, Floats] | None
+) -> Mesh | None:
+    """Return a solid with its base as a build file stores it, without floating pieces; None where nothing is left.
+
+    Parameters
+    ----------
+    solid, base
+        Solid of a support group, and its base.
+    feet
+        Boxes in which feet on parts end; None keeps floating pieces, because beams carry them.
+    """
+    solids = [each for each in (solid, base) if each is not None]
+    arrays = finish(solids)
+    mesh = Mesh(*(arrays if feet is None else drop_floating(*arrays, feet)))
+    return mesh if len(mesh.triangles) else None
 
 
 def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> list["Manifold"]:

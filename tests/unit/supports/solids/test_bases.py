@@ -177,7 +177,7 @@ def test_pieces_of_a_base_without_a_foot_are_dropped():
 
 def test_there_is_no_raft_below_a_part_that_is_closer_than_its_height():
     part = placed("part", box((20, 20, 0.7), (28, 28, 3)))
-    feet = mesh_of(box((21, 21, 0), (22, 22, 0.7)))
+    feet = box((21, 21, 0), (22, 22, 0.7))
     (pad,) = make_bases(
         [feet], (part,), BaseRules("raft", raft_margin_mm=3.0, raft_height_mm=0.5), PLAIN, 0.0
     )

@@ -1,0 +1,38 @@
+"""Tests of the finished solids of support groups."""
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.model import Mesh
+from amprep.supports.solids.drain_holes import cut_drain_holes
+from amprep.supports.solids.unite_group import stored_solid
+
+NO_FEET = np.empty((0, 3)), np.empty((0, 3))
+
+
+def box(size, corner):
+    return Manifold.cube(size).translate(corner)
+
+
+def test_a_support_that_vanishes_is_no_error():
+    part = box((5, 5, 5), (0, 0, 10)).to_mesh64()
+    mesh = Mesh(np.array(part.vert_properties)[:, :3], np.array(part.tri_verts, np.int64))
+    nothing = cut_drain_holes(Manifold(), [mesh], 0.2, NO_FEET)
+    assert nothing.is_empty()
+    assert stored_solid(nothing, None, NO_FEET) is None
+
+
+def test_a_support_that_only_floats_is_not_written():
+    assert stored_solid(box((1, 1, 1), (0, 0, 3)), None, NO_FEET) is None
+
+
+def test_a_stored_solid_has_the_volume_of_the_union_and_can_be_read_again():
+    ball = Manifold.sphere(5.0, 64).translate((7.1, 7.3, 5.0))
+    base = box((9.1, 9.3, 0.7), (0.123456789, 0.2, 0.0))
+    stored = stored_solid(ball, base, NO_FEET)
+    assert stored is not None
+    again = as_manifold(stored.vertices, stored.triangles)
+    assert again.status().name == "NoError"
+    assert again.volume() == pytest.approx((ball + base).volume(), rel=1e-5)
