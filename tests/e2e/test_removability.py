@@ -20,14 +20,14 @@ def test_low_x_walls_with_gaps_trap_no_powder_below_a_horizontal_plate(amprep, t
     trimesh.creation.box((24, 24, 4)).export(tmp_path / "plate.stl")
     found, done = supports(amprep, tmp_path, tmp_path / "plate.stl", "supports.pitch_mm=2")
     assert found["trapped_powder_mm3"] == 0.0
-    assert "powder cannot leave" not in done.out
+    assert "powder that cannot leave" not in " ".join(done.out.split())
 
 
 def test_x_walls_without_gaps_trap_powder_which_is_not_a_fault(amprep, fixtures, tmp_path):
     joined = ("supports.pitch_mm=4", "cells.params.join_every=1")
     found, done = supports(amprep, tmp_path, fixtures / "table.stl", *joined)
     assert done.code == 0
-    assert "powder cannot leave" in done.out
+    assert "powder that cannot leave" in " ".join(done.out.split())
     pockets = [pocket for body in found["bodies"] for pocket in body["pockets"]]
     assert len(pockets) > 50
     assert found["trapped_powder_mm3"] == pytest.approx(sum(pocket["volume_mm3"] for pocket in pockets))

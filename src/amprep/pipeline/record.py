@@ -24,10 +24,11 @@ from amprep.report.record import (
     OverhangRecord,
     RunRecord,
     ShownVolume,
-    Supported,
     UnconnectedSquare,
     UnplacedRecord,
 )
+from amprep.report.triage.classes import triage_of
+from amprep.report.triage.words import region_words, verdict_words
 from amprep.supports.plan import SupportLayout
 
 
@@ -82,6 +83,7 @@ def run_record(
         seed=job.seed,
         printer=job.printer.name,
         target=job.target,
+        material=job.material.name,
         objective=job.packing.objective,
         builds=tuple(replace(entry, volumes=_volumes(packed, number)) for number, entry in enumerate(builds)),
         unplaced=tuple(
@@ -140,38 +142,40 @@ def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
     unsupported: dict[str, list[Unsupported]] = {}
     for each in build.unsupported:
         unsupported.setdefault(each.label, []).append(each)
-    records = []
+    records: list[OverhangRecord] = []
     for part, (placed, (_, found)) in enumerate(zip(build.parts, supported.overhangs, strict=bool(layouts))):
         squares, connected = np.zeros((2, len(found.regions)), np.int64)
         for layout in layouts:
             own = layout.red.part == part
             squares += np.bincount(layout.red.region[own], minlength=len(found.regions))
             connected += np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
+        own_angle = placed.part.overrides.overhang_angle_deg
+        angle = build.settings.rules.overhang_angle_deg if own_angle is None else own_angle
         for number, region in enumerate(found.regions):
-            name = region_name(number, placed.label)
-            left = unsupported.get(name, ())
-            x, y, z = region.centre.tolist()
+            left = unsupported.get(region_name(number, placed.label), ())
+            entry = _overhang(region_name(number, placed.label), placed.label, region, left, angle)
             records.append(
-                OverhangRecord(
-                    name=name,
-                    part=placed.label,
-                    kind=region.kind,
-                    size=z if region.kind == "tip" else region.measure,
-                    position_mm=(x, y, z),
-                    demand_squares=int(squares[number]),
-                    connected_squares=int(connected[number]),
-                    supported=_supported(region, left),
-                    reasons=tuple(sorted({each.reason for each in left})),
-                )
+                replace(entry, demand_squares=int(squares[number]), connected_squares=int(connected[number]))
             )
     return tuple(records)
 
 
-def _supported(region: OverhangRegion, left: Sequence[Unsupported]) -> Supported:
-    """Return the extent to which a region is supported; `left` lists its unsupported regions."""
-    if all(each.minor for each in left):
-        return "fully"
-    return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"
+def _overhang(
+    name: str, part: str, region: OverhangRegion, left: Sequence[Unsupported], angle_deg: float
+) -> OverhangRecord:
+    """Return the record of a region without its demand squares; `left` is what of it has no support."""
+    found = triage_of(region, left, angle_deg)
+    x, y, z = region.centre.tolist()
+    return OverhangRecord(
+        name=name,
+        part=part,
+        region=region,
+        position_mm=(x, y, z),
+        verdict=region_words(verdict_words(region), found),
+        triage=found.triage,
+        supported=found.outcome,
+        reasons=tuple(sorted({each.reason for each in left})),
+    )
 
 
 def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedSquare, ...]:

@@ -64,13 +64,14 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
     from amprep.report.json_report import write_json
     from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture
+    from amprep.report.triage.findings import build_findings
 
     with clock.stage("report") as progress:
         builds = []
         for number, each in enumerate(record.builds, start=1):
             progress((number - 1) / (len(record.builds) + 1), f"picture {number}")
             name = outputs.of_build(number, "png")
-            write_picture(each.build, outputs.path(name))
+            write_picture(each.build, outputs.path(name), build_findings(each, number))
             builds.append(replace(each, picture=outputs.name(name)))
         record = replace(record, builds=tuple(builds))
         write_html(replace(record, stages=clock.times), outputs.path("report.html"))

@@ -11,10 +11,12 @@ from amprep.model import PlacedPart, Unsupported
 from amprep.model.packing import PackingStep
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
-from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
+from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import removal_order_json
+from amprep.report.triage.findings import findings_of
+from amprep.report.triage.json_form import counts_json, findings_json, overhang_json
 
-FORMAT = 1
+FORMAT = 2
 """Version of the layout; it increases when a key changes its meaning or is removed."""
 
 _REMOVAL_KEYS = {
@@ -26,17 +28,16 @@ _REMOVAL_KEYS = {
 }
 """Field of `Removal` -> key."""
 
-_OVERHANG_SIZES = {"face": "area_mm2", "edge": "length_mm", "tip": "height_mm"}
-
 
 def to_json(record: RunRecord) -> dict[str, Any]:
     """Return a run as plain values: dicts, lists, strings, finite numbers, booleans and None."""
-    fill = record.objective == "fill"
+    fill, found = record.objective == "fill", findings_of(record)
     report = {
         "format": FORMAT,
         "amprep_version": record.version,
         "job": record.job,
         "printer": record.printer,
+        "material": record.material or None,
         "target": record.target,
         "seed": record.seed,
         "objective": record.objective,
@@ -52,6 +53,8 @@ def to_json(record: RunRecord) -> dict[str, Any]:
         "excess": dict(record.excess),
         "gap": gap_of(record),
         "total_value": total_value(record) if fill else None,
+        "triage": counts_json(found),
+        "findings": findings_json(found),
         "builds": [_build(entry, fill) for entry in record.builds],
         "unplaced": [vars(item) | {"value": item.value if fill else None} for item in record.unplaced],
         "stages": stages_json(record.stages),
@@ -134,7 +137,7 @@ def _supports(entry: BuildRecord) -> dict[str, Any]:
     return {
         "volume_mm3": entry.support_volume_mm3,
         **{key: sums[name] for name, key in _REMOVAL_KEYS.items()},
-        "overhangs": [_overhang(region) for region in entry.overhangs],
+        "overhangs": [overhang_json(region) for region in entry.overhangs],
         "demand_squares": entry.demand_squares,
         "unconnected_squares": [vars(square) for square in entry.unconnected],
         "unsupported_mm2": entry.unsupported_mm2,
@@ -143,20 +146,6 @@ def _supports(entry: BuildRecord) -> dict[str, Any]:
         "bodies": [_body(entry, index) for index in range(len(build.supports))],
         "shared_supports": list(entry.shared_supports),
         "notes": list(entry.notes),
-    }
-
-
-def _overhang(region: OverhangRecord) -> dict[str, Any]:
-    return {
-        "name": region.name,
-        "part": region.part,
-        "kind": region.kind,
-        **{key: region.size if kind == region.kind else None for kind, key in _OVERHANG_SIZES.items()},
-        "position_mm": list(region.position_mm),
-        "demand_squares": region.demand_squares,
-        "connected_squares": region.connected_squares,
-        "supported": region.supported,
-        "reasons": list(region.reasons),
     }
 
 

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from amprep.arrays import Floats
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.violation import Violation
+from amprep.geometry.overhangs.regions import NOT_FACES, OverhangRegion
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
 from amprep.measures.removability import Removal
@@ -15,6 +16,7 @@ from amprep.model import BoundingVolume, Build, Unsupported
 from amprep.model.counting import counted
 from amprep.model.packing import BoundFor, Objective, PackingStep
 from amprep.model.summary import Summarised
+from amprep.report.triage.classes import Outcome, Triage
 
 
 @dataclass(frozen=True)
@@ -51,40 +53,42 @@ class UnconnectedSquare:
     position_mm: tuple[float, float, float]
 
 
-Supported = Literal["fully", "partly", "not"]
-
-
 @dataclass(frozen=True)
 class OverhangRecord:
-    """A region that needs support, with the extent to which it is supported.
+    """A region of overhangs, with its verdict and the extent to which it is supported.
 
     Attributes
     ----------
     name
         Name in reports, for example ``overhang 7 of bracket-2``.
-    kind
-        ``face``, ``edge`` or ``tip``.
-    size
-        Area of a face in mm2, length of an edge in mm, or height of a tip above the plate in mm.
+    part
+        Label of the placed part.
+    region
+        The region with the sizes that its verdict rests on.
     position_mm
         Its centre in build coordinates.
-    demand_squares, connected_squares
-        Number of its demand squares, and of those that a support connects.
+    verdict
+        What it is, and whether it is supported, in words.
+    triage
+        What must be done about it.
     supported
         Extent to which it is supported; minor remainders count as supported.
     reasons
         Reasons for its unsupported parts, minor remainders included.
+    demand_squares, connected_squares
+        Number of its demand squares, and of those that a support connects.
     """
 
     name: str
     part: str
-    kind: str
-    size: float
+    region: OverhangRegion
     position_mm: tuple[float, float, float]
-    demand_squares: int
-    connected_squares: int
-    supported: Supported
+    verdict: str
+    triage: Triage
+    supported: Outcome
     reasons: tuple[str, ...] = ()
+    demand_squares: int = 0
+    connected_squares: int = 0
 
 
 @dataclass(frozen=True)
@@ -139,7 +143,7 @@ class BuildRecord:
     notes
         Further remarks of support planning, one sentence each.
     overhangs
-        All regions that need support.
+        All regions of overhangs, also those that the part itself carries.
     slenderness, removal
         Figures of each support body; empty if not measured.
     advice
@@ -181,12 +185,13 @@ class BuildRecord:
     @property
     def unsupported_mm2(self) -> float:
         """Area of the unsupported faces in mm2, without minor ones; edges and tips have no area."""
-        return sum(region.measure for region in self.unsupported if region.kind == "face")
+        return sum(region.measure for region in self.unsupported if region.kind not in NOT_FACES)
 
     @property
     def unsupported_minor_mm2(self) -> float:
         """Area of the minor unsupported faces in mm2."""
-        return sum(each.measure for each in self.build.unsupported if each.minor and each.kind == "face")
+        minor = (each for each in self.build.unsupported if each.minor and each.kind not in NOT_FACES)
+        return sum(each.measure for each in minor)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,6 +231,8 @@ class RunRecord(Summarised):
         The job's settings as nested plain values.
     objective
         ``builds``, ``height`` or ``fill``; in a fill problem, unplaced copies are not faults.
+    material
+        Name of the material profile.
     report_files
         Names of the HTML and JSON reports, if they are written.
     """
@@ -253,6 +260,7 @@ class RunRecord(Summarised):
     packed_as: str = "bounding volumes"
     steps: tuple[PackingStep, ...] = ()
     excess: Mapping[str, float] = field(default_factory=dict)
+    material: str = ""
     report_files: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -1,6 +1,7 @@
 """The summary of a run for the terminal."""
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +15,13 @@ from amprep.report.objective import (
     status_words,
     step_words,
 )
-from amprep.report.record import BuildRecord, RunRecord, StageTime, UnplacedRecord
+from amprep.report.record import BuildRecord, RunRecord, StageTime
 from amprep.report.removal_order import hindrances_of, waiting_parts
+from amprep.report.triage.classes import CHECK, MUST_FIX
+from amprep.report.triage.findings import Finding, findings_of
+from amprep.report.triage.groups import count_by_triage, counts_in_words, grouped
+from amprep.report.triage.rules import rules_of
+from amprep.report.triage.words import finding_words
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -24,13 +30,18 @@ if TYPE_CHECKING:
 MOST_LINES = 12
 """Lines of a list that the terminal shows; the reports contain all of them."""
 
+MOST_FINDINGS = 6
+"""Lines on what must be fixed, and on what is worth a check."""
+
 
 def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     """Return the table of builds, the issues, the durations of stages and the files in `folder`, ready to print."""
     from rich.console import Group
     from rich.text import Text
 
-    blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
+    findings = findings_of(record)
+    blocks: list[RenderableType] = [_builds(record, findings), Text(_totals(record))]
+    blocks += [Text(printable(line), style="dim") for line in rules_of(record)]
     if record.steps:
         blocks.append(Text(printable(step_words(record)), style="dim"))
     if pieces := excess_words(record):
@@ -38,8 +49,10 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     blocks += [Text(printable(line), style="dim") for line in record.by_default]
     blocks += [Text(printable(line), style="dim") for line in _listed(_values(record), "in the report")]
     blocks += [Text(printable(line), style="dim") for line in _listed(_waiting(record), "in the report")]
-    issues = _listed(_issues(record), "in the report")
-    blocks += [Text(f"! {printable(line)}", style="yellow") for line in issues]
+    blocks += [
+        Text(f"! {printable(line)}", style="yellow") for line in _listed(_issues(record), "in the report")
+    ]
+    blocks += [Text(printable(line), style=style) for line, style in _triage(findings)]
     blocks += [Text(line, style="dim") for line in _judged(record)]
     blocks += [Text(_stages(record.stages), style="dim")]
     written = [f"wrote {folder / name}" for name in _files(record)]
@@ -47,7 +60,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     return Group(*blocks)
 
 
-def _builds(record: RunRecord) -> "Table":
+def _builds(record: RunRecord, findings: Sequence[Finding]) -> "Table":
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -55,8 +68,9 @@ def _builds(record: RunRecord) -> "Table":
     table = Table(
         box=box.SIMPLE_HEAD, title=Text(printable(f"{record.job} on {record.printer}")), title_justify="left"
     )
+    must_fix = Counter(each.build for each in findings if each.triage == MUST_FIX)
     table.add_column("build")
-    for heading in ("parts", "density", "height", "supports", "unsupported", "verified"):
+    for heading in ("parts", "density", "height", "supports", "unsupported", "must fix", "verified"):
         table.add_column(heading, justify="right", no_wrap=True)
     for number, entry in enumerate(record.builds, start=1):
         table.add_row(
@@ -66,6 +80,7 @@ def _builds(record: RunRecord) -> "Table":
             f"{entry.height_mm:.1f} mm",
             f"{entry.support_volume_mm3 / 1000:.2f} cm³",
             f"{entry.unsupported_mm2:.1f} mm²",
+            str(must_fix[number]),
             _verified(entry),
         )
     return table
@@ -106,45 +121,36 @@ def _waiting(record: RunRecord) -> list[str]:
 
 
 def _issues(record: RunRecord) -> list[str]:
-    """Return one line for each warning, unplaced copy, broken promise, unsupported region, and hindrance of removal."""
+    """Return one line for each warning, for unplaced copies of a fill job, and for parts whose removal is unknown."""
     lines = list(record.warnings)
-    lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in _lost(record)]
+    if record.objective == "fill":
+        lost = [item for item in record.unplaced if item.reason != "no room left"]
+        lines += [f"unplaced: {item.name} (copy {item.copy}): {item.reason}" for item in lost]
     for number, entry in enumerate(record.builds, start=1):
-        lines += [f"build {number}: {found}" for found in entry.verification or ()]
-        lines += [f"build {number}: unsupported: {line}" for line in _unsupported(entry)]
-        lines += [f"build {number}: {line}" for line in _trapped_powder(entry)]
-        lines += [f"build {number}: {line}" for line in hindrances_of(entry)]
+        lines += [
+            f"build {number}: {line}" for line in hindrances_of(entry)[len(entry.removal_order.locked) :]
+        ]
     return lines
 
 
-def _lost(record: RunRecord) -> list[UnplacedRecord]:
-    """Return the unplaced copies that get a line: in a fill problem, not those for which no room is left."""
-    return [item for item in record.unplaced if record.objective != "fill" or item.reason != "no room left"]
-
-
-def _unsupported(entry: BuildRecord) -> list[str]:
-    """Return one line for each part that has unsupported regions."""
-    lines = []
-    for index, placed in enumerate(entry.build.parts):
-        regions = [region for region in entry.unsupported if region.part == index]
-        reasons = Counter(region.reason for region in regions)
-        if len(regions) == 1:
-            lines.append(f"{regions[0].label}: {regions[0].reason}")
-        elif regions:
-            counts = ", ".join(f"{count} {reason}" for reason, count in reasons.most_common())
-            lines.append(f"{len(regions)} regions of {placed.label}: {counts}")
-    return lines
-
-
-def _trapped_powder(entry: BuildRecord) -> list[str]:
-    """Return a line if the supports enclose powder."""
-    pockets = [pocket for removal in entry.removal for pocket in removal.pockets or ()]
-    if not pockets:
+def _triage(findings: Sequence[Finding]) -> list[tuple[str, str]]:
+    """Return a line with the number of findings of each class, and the first that must be fixed, with their styles."""
+    counts = count_by_triage(findings)
+    if not findings:
         return []
-    volume = sum(pocket.volume for pocket in pockets)
+    groups = grouped(findings)
+    urgent = [each for group in groups for each in group.findings if each.triage == MUST_FIX]
+    must_fix = [f"must fix: {_in_build(each)}{finding_words(each)}" for each in urgent]
+    checks = [f"worth a check: {each.part}: {each.words}" for each in groups if each.triage == CHECK]
     return [
-        f"powder cannot leave {counted(len(pockets), 'pocket')} in the supports, {volume:.1f} mm³ in total"
+        (counts_in_words(counts), "red" if urgent else "yellow" if checks else "green"),
+        *((line, "red") for line in _listed(must_fix, "in the report", MOST_FINDINGS)),
+        *((line, "yellow") for line in _listed(checks, "in the report", MOST_FINDINGS)),
     ]
+
+
+def _in_build(finding: Finding) -> str:
+    return f"build {finding.build}: " if finding.build else ""
 
 
 def _stages(stages: tuple[StageTime, ...]) -> str:
@@ -159,11 +165,11 @@ def _files(record: RunRecord) -> list[str]:
     return [*record.report_files, *(name for name in names if name)]
 
 
-def _listed(lines: list[str], rest: str) -> list[str]:
+def _listed(lines: list[str], rest: str, most: int = MOST_LINES) -> list[str]:
     """Return the first lines; if there are too many, the last one says where the rest is."""
-    if len(lines) <= MOST_LINES:
+    if len(lines) <= most:
         return lines
-    return [*lines[: MOST_LINES - 1], f"... and {len(lines) - MOST_LINES + 1} more {rest}"]
+    return [*lines[: most - 1], f"... and {len(lines) - most + 1} more {rest}"]
 
 
 def printable(text: str) -> str:

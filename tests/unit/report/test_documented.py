@@ -4,9 +4,11 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from amprep.checks.violation import Violation
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.geometry.powder.pockets import Pocket
 from amprep.infill.fill_region import FilledPart
 from amprep.measures.removability import Removal
@@ -76,7 +78,16 @@ def run(make_build) -> RunRecord:
         unconnected=(UnconnectedSquare("bar", "overhang 1 of bar", "enclosed", (4, 2, 1), at),),
         verification=(BROKEN,),
         overhangs=(
-            OverhangRecord("overhang 1 of bar", "bar", "face", 12.5, at, 4, 3, "partly", ("enclosed",)),
+            OverhangRecord(
+                "overhang 1 of bar",
+                "bar",
+                OverhangRegion("ledge", 12.5, np.zeros(3), 6.0, 1.0),
+                at,
+                "ledge 6.0 mm over 1.0",
+                "must fix",
+                "partly",
+                ("enclosed",),
+            ),
         ),
         slenderness=tuple(map(measure_slenderness, build.supports)),
         removal=tuple(Removal(1.0, 2.0, 3.0, 4, (POCKET,), 0.1) for _ in build.supports),

@@ -63,7 +63,7 @@ def _view(each: InspectedPart, pack: GeometryPack) -> dict[str, Any]:
         "supportColour": SUPPORT,
         "parts": [_shown_part(each, shift, pack)],
         "supports": [],
-        "unsupported": [],
+        "marks": [],
         "volumes": [choice for volume in each.volumes for choice in _choice(volume, shift, pack)],
     }
 

@@ -50,7 +50,7 @@ def draw_volume(
     low, high = join_meshes([turned, *pieces]).bounds
     camera = fitted(VIEW, box_corners(low, high), (2 * size[0], 2 * size[1]), margin=0.22 * size[1])
     lines = outlines(pieces, _LINE_PIXELS / camera.pixels_per_mm)
-    marks = ColouredMesh(lines, VOLUME, PART_KIND) if len(lines.triangles) else None
+    marks = [ColouredMesh(lines, VOLUME, PART_KIND)] if len(lines.triangles) else []
     beside = np.eye(4)
     beside[:3, 3] = VIEW[0] * 2 * size[0] / camera.pixels_per_mm
     colours = PALETTE if len(pieces) > 1 else (VOLUME,)

@@ -2,18 +2,30 @@
 
 from collections.abc import Iterable, Sequence
 from html import escape
+from itertools import repeat
 
 Cell = str | float | tuple[str, str]
 """Text that is escaped; a number, aligned to the right; or a CSS class and HTML, used as it is."""
 
 
-def table(headings: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table; a heading that ends with ``|`` is that of a column of numbers."""
+def table(headings: Sequence[str], rows: Iterable[Sequence[Cell]], tags: Iterable[str] | None = None) -> str:
+    """Return a table; a heading that ends with ``|`` is that of a column of numbers.
+
+    Parameters
+    ----------
+    headings, rows
+        Headings, and the cells of each row.
+    tags
+        Attributes of each row in HTML; None for no attributes.
+    """
     head = "".join(
         f"<th{' class=number' if heading.endswith('|') else ''}>{escape(heading.rstrip('|'))}</th>"
         for heading in headings
     )
-    body = "".join("<tr>" + "".join(map(_cell, row)) + "</tr>\n" for row in rows)
+    body = "".join(
+        f"<tr{f' {tag}' if tag else ''}>{''.join(map(_cell, row))}</tr>\n"
+        for row, tag in zip(rows, repeat("") if tags is None else tags, strict=False)
+    )
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>\n'
 
 

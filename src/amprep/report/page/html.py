@@ -36,7 +36,7 @@ VIEWER = """\
 def write_html(record: RunRecord, path: Path) -> None:
     """Write the report as one HTML file without references to other files; it appears complete, or not at all.
 
-    Every string from a file is escaped. A content security policy allows only the bundled script and no network
+    Every string from a file is escaped. A content security policy allows only the bundled scripts and no network
     access.
     """
     with replacing(path) as temporary:
@@ -50,7 +50,7 @@ def html_text(record: RunRecord) -> str:
 
 
 def page_text(title: str, body: str, model: dict[str, Any], geometry: str) -> str:
-    """Return a page with the script and the style of the 3D view.
+    """Return a page with the scripts of the 3D view and of tables, and the style of both.
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ def page_text(title: str, body: str, model: dict[str, Any], geometry: str) -> st
     model, geometry
         Data of the 3D view.
     """
-    script, style = _resource("viewer.bundle.js"), _resource("page.css")
+    viewer, script, style = _resource("viewer.bundle.js"), _resource("page.js"), _resource("page.css")
     policy = (
-        f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
+        f"default-src 'none'; script-src '{_digest(viewer)}' '{_digest(script)}'; style-src '{_digest(style)}'; "
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
     return (
@@ -75,7 +75,7 @@ def page_text(title: str, body: str, model: dict[str, Any], geometry: str) -> st
         f"{body}</main>\n"
         f'<script type="application/json" id="model">{_json(model)}</script>\n'
         f'<script type="text/plain" id="geometry">{geometry}</script>\n'
-        f"<script>{script}</script>\n</body>\n</html>\n"
+        f'<script id="tables">{script}</script>\n<script>{viewer}</script>\n</body>\n</html>\n'
     )
 
 

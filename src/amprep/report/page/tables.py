@@ -2,7 +2,6 @@
 
 import json
 from collections import Counter
-from collections.abc import Sequence
 from html import escape
 from textwrap import dedent
 
@@ -13,21 +12,18 @@ from amprep.model.counting import counted
 from amprep.report.json_values import plain
 from amprep.report.objective import status_words
 from amprep.report.page.cells import Cell, table
+from amprep.report.page.findings import MOST_ROWS, chips, finding_sections
 from amprep.report.page.packing import objective_figures, packing_section, values_section
 from amprep.report.page.profile_chart import profile_chart
 from amprep.report.picture.colours import part_colours
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
+from amprep.report.triage.findings import findings_of
+from amprep.report.triage.rules import rules_of
 
 
 def header(record: RunRecord) -> str:
-    """Return the title with the number of issues, the run's settings and the key figures."""
-    faults = record.faults
-    chip = (
-        f'<span class="chip bad">{counted(faults, "issue")}</span>'
-        if faults
-        else '<span class="chip">no issues</span>'
-    )
+    """Return the title with the number of findings of each class, the run's settings and the key figures."""
     lead = " · ".join(
         escape(text)
         for text in (
@@ -41,7 +37,11 @@ def header(record: RunRecord) -> str:
         f"<div{' class=bad' if bad else ''}><dt>{name}</dt><dd>{value}</dd></div>"
         for name, value, bad in _figures(record)
     )
-    title = f'<header><h1>{escape(record.job)}{chip}</h1>\n<p class="lead">{lead}</p></header>\n'
+    rules = "".join(f'<p class="lead">{escape(words)}</p>\n' for words in rules_of(record))
+    title = (
+        f'<header><h1>{escape(record.job)}</h1>\n<p class="chips">{chips(findings_of(record))}</p>\n'
+        f'<p class="lead">{lead}</p>\n{rules}</header>\n'
+    )
     return f'{title}<dl class="figures">{figures}</dl>\n'
 
 
@@ -53,10 +53,9 @@ def body_sections(record: RunRecord) -> str:
         ("Packing", packing_section(record)),
         ("Values", values_section(record)),
         ("Unplaced copies", _unplaced(record)),
-        ("Unsupported regions", _unsupported(record)),
         ("Supports", "".join(_supports(number, entry) for number, entry in numbered)),
         ("Support removal", "".join(_removal(number, entry) for number, entry in numbered)),
-        ("Overhangs", "".join(_overhangs(number, entry) for number, entry in numbered)),
+        ("Demand squares without a support", _unconnected(record)),
         ("Cross-section by height", "".join(profile_chart(number, entry) for number, entry in numbered)),
         ("Removal of parts", "".join(_part_removal(number, entry) for number, entry in numbered)),
         ("Verification", _verification(record)),
@@ -65,7 +64,7 @@ def body_sections(record: RunRecord) -> str:
         ("Durations", _stages(record)),
         ("Settings", _settings(record)),
     ]
-    body = "".join(
+    body = finding_sections(record) + "".join(
         f"<section><h2>{title}</h2>\n{content}</section>\n" for title, content in sections if content
     )
     footer = (
@@ -94,7 +93,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
         ("Build height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
         ("Support volume", f"{volume:.2f} <small>cm³</small>", False),
-        ("Unsupported area", f"{area:.1f} <small>mm²</small>", any(e.unsupported for e in builds)),
+        ("Unsupported area", f"{area:.1f} <small>mm²</small>", area > 0.0),
         ("Violations", violations, bool(broken)),
         ("Run time", f"{sum(stage.seconds for stage in record.stages):.1f} <small>s</small>", False),
     ]
@@ -228,47 +227,22 @@ def _figure(value: float | None, form: str) -> tuple[str, str]:
     return "number", "" if value is None else f"{value:{form}}"
 
 
-def _overhangs(number: int, entry: BuildRecord) -> str:
-    if not entry.overhangs:
-        return ""
-    units = {"face": "mm²", "edge": "mm long", "tip": "mm high"}
-    rows = (
-        (
-            each.name,
-            each.kind,
-            ("number", f"{each.size:.2f} {units[each.kind]}"),
-            ", ".join(f"{value:.2f}" for value in each.position_mm),
-            ("number", f"{each.connected_squares} of {each.demand_squares}"),
-            each.supported,
-            ", ".join(each.reasons),
-        )
-        for each in entry.overhangs
-    )
-    headings = ("Overhang", "Kind", "Size|", "Centre mm", "Demand squares connected|", "Supported", "Reasons")
-    supported = sum(each.supported == "fully" for each in entry.overhangs)
-    name = f"Build {number}: {counted(len(entry.overhangs), 'overhang')}, {supported} fully supported"
-    return _details(name, table(headings, rows))
-
-
-def _unsupported(record: RunRecord) -> str:
-    rows: list[Sequence[Cell]] = []
-    for number, entry in enumerate(record.builds, start=1):
-        for region in entry.build.unsupported:
-            unit = {"face": " mm²", "edge": " mm"}.get(region.kind, "")
-            size = f"{region.measure:.2f}{unit}" if unit else ""
-            reason = f"{region.reason} (below the minimum size)" if region.minor else region.reason
-            rows.append((number, region.label, region.kind, ("number", size), reason))
-    listed = table(("Build|", "Region", "Kind", "Size|", "Reason"), rows) if rows else ""
+def _unconnected(record: RunRecord) -> str:
+    """Return the demand squares without a support, counted by region and reason."""
     squares = Counter(
         (number, square.region, square.reason)
         for number, entry in enumerate(record.builds, start=1)
         for square in entry.unconnected
     )
     if not squares:
-        return listed
-    grouped = [(number, region, count, reason) for (number, region, reason), count in squares.items()]
-    name = f"{counted(sum(squares.values()), 'demand square')} without a support"
-    return listed + _details(name, table(("Build|", "Region", "Demand squares|", "Reason"), grouped))
+        return ""
+    rows = [
+        (number, region, count, reason) for (number, region, reason), count in squares.most_common(MOST_ROWS)
+    ]
+    left = len(squares) - len(rows)
+    name = f"{counted(squares.total(), 'demand square')} in {counted(len(squares), 'region')}"
+    note = f'<p class="empty">{left} more are in the JSON report.</p>' if left else ""
+    return _details(name, table(("Build|", "Region", "Demand squares|", "Reason"), rows) + note)
 
 
 def _verification(record: RunRecord) -> str:

@@ -15,23 +15,34 @@ from amprep.model import (
     Mesh,
     PlacedPart,
     SupportBody,
-    Unsupported,
 )
 from amprep.model.counting import counted
 from amprep.model.mesh import join_meshes
 from amprep.model.volume_meshes import meshes_of
 from amprep.report.page.geometry import GeometryPack
-from amprep.report.picture.colours import PALETTE, SUPPORT, VOLUME, part_colours
+from amprep.report.picture.colours import MARK_COLOURS, PALETTE, SUPPORT, VOLUME, part_colours
 from amprep.report.picture.marks import mark_radius, thinned
 from amprep.report.record import BuildRecord, RunRecord
+from amprep.report.triage.classes import Triage
+from amprep.report.triage.findings import Finding, findings_of
+from amprep.report.triage.groups import grouped
+from amprep.report.triage.words import position_words
+
+MOST_MARKED = 300
+"""Findings of one class and build that have a mark of their own in the 3D view."""
 
 
 def view_model(record: RunRecord) -> tuple[dict[str, Any], str]:
     """Return the model as plain values, and the geometry in base64, of the 3D view."""
     pack = GeometryPack()
+    findings = findings_of(record)
     builds = [
-        _build(entry.build, _locks(entry), pack) | {"volumes": _packed(entry, pack)}
-        for entry in record.builds
+        _build(entry.build, _locks(entry), pack)
+        | {
+            "marks": _marks([each for each in findings if each.build == number], pack),
+            "volumes": _packed(entry, pack),
+        }
+        for number, entry in enumerate(record.builds, start=1)
     ]
     return {"builds": builds, "meshes": pack.entries}, pack.base64()
 
@@ -61,7 +72,6 @@ def _build(build: Build, locks: dict[int, str], pack: GeometryPack) -> dict[str,
             for index, (placed, colour) in enumerate(zip(build.parts, part_colours(build), strict=True))
         ],
         "supports": [_support(body, build, pack) for body in build.supports],
-        "unsupported": [_unsupported(region, pack) for region in build.unsupported],
     }
 
 
@@ -147,15 +157,39 @@ def _support(body: SupportBody, build: Build, pack: GeometryPack) -> dict[str, A
     }
 
 
-def _unsupported(region: Unsupported, pack: GeometryPack) -> dict[str, Any]:
-    unit = {"face": " mm²", "edge": " mm"}.get(region.kind)
-    size = f"{region.kind}, {region.measure:.2f}{unit}" if unit else region.kind
-    points = thinned(region.points)
-    marks = pack.add(Mesh(points, np.empty((0, 3), np.int32))) if len(points) else -1
+def _marks(findings: Sequence[Finding], pack: GeometryPack) -> list[dict[str, Any]]:
+    """Return the marks of what must be fixed, then of what is worth a check; those beyond the most are one mark."""
+    marks: list[dict[str, Any]] = []
+    for triage, colour in MARK_COLOURS.items():
+        found = [each for group in grouped(findings) for each in group.findings if each.triage == triage]
+        placed = [each for each in found if len(each.points)]
+        marks += [_mark(each, colour, pack) for each in placed[:MOST_MARKED]]
+        if rest := placed[MOST_MARKED:]:
+            marks.append(_common_mark(triage, rest, colour, pack))
+    return marks
+
+
+def _mark(finding: Finding, colour: str, pack: GeometryPack) -> dict[str, Any]:
     return {
-        "name": region.label,
-        "reason": region.reason,
-        "points": marks,
-        "radius": mark_radius(region.radius),
-        "facts": [size, region.reason],
+        "name": finding.name,
+        "triage": finding.triage,
+        "colour": colour,
+        "points": pack.add(Mesh(thinned(finding.points), np.empty((0, 3), np.int32))),
+        "radius": mark_radius(finding.radius),
+        "facts": [finding.words, f"at {position_words(finding)} mm"],
+    }
+
+
+def _common_mark(
+    triage: Triage, findings: Sequence[Finding], colour: str, pack: GeometryPack
+) -> dict[str, Any]:
+    """Return one mark with a point of each of many findings."""
+    points = np.stack([each.points[0] for each in findings])
+    return {
+        "name": f"{len(findings)} more",
+        "triage": triage,
+        "colour": colour,
+        "points": pack.add(Mesh(points, np.empty((0, 3), np.int32))),
+        "radius": mark_radius(1.0),
+        "facts": ["each is in the tables below or in the JSON report"],
     }

@@ -1,5 +1,6 @@
 """Draw builds and meshes as PNG pictures, without a graphics card."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,10 @@ from amprep.model import Build, Mesh
 from amprep.report.picture.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.picture.labels import draw_labels
 from amprep.report.picture.render import render
-from amprep.report.picture.scene import PART_KIND, ColouredMesh, build_meshes, plate_mesh, unsupported_marks
+from amprep.report.picture.scene import PART_KIND, ColouredMesh, build_meshes, finding_marks, plate_mesh
+from amprep.report.record import BuildRecord
+from amprep.report.triage.findings import Finding, build_findings
+from amprep.report.triage.groups import count_by_triage
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -20,33 +24,42 @@ VIEW = view_axes(-62.0, 34.0)
 """Axes of a viewer in front of the build and to the right, looking down."""
 
 
-def write_picture(build: Build, path: Path, *, size: tuple[int, int] = (1600, 1200)) -> None:
+def write_picture(
+    build: Build,
+    path: Path,
+    findings: Sequence[Finding] | None = None,
+    *,
+    size: tuple[int, int] = (1600, 1200),
+) -> None:
     """Write a picture of a build as PNG.
 
-    It shows the build plate with lines every 10 and 50 mm, parts in different colours, supports, and unsupported
-    regions in red.
+    It shows the build plate with lines every 10 and 50 mm, parts in different colours, and supports. What must be
+    fixed is marked red, and what is worth a check orange.
 
     Parameters
     ----------
     build, path
         The build and the file; the file appears complete, or not at all.
+    findings
+        What was found about the build; None for its unsupported regions.
     size
         Width and height in pixels.
     """
-    _save(build_picture(build, size), path)
+    found = build_findings(BuildRecord(build)) if findings is None else findings
+    _save(build_picture(build, found, size), path)
 
 
-def build_picture(build: Build, size: tuple[int, int] = (1600, 1200)) -> "Image":
+def build_picture(build: Build, findings: Sequence[Finding], size: tuple[int, int] = (1600, 1200)) -> "Image":
     """Return the picture that `write_picture` writes."""
     from PIL import Image
 
     meshes = build_meshes(build)
     space = build.settings.space
     camera = _camera(meshes, space.size, size)
-    marks = unsupported_marks(build, min_radius=5.0 / camera.pixels_per_mm)
+    marks = finding_marks(findings, min_radius=5.0 / camera.pixels_per_mm)
     plate = plate_mesh(np.zeros(3), space.size)
     pixels = render([plate, *meshes], marks, camera, size, space)
-    return draw_labels(Image.fromarray(pixels), build, camera)
+    return draw_labels(Image.fromarray(pixels), build, count_by_triage(findings), camera)
 
 
 def draw_mesh(
@@ -66,7 +79,7 @@ def draw_mesh(
     from PIL import Image
 
     camera = fitted(VIEW, box_corners(*mesh.bounds), (2 * size[0], 2 * size[1]), margin=120.0)
-    _save(Image.fromarray(render([ColouredMesh(mesh, colour, PART_KIND)], None, camera, size, None)), path)
+    _save(Image.fromarray(render([ColouredMesh(mesh, colour, PART_KIND)], (), camera, size, None)), path)
 
 
 def _camera(meshes: list[ColouredMesh], plate: Floats, size: tuple[int, int]) -> Camera:

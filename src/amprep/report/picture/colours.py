@@ -3,13 +3,16 @@
 import re
 
 from amprep.model import Build
+from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
 
 PALETTE = (
-    "#4c78a8", "#f58518", "#54a24b", "#b279a2", "#e45756", "#72b7b2", "#eeca3b", "#9d755d",
-    "#ff9da6", "#6b8ead", "#d6a56c", "#88d27a", "#8c6bb1", "#83bcb6", "#c9714f", "#7f9c3b",
+    "#4c78a8", "#54a24b", "#b279a2", "#72b7b2", "#9d755d", "#6b8ead", "#88d27a", "#8c6bb1",
+    "#83bcb6", "#7f9c3b", "#5f6b7a", "#a3b5d6", "#3f7f6f", "#c3a6d8", "#8a8d5b", "#b3907c",
 )  # fmt: skip
+"""Colours of parts: none is near red or orange, which mark findings."""
 SUPPORT = "#c9ced6"
-UNSUPPORTED = "#e5202b"
+MARK_COLOURS: dict[Triage, str] = {MUST_FIX: "#e5202b", CHECK: "#f28c00"}
+"""Class -> colour of its marks; what is in order has none."""
 VOLUME = "#d98b2b"
 """Colour of a bounding volume of one piece, and of the outlines of all."""
 

@@ -1,5 +1,6 @@
 """Draw the title of a picture and a ruler in millimetres along the plate."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,8 @@ from amprep.measures.density import build_height
 from amprep.model import Build
 from amprep.model.counting import counted
 from amprep.report.picture.camera import Camera
+from amprep.report.picture.colours import MARK_COLOURS
+from amprep.report.triage.classes import Triage
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 INK, SOFT = (38, 46, 58), (112, 121, 134)
 
 
-def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
+def draw_labels(image: "Image", build: Build, counts: Mapping[Triage, int], camera: Camera) -> "Image":
     """Draw title and ruler on a picture and return it.
 
     Parameters
@@ -26,6 +29,8 @@ def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
         Modified in place.
     build
         Gives the title and the size of the plate.
+    counts
+        Number of findings of each class.
     camera
         Made for a picture of twice the width and height.
     """
@@ -35,6 +40,7 @@ def draw_labels(image: "Image", build: Build, camera: Camera) -> "Image":
     unit = image.width / 1600
     draw.text((36 * unit, 28 * unit), build.settings.build_id, INK, ImageFont.load_default(30 * unit))
     draw.text((36 * unit, 68 * unit), _subtitle(build), SOFT, ImageFont.load_default(20 * unit))
+    _legend(draw, counts, unit)
     _ruler(draw, build.settings.space.size, camera, unit)
     return image
 
@@ -48,10 +54,20 @@ def _subtitle(build: Build) -> str:
         counted(len(build.parts), "part"),
         f"{build_height(build):.1f} mm high",
     ]
-    count = sum(not region.minor for region in build.unsupported)
-    if count:
-        items.append(f"{counted(count, 'unsupported region')} (red)")
     return "   ·   ".join(item for item in items if item)
+
+
+def _legend(draw: "ImageDraw", counts: Mapping[Triage, int], unit: float) -> None:
+    """Draw a dot in the colour of its marks beside the number of findings of each class that has marks."""
+    from PIL import ImageFont
+
+    x, y, radius, font = 42.0 * unit, 116.0 * unit, 7.0 * unit, ImageFont.load_default(20 * unit)
+    for triage, colour in MARK_COLOURS.items():
+        if counts[triage]:
+            words = f"{counts[triage]} {triage}"
+            draw.ellipse((x - radius, y - radius, x + radius, y + radius), colour)
+            draw.text((x + 2 * radius, y), words, INK, font, anchor="lm")
+            x += 4 * radius + draw.textlength(words, font) + 24 * unit
 
 
 def _ruler(draw: "ImageDraw", plate: Floats, camera: Camera, unit: float) -> None:

@@ -1,5 +1,6 @@
 """Render coloured meshes to pixels: prepare the arrays for `amprep.kernels.picture`, and encode its result."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,7 @@ SKY, FLOOR = "#fdfdfe", "#e4e8ee"
 
 def render(
     meshes: list[ColouredMesh],
-    marks: ColouredMesh | None,
+    marks: Sequence[ColouredMesh],
     camera: Camera,
     size: tuple[int, int],
     space: BuildVolume | None,
@@ -71,18 +72,16 @@ def _drawn(vertices: Floats, triangles: Ints, camera: Camera, size: tuple[int, i
     return buffer
 
 
-def _drawn_marks(marks: ColouredMesh | None, camera: Camera, size: tuple[int, int]) -> "DrawnMarks":
+def _drawn_marks(marks: Sequence[ColouredMesh], camera: Camera, size: tuple[int, int]) -> "DrawnMarks":
     from amprep.kernels.picture.shade import DrawnMarks
 
-    if marks is None:
+    if not marks:
         buffer = _drawn(np.empty((0, 3)), np.empty((0, 3), np.int32), camera, size)
         return DrawnMarks(buffer, np.empty((0, 3), np.float32))
-    mesh = marks.mesh
-    # A read-only array would compile `draw` a second time; the scene's triangles are writable.
-    triangles = mesh.triangles.copy()
-    facing = -unit_normals(mesh.vertices, mesh.triangles) @ camera.axes[2]
-    tones = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * np.array(linear(marks.colour))
-    return DrawnMarks(_drawn(mesh.vertices, triangles, camera, size), tones.astype(np.float32))
+    scene = assemble(list(marks))
+    facing = -unit_normals(scene.vertices, scene.triangles) @ camera.axes[2]
+    tones = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * scene.colours
+    return DrawnMarks(_drawn(scene.vertices, scene.triangles, camera, size), tones.astype(np.float32))
 
 
 def _sun(scene: TriangleScene, camera: Camera) -> "Sun":

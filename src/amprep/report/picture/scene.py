@@ -1,13 +1,15 @@
 """Collect the meshes of a build as one list of coloured triangles."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from amprep.arrays import Bytes, Float32s, Floats, Ints
 from amprep.model import Build, Mesh
-from amprep.report.picture.colours import SUPPORT, UNSUPPORTED, part_colours, rgb
+from amprep.report.picture.colours import MARK_COLOURS, SUPPORT, part_colours, rgb
 from amprep.report.picture.marks import balls, mark_radius, thinned
+from amprep.report.triage.findings import Finding
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
 """The kinds of `amprep.kernels.picture.shade`, repeated here because importing that module takes time."""
@@ -58,17 +60,21 @@ def plate_mesh(low: Floats, high: Floats) -> ColouredMesh:
     return ColouredMesh(rectangle, PLATE_COLOUR, PLATE_KIND)
 
 
-def unsupported_marks(build: Build, min_radius: float) -> ColouredMesh | None:
-    """Return small spheres at the points of unsupported regions that are not minor; None if there are none."""
-    regions = [region for region in build.unsupported if len(region.points) and not region.minor]
-    if not regions:
-        return None
-    points = [thinned(region.points) for region in regions]
-    radii = [
-        np.full(len(some), mark_radius(region.radius, min_radius))
-        for some, region in zip(points, regions, strict=True)
-    ]
-    return ColouredMesh(balls(np.concatenate(points), np.concatenate(radii)), UNSUPPORTED, PART_KIND)
+def finding_marks(findings: Iterable[Finding], min_radius: float) -> list[ColouredMesh]:
+    """Return small spheres at the points of what must be fixed and of what is worth a check."""
+    marks = []
+    for triage, colour in reversed(MARK_COLOURS.items()):
+        own = [each for each in findings if each.triage == triage and len(each.points)]
+        points = [thinned(each.points) for each in own]
+        radii = [
+            np.full(len(some), mark_radius(each.radius, min_radius))
+            for some, each in zip(points, own, strict=True)
+        ]
+        if own:
+            marks.append(
+                ColouredMesh(balls(np.concatenate(points), np.concatenate(radii)), colour, PART_KIND)
+            )
+    return marks
 
 
 def assemble(meshes: list[ColouredMesh]) -> TriangleScene:

@@ -1,9 +1,9 @@
-// Makes the three.js objects of a build: parts, supports, bounding volumes, and marks on unsupported regions.
+// Makes the three.js objects of a build: parts, supports, bounding volumes, and marks on findings.
 import * as THREE from "three";
 import { decodeMesh } from "./decode.js";
 
 const CREASE_DEG = 28;
-const MARK = 0xe5202b;
+const BALL = new THREE.IcosahedronGeometry(1, 1);
 
 export class Geometries {
   constructor(bytes, meshes) {
@@ -78,8 +78,8 @@ export function showBuild(build, geometries) {
     mesh.userData = { kind: "support", index };
     shown.supports.push(mesh);
   });
-  build.unsupported.forEach((region, index) => shown.marks.push(marks(region, index, geometries)));
-  shown.group.add(...shown.parts, ...shown.supports, ...shown.marks.filter(Boolean));
+  (build.marks ?? []).forEach((finding, index) => shown.marks.push(marks(finding, index, geometries)));
+  shown.group.add(...shown.parts, ...shown.supports, ...shown.marks);
   shown.group.updateMatrixWorld(true);
   return shown;
 }
@@ -109,24 +109,37 @@ export function showVolumes(volumes, geometries) {
   return { meshes: shown, group };
 }
 
-// Spheres at the points of an unsupported region; they are faintly visible through parts.
-function marks(region, index, geometries) {
-  if (region.points < 0) return null;
-  const positions = geometries.get(region.points).getAttribute("position");
+// Spheres at the points of a finding; they are faintly visible through parts.
+function marks(finding, index, geometries) {
+  const positions = geometries.get(finding.points).getAttribute("position");
   const group = new THREE.Group();
-  const ball = new THREE.IcosahedronGeometry(1, 1);
   const pose = new THREE.Matrix4();
   for (const [through, opacity] of [[true, 0.2], [false, 1]]) {
-    const look = new THREE.MeshBasicMaterial({ color: MARK, transparent: through, opacity, depthTest: !through });
-    const mesh = new THREE.InstancedMesh(ball, look, positions.count);
+    const look = new THREE.MeshBasicMaterial({ color: finding.colour, transparent: through, opacity, depthTest: !through });
+    const mesh = new THREE.InstancedMesh(BALL, look, positions.count);
     for (let i = 0; i < positions.count; i++) {
-      pose.makeScale(region.radius, region.radius, region.radius);
+      pose.makeScale(finding.radius, finding.radius, finding.radius);
       pose.setPosition(positions.getX(i), positions.getY(i), positions.getZ(i));
       mesh.setMatrixAt(i, pose);
     }
     mesh.renderOrder = through ? 2 : 3;
-    mesh.userData = { kind: "unsupported", index };
+    mesh.userData = { kind: "mark", index };
     group.add(mesh);
+  }
+  return group;
+}
+
+// A cross of three thin bars that shows a point through everything.
+export function pointer() {
+  const group = new THREE.Group();
+  const look = new THREE.MeshBasicMaterial({ color: 0x000000, transparent: true, opacity: 0.85, depthTest: false });
+  for (const [x, y, z] of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) {
+    for (const side of [-1, 1]) {
+      const bar = new THREE.Mesh(new THREE.BoxGeometry(x || 0.06, y || 0.06, z || 0.06), look);
+      bar.position.set(0.8 * side * x, 0.8 * side * y, 0.8 * side * z);
+      bar.renderOrder = 5;
+      group.add(bar);
+    }
   }
   return group;
 }

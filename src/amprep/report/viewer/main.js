@@ -1,7 +1,7 @@
 // Starts the 3D view of a report: reads the data blocks of the page, shows a build and connects the controls.
 import * as THREE from "three";
 import { inflate } from "./decode.js";
-import { addEdges, Geometries, retire, showBuild, showVolumes } from "./build.js";
+import { addEdges, Geometries, pointer, retire, showBuild, showVolumes } from "./build.js";
 import { Stage, surroundings } from "./stage.js";
 
 const VIEWS = {
@@ -51,12 +51,16 @@ class Viewer {
     this.#tabs();
     this.#toolbar();
     this.#picking();
+    this.pointer = pointer();
+    this.stage.scene.add(this.pointer);
+    document.addEventListener("show-finding", ({ detail }) => this.point(detail));
     dark.addEventListener("change", () => this.#surround());
     this.stage.resize();
     this.open(0);
   }
 
   open(number) {
+    this.number = number;
     this.build = this.model.builds[number];
     this.hidden.clear();
     if (this.shown) {
@@ -109,10 +113,27 @@ class Viewer {
   select(found) {
     for (const mesh of [...this.shown.parts, ...this.shown.supports, ...(this.volumes?.meshes ?? [])]) mesh.material.emissive.setHex(0);
     document.querySelectorAll("#lists [aria-current]").forEach((row) => row.removeAttribute("aria-current"));
+    this.pointer.visible = false;
     const card = element("card");
     card.replaceChildren();
     card.hidden = !found;
     if (found) this.#describe(found, card);
+    this.stage.draw();
+  }
+
+  // Shows a point of a build with its description, as a row of the tables asks.
+  point({ build, at, name, facts }) {
+    if (build !== this.number) this.open(build);
+    this.select(null);
+    const card = element("card");
+    card.hidden = false;
+    card.append(make("strong", {}, name), ...facts.map((line) => make("span", {}, line)));
+    const centre = new THREE.Vector3(...at);
+    this.pointer.position.copy(centre);
+    this.pointer.scale.setScalar(2);
+    this.pointer.visible = true;
+    this.stage.look(centre, 14);
+    element("viewer").scrollIntoView({ block: "nearest", behavior: "smooth" });
     this.stage.draw();
   }
 
@@ -125,7 +146,7 @@ class Viewer {
     }
     const lit = { part: this.shown.parts, support: this.shown.supports }[kind];
     if (lit) lit[index].material.emissive.setHex(0x3a4c6c);
-    const entry = { part: this.build.parts, support: this.build.supports, unsupported: this.build.unsupported, volume: this.chosen?.shown }[kind][index];
+    const entry = { part: this.build.parts, support: this.build.supports, mark: this.build.marks, volume: this.chosen?.shown }[kind][index];
     card.append(make("strong", {}, entry.name), ...entry.facts.map((line) => make("span", {}, line)));
   }
 
@@ -151,7 +172,7 @@ class Viewer {
       mesh.material.depthWrite = !layers.transparent;
     });
     for (const mesh of shown.supports) mesh.visible = layers.supports;
-    for (const mesh of shown.marks) if (mesh) mesh.visible = layers.marks;
+    for (const mesh of shown.marks) mesh.visible = layers.marks;
     for (const edges of shown.edges) edges.visible = layers.edges;
     // volumes without parts are drawn as solids
     this.volumes?.meshes.forEach((mesh, index) => {
@@ -175,7 +196,7 @@ class Viewer {
   }
 
   #toolbar() {
-    const names = { parts: "Parts", supports: "Supports", marks: "Unsupported regions", edges: "Outlines", frame: "Build volume", transparent: "Transparent parts" };
+    const names = { parts: "Parts", supports: "Supports", marks: "Marks", edges: "Outlines", frame: "Build volume", transparent: "Transparent parts" };
     const missing = (key) => this.model.alone && ["supports", "marks", "frame"].includes(key);
     const boxes = Object.entries(names).filter(([key]) => !missing(key)).map(([key, words]) => {
       const checkbox = make("input", { type: "checkbox", id: `layer-${key}` });
@@ -216,12 +237,15 @@ class Viewer {
       });
       return make("li", { "data-key": `part-${index}` }, checkbox, this.#rowButton("part", index, part.name, swatch(part.colour)));
     });
-    const unsupported = this.build.unsupported.map((region, index) => make(
-      "li", { "data-key": `unsupported-${index}` },
-      this.#rowButton("unsupported", index, region.name, swatch("#e5202b"), make("small", {}, region.reason)),
-    ));
     const sections = [this.#section("Parts", rows, true)];
-    if (unsupported.length) sections.unshift(this.#section("Unsupported regions", unsupported, unsupported.length <= 8));
+    for (const [triage, words] of [["worth a check", "Worth a check"], ["must fix", "Must fix"]]) {
+      const found = (this.build.marks ?? []).map((finding, index) => [finding, index]).filter(([finding]) => finding.triage === triage);
+      const items = found.map(([finding, index]) => make(
+        "li", { "data-key": `mark-${index}` },
+        this.#rowButton("mark", index, finding.name, swatch(finding.colour), make("small", {}, finding.facts[0])),
+      ));
+      if (items.length) sections.unshift(this.#section(words, items, items.length <= 8));
+    }
     element("lists").replaceChildren(...sections);
   }
 
@@ -254,7 +278,7 @@ class Viewer {
   }
 
   #hit(caster) {
-    const visible = [...this.shown.marks.filter(Boolean).flatMap((group) => (group.visible ? group.children : [])),
+    const visible = [...this.shown.marks.flatMap((group) => (group.visible ? group.children : [])),
       ...this.shown.parts, ...this.shown.supports, ...(this.layers.parts ? [] : this.volumes?.meshes ?? [])].filter((mesh) => mesh.visible);
     const cut = this.stage.renderer.clippingPlanes;
     const hits = caster.intersectObjects(visible, false)

@@ -10,8 +10,10 @@ from amprep.kernels.picture.rasterise import DepthBuffer, draw
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody, Unsupported
 from amprep.report.picture import build_picture, draw_mesh, write_picture
 from amprep.report.picture.camera import box_corners, fitted, view_axes
-from amprep.report.picture.colours import PALETTE, part_colours
+from amprep.report.picture.colours import MARK_COLOURS, PALETTE, part_colours, rgb
 from amprep.report.picture.marks import balls
+from amprep.report.record import BuildRecord
+from amprep.report.triage.findings import Finding, build_findings
 
 SIZE = (320, 240)
 
@@ -34,8 +36,9 @@ def build_of(*meshes: Mesh, supports=(), unsupported=(), space=None) -> Build:
     )
 
 
-def pixels(build: Build) -> np.ndarray:
-    return np.asarray(build_picture(build, SIZE)).astype(int)
+def pixels(build: Build, findings=None) -> np.ndarray:
+    found = build_findings(BuildRecord(build)) if findings is None else findings
+    return np.asarray(build_picture(build, found, SIZE)).astype(int)
 
 
 def reddish(picture: np.ndarray) -> int:
@@ -103,8 +106,8 @@ def test_parts_appear_in_their_colours_and_copies_share_one():
     assert part_colours(build) == list(PALETTE[:2])
     picture = pixels(build)
     blue = (picture[..., 2] > picture[..., 0] + 40).sum()
-    orange = (picture[..., 0] > picture[..., 2] + 80).sum()
-    assert min(blue, orange) > 0.02 * SIZE[0] * SIZE[1]
+    green = (picture[..., 1] > picture[..., 2] + 40).sum()
+    assert min(blue, green) > 0.02 * SIZE[0] * SIZE[1]
 
 
 def test_own_colours_are_used_unless_all_parts_have_the_same():
@@ -136,6 +139,34 @@ def test_unsupported_regions_are_red_and_visible_through_parts():
     assert reddish(plain) == 0
     assert reddish(open_) > 30
     assert (hidden[..., 0] > plain[..., 0] + 15).sum() > 30
+
+
+def test_what_must_be_fixed_is_red_what_is_worth_a_check_orange_and_the_rest_has_no_mark():
+    build = build_of(box((30, 30, 0), (40, 40, 30)))
+    grid = np.array([[x, y, 31.0] for x in range(40, 61, 2) for y in range(40, 61, 2)])
+
+    def marked(triage):
+        return pixels(
+            build, [Finding(triage, 1, "part 0", "ledge", "overhang 1", "", points=grid, radius=1.5)]
+        )
+
+    def orange(picture):
+        red, green, blue = (picture[60:, :, channel] for channel in range(3))
+        return int(((red > 170) & (green > 90) & (green < 0.75 * red) & (blue < 80)).sum())
+
+    assert reddish(marked("must fix")) > 30
+    assert orange(marked("must fix")) == 0
+    assert orange(marked("worth a check")) > 30
+    assert reddish(marked("worth a check")) < 30
+    plain = pixels(build)
+    for triage in ("supported", "self-supporting"):
+        assert (marked(triage) == plain).all()
+
+
+def test_no_part_has_a_colour_like_a_mark():
+    for colour in PALETTE:
+        for mark in MARK_COLOURS.values():
+            assert np.abs(np.subtract(rgb(colour), rgb(mark))).max() > 0.3, colour
 
 
 def test_a_support_below_changes_the_picture_and_an_empty_build_shows_the_plate():

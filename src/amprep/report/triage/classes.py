@@ -1,0 +1,80 @@
+"""Decide what must be done about a region of overhangs."""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+from amprep.geometry.overhangs.regions import OverhangRegion
+from amprep.model import Unsupported
+
+Triage = Literal["must fix", "worth a check", "supported", "self-supporting"]
+MUST_FIX: Triage = "must fix"
+CHECK: Triage = "worth a check"
+SUPPORTED: Triage = "supported"
+SELF_SUPPORTING: Triage = "self-supporting"
+TRIAGES = (MUST_FIX, CHECK, SUPPORTED, SELF_SUPPORTING)
+"""The classes, from the most urgent to the least."""
+
+Outcome = Literal["fully", "partly", "not", "not needed"]
+"""Extent to which a region is supported."""
+
+NEAR_LIMIT = 0.9
+"""Fraction of its limit from which the size of a self-supporting region is a reason for a check."""
+
+ANGLE_TOLERANCE_DEG = 0.01
+
+
+class RegionTriage(NamedTuple):
+    """What must be done about a region.
+
+    Attributes
+    ----------
+    triage
+        Its class.
+    outcome
+        Extent to which it is supported; minor remainders count as supported.
+    why
+        Why it is not in order, in words; empty if it is.
+    """
+
+    triage: Triage
+    outcome: Outcome
+    why: str = ""
+
+
+def triage_of(region: OverhangRegion, left: Sequence[Unsupported], angle_deg: float) -> RegionTriage:
+    """Return the class of a region of overhangs.
+
+    Parameters
+    ----------
+    region
+        The region with its verdict.
+    left
+        What of it has no support.
+    angle_deg
+        Overhang angle of its part. A self-supporting region that is steeper is not critical.
+    """
+    faults = [each for each in left if not each.minor]
+    if faults:
+        outcome = _outcome(region, left)
+        return RegionTriage(MUST_FIX, outcome, f"{_not_supported(outcome)}: {_reasons(faults)}")
+    if left:
+        return RegionTriage(CHECK, "fully", f"a small patch has no support: {_reasons(left)}")
+    if not region.is_self_supporting:
+        return RegionTriage(SUPPORTED, "fully")
+    if region.kind not in ("edge", "tip") and region.angle_deg >= angle_deg - ANGLE_TOLERANCE_DEG > 0.0:
+        return RegionTriage(CHECK, "not needed", f"{region.angle_deg:.1f} degrees to the plate, not critical")
+    if 0.0 < NEAR_LIMIT * region.limit_mm <= region.size_mm:
+        return RegionTriage(CHECK, "not needed", f"near the limit of {region.limit_mm:g} mm")
+    return RegionTriage(SELF_SUPPORTING, "not needed")
+
+
+def _outcome(region: OverhangRegion, left: Sequence[Unsupported]) -> Outcome:
+    return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"
+
+
+def _not_supported(outcome: Outcome) -> str:
+    return "only partly supported" if outcome == "partly" else "not supported"
+
+
+def _reasons(left: Sequence[Unsupported]) -> str:
+    return ", ".join(sorted({each.reason for each in left}))

@@ -1,0 +1,171 @@
+"""List what a run found about its builds as one kind of record, so that all of it is grouped and shown alike."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.model import Unsupported
+from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
+from amprep.report.removal_order import hindrances_of
+from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
+
+Position = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """Something that was found about a build.
+
+    Attributes
+    ----------
+    triage
+        What must be done about it.
+    build
+        Number of the build, from 1; 0 if it is in none.
+    part
+        Name of the part in the job, the same for all copies.
+    kind
+        Kind of a region, such as ``ledge``; or ``violation``, ``powder pocket``, ``locked parts``, ``unplaced copy``.
+    name
+        What it is about, for example ``overhang 7 of bracket-2``.
+    words
+        What was found.
+    position_mm
+        A point of it in build coordinates; None if it has no place.
+    overhang
+        The region; None for other findings.
+    points
+        ``(n, 3)`` mm, points that mark it in pictures, each for `radius` mm around it.
+    volume_mm3
+        Volume of a pocket of powder.
+    """
+
+    triage: Triage
+    build: int
+    part: str
+    kind: str
+    name: str
+    words: str
+    position_mm: Position | None = None
+    overhang: OverhangRecord | None = None
+    points: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    radius: float = 1.0
+    volume_mm3: float = 0.0
+
+
+def findings_of(record: RunRecord) -> list[Finding]:
+    """Return everything that was found, in the order of the builds."""
+    found = list(_unplaced(record))
+    forbidden = record.settings.get("packing", {}).get("interlocking") == "forbid"
+    for number, entry in enumerate(record.builds, start=1):
+        found += build_findings(entry, number, locks_are_faults=forbidden)
+    return found
+
+
+def build_findings(entry: BuildRecord, number: int = 1, *, locks_are_faults: bool = False) -> list[Finding]:
+    """Return what was found about a build: its regions of overhangs, broken promises, pockets and locked parts.
+
+    Parameters
+    ----------
+    entry
+        The build.
+    number
+        Its number, from 1.
+    locks_are_faults
+        Whether parts that are locked into each other must be fixed.
+    """
+    names = {placed.label: placed.part.name for placed in entry.build.parts}
+    return [
+        *_violations(entry, number, names),
+        *_regions(entry, number, names),
+        *_pockets(entry, number),
+        *_locks(entry, number, MUST_FIX if locks_are_faults else CHECK),
+    ]
+
+
+def _unplaced(record: RunRecord) -> Iterator[Finding]:
+    """Yield the unplaced copies, which are no faults if the job fills one build."""
+    for item in () if record.objective == "fill" else record.unplaced:
+        yield Finding(MUST_FIX, 0, item.name, "unplaced copy", f"{item.name} (copy {item.copy})", item.reason)
+
+
+def _violations(entry: BuildRecord, number: int, names: Mapping[str, str]) -> Iterator[Finding]:
+    for found in entry.verification or ():
+        part, words = names.get(found.subject, found.subject), f"{found.promise}: {found.message}"
+        yield Finding(MUST_FIX, number, part, "violation", found.subject, words)
+
+
+def _regions(entry: BuildRecord, number: int, names: Mapping[str, str]) -> Iterator[Finding]:
+    """Yield all regions of overhangs."""
+    left: dict[str, list[Unsupported]] = {}
+    for each in entry.build.unsupported:
+        left.setdefault(each.label, []).append(each)
+    for region in entry.overhangs:
+        own = left.pop(region.name, [])
+        points, radius = _marks(own, region.triage) if own else (np.array([region.position_mm]), 1.0)
+        yield Finding(
+            region.triage,
+            number,
+            names.get(region.part, region.part),
+            region.region.kind,
+            region.name,
+            region.verdict,
+            region.position_mm,
+            region,
+            points,
+            radius,
+        )
+    for name, patches in left.items():
+        yield _without_record(entry, number, name, patches)
+
+
+def _without_record(entry: BuildRecord, number: int, name: str, patches: Sequence[Unsupported]) -> Finding:
+    """Return an unsupported region of a build whose regions were not recorded."""
+    triage = CHECK if all(each.minor for each in patches) else MUST_FIX
+    points, radius = _marks(patches, triage)
+    middle = points.mean(axis=0).tolist() if len(points) else None
+    return Finding(
+        triage,
+        number,
+        entry.build.parts[patches[0].part].part.name,
+        patches[0].kind,
+        name,
+        ", ".join(sorted({each.reason for each in patches})),
+        None if middle is None else (middle[0], middle[1], middle[2]),
+        points=points,
+        radius=radius,
+    )
+
+
+def _marks(patches: Sequence[Unsupported], triage: Triage) -> tuple[Floats, float]:
+    """Return the points of the patches that put a region into its class, and their radius."""
+    chosen = [each for each in patches if triage != MUST_FIX or not each.minor] or list(patches)
+    return np.concatenate([each.points for each in chosen]), max(each.radius for each in chosen)
+
+
+def _pockets(entry: BuildRecord, number: int) -> Iterator[Finding]:
+    for body, removal in zip(entry.build.supports, entry.removal, strict=False):
+        part = entry.build.parts[body.parts[0]].part.name if body.parts else body.name
+        for pocket in removal.pockets or ():
+            opening = "no opening" if pocket.closed else "openings that are too narrow"
+            words = f"{pocket.volume:.1f} mm³ of powder cannot leave: {opening}"
+            yield Finding(
+                CHECK,
+                number,
+                part,
+                "powder pocket",
+                body.name,
+                words,
+                pocket.point,
+                points=np.array([pocket.point]),
+                volume_mm3=pocket.volume,
+            )
+
+
+def _locks(entry: BuildRecord, number: int, triage: Triage) -> Iterator[Finding]:
+    groups = entry.removal_order.locked
+    for group, words in zip(groups, hindrances_of(entry), strict=False):
+        names = [entry.build.parts[part].part.name for part in group]
+        yield Finding(triage, number, names[0], "locked parts", ", ".join(dict.fromkeys(names)), words)
