@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE
+from amprep.arrays import CONTACT_TOLERANCE, Int32s
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
 from amprep.model.supports.rules import SupportRules
@@ -25,6 +25,9 @@ class OverhangFigures:
         Length of the knife edges that need support, and the number of connected ones.
     tips
         Number of tips that need support.
+    carried_mm2, carried_regions
+        Area of the faces flatter than the overhang angle that the part itself carries, and the number of regions that
+        need no support at all.
     steep_mm2
         Area of the other downward faces, which are steep enough or in regions below the smallest area.
     on_plate_mm2
@@ -39,6 +42,8 @@ class OverhangFigures:
     edges_mm: float
     edge_regions: int
     tips: int
+    carried_mm2: float
+    carried_regions: int
     steep_mm2: float
     on_plate_mm2: float
     enforced_mm2: float
@@ -58,17 +63,23 @@ def measure_overhangs(placed: PlacedPart, rules: SupportRules) -> OverhangFigure
     found = overhangs_of(placed, rules)
     own = placed.part.overrides.overhang_angle_deg
     regions = found.overhangs.regions
+    needed = [region for region in regions if not region.is_self_supporting]
+    held = [region for region in regions if region.is_self_supporting and not region.is_noncritical]
     faces = _area(found)
-    down, on_plate = _downward(found.mesh)
+    carried = _face_area(found.mesh, found.overhangs.beside)
+    carried += sum(region.measure for region in held if region.feature == "face")
+    down, on_plate = _downward(found.mesh, rules.plate_mm if rules.has_limits else CONTACT_TOLERANCE)
     without, enforced = (_with_regions(placed, rules, kinds) for kinds in ((), ("enforcer",)))
     return OverhangFigures(
         angle_deg=rules.overhang_angle_deg if own is None else own,
         faces_mm2=faces,
-        face_regions=sum(region.kind == "face" for region in regions),
-        edges_mm=sum(region.measure for region in regions if region.kind == "edge"),
-        edge_regions=sum(region.kind == "edge" for region in regions),
-        tips=sum(region.kind == "tip" for region in regions),
-        steep_mm2=max(0.0, down - on_plate - enforced),
+        face_regions=sum(region.feature == "face" for region in needed),
+        edges_mm=sum(region.measure for region in needed if region.feature == "edge"),
+        edge_regions=sum(region.feature == "edge" for region in needed),
+        tips=sum(region.feature == "tip" for region in needed),
+        carried_mm2=carried,
+        carried_regions=len(held),
+        steep_mm2=max(0.0, down - on_plate - enforced - carried),
         on_plate_mm2=on_plate,
         enforced_mm2=max(0.0, enforced - without),
         blocked_mm2=max(0.0, enforced - faces),
@@ -76,7 +87,12 @@ def measure_overhangs(placed: PlacedPart, rules: SupportRules) -> OverhangFigure
 
 
 def _area(found: PartOverhangs) -> float:
-    return sum(region.measure for region in found.overhangs.regions if region.kind == "face")
+    return _face_area(found.mesh, found.overhangs.faces)
+
+
+def _face_area(mesh: Mesh, faces: Int32s) -> float:
+    a, b, c = (mesh.vertices[mesh.triangles[faces, i]] for i in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def _with_regions(placed: PlacedPart, rules: SupportRules, kinds: tuple[str, ...]) -> float:
@@ -85,10 +101,10 @@ def _with_regions(placed: PlacedPart, rules: SupportRules, kinds: tuple[str, ...
     return _area(overhangs_of(replace(placed, part=replace(placed.part, regions=chosen)), rules))
 
 
-def _downward(mesh: Mesh) -> tuple[float, float]:
-    """Return the area of all downward faces, and of those on the plate."""
+def _downward(mesh: Mesh, plate: float) -> tuple[float, float]:
+    """Return the area of all downward faces, and of those at most `plate` mm above the plate."""
     corners = mesh.vertices[mesh.triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area, down = np.linalg.norm(normal, axis=1) / 2.0, normal[:, 2] < 0.0
-    flat = down & (corners[:, :, 2].max(axis=1) <= CONTACT_TOLERANCE)
+    flat = down & (corners[:, :, 2].max(axis=1) <= plate)
     return float(area[down].sum()), float(area[flat].sum())

@@ -8,7 +8,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.subdivision import subdivide
-from amprep.geometry.overhangs.find import Modifiers
+from amprep.geometry.overhangs.candidates import Modifiers
 from amprep.model.mesh import Mesh
 from amprep.model.part import Region, RegionKind
 

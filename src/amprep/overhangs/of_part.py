@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.geometry.overhangs.carried.points import Limits
 from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.overhangs.limited import find_limited_overhangs
 from amprep.geometry.overhangs.regions import Overhangs
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
@@ -24,7 +26,7 @@ class PartOverhangs(NamedTuple):
 
 
 def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: float = 0.0) -> PartOverhangs:
-    """Return the overhangs of a placed part.
+    """Return the overhangs of a placed part: with limits those that the part does not carry, on a finer mesh.
 
     The part's own overhang angle takes precedence over that of the rules. A part whose supports are switched
     off has no overhangs. Nothing inside a blocker is an overhang; every downward face inside an enforcer is one.
@@ -45,6 +47,8 @@ def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: floa
     if own.supports is not False:
         modified = apply_regions(placed.mesh, placed.part.regions, placed.matrix)
         searched = modified.mesh
+    if rules.has_limits and own.supports is not False:
+        return _limited(modified, rules, angle + add_angle_deg)
     overhangs = find_overhangs(
         searched.vertices,
         searched.triangles,
@@ -54,3 +58,18 @@ def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: floa
         modifiers=modified.modifiers,
     )
     return PartOverhangs(modified.mesh, overhangs)
+
+
+def _limited(modified: ModifiedMesh, rules: SupportRules, angle_deg: float) -> PartOverhangs:
+    """Return the overhangs that the part does not carry."""
+    mesh = modified.mesh
+    found = find_limited_overhangs(
+        mesh.vertices,
+        mesh.triangles,
+        Limits(angle_deg, rules.ledge_mm, rules.bridge_mm, rules.bore_mm, rules.plate_mm, rules.layer_mm),
+        noncritical_deg=rules.noncritical_angle_deg,
+        modifiers=modified.modifiers,
+    )
+    if found.triangles is mesh.triangles:
+        return PartOverhangs(mesh, found.overhangs)
+    return PartOverhangs(Mesh(found.vertices, found.triangles), found.overhangs)

@@ -54,7 +54,7 @@ def find_unsupported(
                     Unsupported(
                         part,
                         region_name(int(number), placed.label),
-                        region.region.kind,
+                        region.region.feature,
                         reason,
                         region.measure(chosen),
                         _thinned(samples.points[chosen], settings.reach / 3),
@@ -100,7 +100,7 @@ class _RegionCoverage(NamedTuple):
         that is no higher: the part does not start in the air there. A tip is never minor.
         """
         rules, near = self.settings.rules, self.settings.reach / 2
-        smallest = {"face": rules.min_area_mm2, "edge": rules.min_length_mm, "tip": 0.0}[self.region.kind]
+        smallest = {"face": rules.min_area_mm2, "edge": rules.min_length_mm, "tip": 0.0}[self.region.feature]
         minor = np.zeros(len(left), np.bool_)
         if smallest <= 0.0:
             return minor

@@ -42,12 +42,16 @@ def subdivide(vertices: Floats, triangles: Int32s, mark: Marker) -> SubdividedMe
         marked = mark(refined.vertices[refined.triangles], refined.parent)
         if not marked.any():
             break
-        refined = _halved(refined, marked)
+        halves = bisect(refined, marked)
+        refined = SubdividedMesh(halves.vertices, halves.triangles, refined.parent[halves.parent])
     return refined
 
 
-def _halved(mesh: SubdividedMesh, marked: Bools) -> SubdividedMesh:
-    """Bisect the longest edges of the marked triangles, and of the neighbours that must be split with them."""
+def bisect(mesh: SubdividedMesh, marked: Bools) -> SubdividedMesh:
+    """Bisect the longest edges of the marked triangles, and of the neighbours that must be split with them.
+
+    The parents are indices of triangles of the mesh given.
+    """
     corners = _longest_first(mesh)
     ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2).astype(np.int64)
     key, edge = np.unique(ends[..., 0] * len(mesh.vertices) + ends[..., 1], return_inverse=True)
@@ -61,7 +65,7 @@ def _halved(mesh: SubdividedMesh, marked: Bools) -> SubdividedMesh:
     middle = np.full(len(key), -1)
     middle[chosen] = len(mesh.vertices) + np.arange(len(chosen))
     points = np.concatenate([mesh.vertices, (mesh.vertices[start] + mesh.vertices[end]) / 2])
-    pieces, parent = _pieces(corners, middle[edge], mesh.parent)
+    pieces, parent = _pieces(corners, middle[edge], np.arange(len(corners)))
     return SubdividedMesh(points, pieces.astype(np.int32), parent)
 
 

@@ -9,7 +9,7 @@ ANGLE_TOLERANCE_DEG = 0.01
 """Geometry this close to the overhang angle counts as steep enough."""
 
 
-def overhanging_faces(surface: Surface, normals: Floats, angle_deg: float) -> Bools:
-    """Tell which downward faces above the plate have a smaller angle to the plate than `angle_deg`."""
+def overhanging_faces(surface: Surface, normals: Floats, angle_deg: float, plate: float) -> Bools:
+    """Tell which downward faces above the height `plate` have a smaller angle to the plate than `angle_deg`."""
     steep_enough = np.cos(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
-    return np.asarray(above_plate(surface) & (-normals[:, 2] > steep_enough))
+    return np.asarray(above_plate(surface, plate) & (-normals[:, 2] > steep_enough))

@@ -1,12 +1,9 @@
 """Find the overhangs of a mesh: faces, knife edges and tips (thesis 3.1)."""
 
-from typing import NamedTuple
-
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Int32s
-from amprep.geometry.overhangs.faces import overhanging_faces
-from amprep.geometry.overhangs.knife_edges import knife_edges
+from amprep.arrays import Floats, Int32s
+from amprep.geometry.overhangs.candidates import Modifiers, find_candidates
 from amprep.geometry.overhangs.regions import (
     Overhangs,
     components_of_edges,
@@ -14,26 +11,7 @@ from amprep.geometry.overhangs.regions import (
     labelled_regions,
     large_enough,
 )
-from amprep.geometry.overhangs.surface import LEVEL, above_plate, cross_products, merge_vertices, unit_normals
-from amprep.geometry.overhangs.tips import minimum_plateaus, tips_of
-
-
-class Modifiers(NamedTuple):
-    """Support modifiers: triangles that must be supported, and triangles and vertices that must not be.
-
-    Attributes
-    ----------
-    enforced
-        ``(m,)`` bool, triangles to support; only downward triangles above the plate count.
-    blocked
-        ``(m,)`` bool, triangles that are no overhangs.
-    blocked_vertices
-        ``(n,)`` bool, vertices that are no tips; an edge with two of them is no knife edge.
-    """
-
-    enforced: Bools
-    blocked: Bools
-    blocked_vertices: Bools
+from amprep.geometry.overhangs.surface import ON_PLATE, cross_products
 
 
 def find_overhangs(
@@ -69,24 +47,12 @@ def find_overhangs(
     modifiers
         Triangles and vertices selected by blockers and enforcers.
     """
-    surface = merge_vertices(np.asarray(vertices, np.float64), np.asarray(triangles))
-    normals = unit_normals(surface)
-    minimum = minimum_plateaus(surface)
-    overhanging = overhanging_faces(surface, normals, angle_deg)
-    sharp = surface.edges[knife_edges(surface, normals, overhanging, angle_deg)]
-    tips, tip_label = tips_of(minimum, surface.triangles[overhanging], sharp)
-
-    enforced = np.zeros(len(triangles), np.bool_)
-    if modifiers is not None:
-        enforced = modifiers.enforced & (normals[:, 2] < -LEVEL) & above_plate(surface)
-        overhanging = (overhanging | enforced) & ~modifiers.blocked
-        blocked = modifiers.blocked_vertices[surface.first]
-        sharp = sharp[~blocked[sharp].all(axis=1)]
-        tips, tip_label = tips[~blocked[tips]], tip_label[~blocked[tips]]
+    found = find_candidates(vertices, triangles, angle_deg, modifiers, plate=ON_PLATE)
+    surface, minimum, sharp, overhanging = found.surface, found.minimum, found.sharp, found.faces
     faces = np.flatnonzero(overhanging)
     area = 0.5 * np.linalg.norm(cross_products(surface.points, surface.triangles[faces]), axis=1)
     face_label = components_of_faces(surface, overhanging)
-    starts = np.asarray((minimum[surface.triangles[faces]] >= 0).any(axis=1) | enforced[faces])
+    starts = np.asarray((minimum[surface.triangles[faces]] >= 0).any(axis=1) | found.enforced[faces])
     face_keep = large_enough(face_label, area, min_area, starts)
     length = np.linalg.norm(surface.points[sharp[:, 1]] - surface.points[sharp[:, 0]], axis=1)
     edge_label = components_of_edges(sharp, len(surface.points))
@@ -95,5 +61,5 @@ def find_overhangs(
         surface,
         (faces[face_keep], face_label[face_keep], area[face_keep]),
         (sharp[edge_keep], edge_label[edge_keep], length[edge_keep]),
-        (tips, tip_label),
+        (found.tips, found.tip_label),
     )

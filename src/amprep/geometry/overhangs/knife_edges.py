@@ -4,10 +4,12 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.overhangs.faces import ANGLE_TOLERANCE_DEG
-from amprep.geometry.overhangs.surface import ON_PLATE, Surface
+from amprep.geometry.overhangs.surface import Surface
 
 
-def knife_edges(surface: Surface, normals: Floats, overhanging: Bools, angle_deg: float) -> Int64s:
+def knife_edges(
+    surface: Surface, normals: Floats, overhanging: Bools, angle_deg: float, plate: float
+) -> Int64s:
     """Return the knife edges of a surface, which touch no overhanging face.
 
     Parameters
@@ -20,12 +22,14 @@ def knife_edges(surface: Surface, normals: Floats, overhanging: Bools, angle_deg
         ``(m,)`` bool, overhanging faces.
     angle_deg
         Edges at a smaller angle to the plate are flat.
+    plate
+        Height (mm) up to which geometry is on the plate.
     """
     start, end = surface.points[surface.edges[:, 0]], surface.points[surface.edges[:, 1]]
     along = end - start
     length = np.linalg.norm(along, axis=1)
     flat = np.abs(along[:, 2]) < length * np.sin(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
-    flat &= np.maximum(start[:, 2], end[:, 2]) > ON_PLATE
+    flat &= np.maximum(start[:, 2], end[:, 2]) > plate
     rising = np.ones(len(along), np.bool_)
     rise = surface.points[surface.opposite] - start[surface.half_edge]
     tangent = along / np.maximum(length, 1e-300)[:, None]

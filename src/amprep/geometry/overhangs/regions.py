@@ -13,6 +13,9 @@ Kind = Literal["face", "ledge", "bridge", "bore", "flat", "edge", "tip"]
 NOT_FACES = ("edge", "tip")
 """Kinds of overhangs that are no faces."""
 
+Feature = Literal["face", "edge", "tip"]
+"""Features of a mesh that overhangs consist of."""
+
 
 class OverhangRegion(NamedTuple):
     """A connected region of overhangs.
@@ -23,7 +26,7 @@ class OverhangRegion(NamedTuple):
         ``edge``, ``tip``, or a kind of faces: ``ledge`` (carried on one side), ``bridge`` (on two sides), ``bore`` (an
         arch), ``flat`` (on no side), or ``face`` where the angle alone counts.
     measure
-        Area in mm2, length in mm, or 0 for a tip.
+        Area in mm2, length in mm, or 0 for a tip: of what needs support in the region, if anything does.
     centre
         ``(3,)`` mm, weighted by area or length.
     size_mm
@@ -39,6 +42,8 @@ class OverhangRegion(NamedTuple):
         Smallest angle of its faces to the plate.
     lowest_mm
         Height of its lowest point.
+    is_noncritical
+        Whether its faces are between the overhang angle and the noncritical angle.
     """
 
     kind: Kind
@@ -50,6 +55,12 @@ class OverhangRegion(NamedTuple):
     is_self_supporting: bool = False
     angle_deg: float = 0.0
     lowest_mm: float = 0.0
+    is_noncritical: bool = False
+
+    @property
+    def feature(self) -> Feature:
+        """What the region consists of: faces, knife edges, or a tip."""
+        return "edge" if self.kind == "edge" else "tip" if self.kind == "tip" else "face"
 
 
 class Overhangs(NamedTuple):
@@ -155,7 +166,7 @@ def labelled_regions(
         ("tip", tips[1], np.ones(len(tips[1])), points[tips[0]]),
     )
     for kind, label, weight, centres in kinds:
-        number = _by_first_appearance(label)
+        number = numbered_by_first(label)
         groups.append((number + len(regions)).astype(np.int32))
         total = np.bincount(number, weights=weight)
         centre = [np.bincount(number, weights=weight * centres[:, i]) / total for i in range(3)]
@@ -174,7 +185,8 @@ def labelled_regions(
     )
 
 
-def _by_first_appearance(label: Int64s) -> Int64s:
+def numbered_by_first(label: Int64s) -> Int64s:
+    """Return labels as 0, 1, ... in the order of their first appearance."""
     _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
     rank = np.empty(len(first), np.int64)
     rank[np.argsort(first)] = np.arange(len(first))

@@ -76,7 +76,7 @@ def unit_normals(surface: Surface) -> Floats:
     return cross / np.where(size > 0, size, 1.0)
 
 
-def above_plate(surface: Surface) -> Bools:
-    """Tell which faces are not entirely on the plate."""
+def above_plate(surface: Surface, plate: float) -> Bools:
+    """Tell which faces are not entirely on the plate: they reach above the height `plate` (mm)."""
     heights = surface.points[:, 2][surface.triangles]
-    return np.asarray(heights.max(axis=1, initial=-np.inf) > ON_PLATE)
+    return np.asarray(heights.max(axis=1, initial=-np.inf) > plate)

@@ -4,11 +4,11 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.overhangs.regions import connected_components
-from amprep.geometry.overhangs.surface import LEVEL, ON_PLATE, Surface
+from amprep.geometry.overhangs.surface import LEVEL, Surface
 
 
-def minimum_plateaus(surface: Surface) -> Int64s:
-    """Label each point with its level plateau if that is a local minimum of the solid above the plate, else with -1."""
+def minimum_plateaus(surface: Surface, plate: float) -> Int64s:
+    """Label each point with its level plateau if that is a local minimum of the solid above `plate`, else with -1."""
     count = len(surface.points)
     start, end = surface.edges[:, 0], surface.edges[:, 1]
     difference = surface.points[end, 2] - surface.points[start, 2]
@@ -17,7 +17,7 @@ def minimum_plateaus(surface: Surface) -> Int64s:
     lowest = np.zeros(int(plateau.max(initial=-1)) + 1, np.bool_)
     lowest[plateau[surface.edges.ravel()]] = True
     lowest[plateau[np.where(difference > 0, end, start)[~level]]] = False
-    lowest[plateau[surface.points[:, 2] <= ON_PLATE]] = False
+    lowest[plateau[surface.points[:, 2] <= plate]] = False
     lowest &= _section_areas(surface, plateau, lowest) < 0
     return np.where(lowest[plateau], plateau, -1)
 
@@ -72,3 +72,22 @@ def tips_of(minimum: Int64s, corners: Int64s, ends: Int64s) -> tuple[Int64s, Int
     held[-1] = True  # the points that are no minimum
     tips = np.flatnonzero(~held[minimum])
     return tips, minimum[tips]
+
+
+def without_dips(surface: Surface, minimum: Int64s, depth: float) -> Int64s:
+    """Return the labels of local minima that are at least `depth` mm deep, else -1.
+
+    The depth of a minimum is the height above it of the lowest saddle from which lower ground is reached.
+    """
+    from amprep.kernels.overhangs.dips import find_dips
+
+    own = np.flatnonzero(minimum >= 0)
+    if not len(own):
+        return minimum
+    label, first = np.unique(minimum[own], return_index=True)
+    ends = np.concatenate([surface.edges, surface.edges[:, ::-1]])
+    ends = ends[np.argsort(ends[:, 0], kind="stable")]
+    starts = np.searchsorted(ends[:, 0], np.arange(len(surface.points) + 1))
+    heights = np.ascontiguousarray(surface.points[:, 2])
+    dips = label[find_dips(heights, starts, np.ascontiguousarray(ends[:, 1]), own[first], depth, LEVEL)]
+    return np.where(np.isin(minimum, dips), -1, minimum)

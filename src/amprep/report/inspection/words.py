@@ -61,6 +61,12 @@ def overhang_words(found: OverhangFigures) -> Iterator[tuple[str, str]]:
             ]
         ),
     )
+    if found.carried_regions:
+        carried = counted(found.carried_regions, "region")
+        yield (
+            "self-supporting",
+            f"{carried}, {found.carried_mm2:.1f} mm² of faces that the part itself carries",
+        )
     yield "steep enough", f"{found.steep_mm2:.1f} mm² of downward faces"
     yield "on the plate", f"{found.on_plate_mm2:.1f} mm²"
     if found.enforced_mm2:

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
 
-from amprep.geometry.overhangs.find import Modifiers, find_overhangs
+from amprep.geometry.overhangs.candidates import Modifiers
+from amprep.geometry.overhangs.find import find_overhangs
 
 Solid = manifold3d.Manifold
 

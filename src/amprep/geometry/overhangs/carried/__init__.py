@@ -1,0 +1,1 @@
+"""Find what of overhang regions the part itself carries."""

@@ -1,0 +1,100 @@
+"""Recognise bores and domes: overhang regions whose vertices are on a cylinder or a sphere."""
+
+import numpy as np
+
+from amprep.arrays import Floats, Int64s
+from amprep.geometry.overhangs.carried.borders import RegionFaces
+
+_FLAT = 1e-4
+"""Largest spread of unit normals out of a plane (mean square) for which a region is a cylinder."""
+
+_NEAR = 0.01
+"""Largest distance of vertices from the surface fitted to them, as a fraction of its radius, and in mm."""
+
+_FEWEST_LINES, _FEWEST_POINTS = 4, 8
+"""Fewest lines of vertices that define a cylinder, and fewest vertices that define a sphere."""
+
+
+def fitted_diameters(regions: RegionFaces, normals: Floats, count: int) -> Floats:
+    """Return the diameter (mm) of the cylinder or sphere that each of `count` regions is part of, else NaN.
+
+    Two faces define a cylinder only together with the faces beside them: a roof ridge is none.
+
+    Parameters
+    ----------
+    regions
+        The faces of all regions.
+    normals
+        ``(m, 3)`` unit normals of all faces of the surface.
+    count
+        Number of regions.
+    """
+    diameters = np.full(count, np.nan)
+    order, beside = (np.argsort(each, kind="stable") for each in (regions.label, regions.outer_label))
+    first, last = (
+        np.searchsorted(regions.outer_label[beside], np.arange(count), side=s) for s in ("left", "right")
+    )
+    for group in np.split(order, np.flatnonzero(np.diff(regions.label[order])) + 1):
+        if len(group) >= _FEWEST_LINES:
+            own = regions.label[group[0]]
+            outer = regions.outer[beside[first[own] : last[own]]]
+            diameters[own] = _diameter(regions.corners[group], normals[regions.face[group]], outer)
+    return diameters
+
+
+def _diameter(corners: Floats, normals: Floats, outer: Floats) -> float:
+    """Return the diameter of one region with the corners ``(n, 3, 3)``."""
+    weight = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    spread = np.einsum("n,ni,nj->ij", weight / weight.sum(), normals, normals)
+    values, axes = np.linalg.eigh(spread)
+    points = corners.reshape(-1, 3)
+    if values[1] < _FLAT:
+        return float("nan")
+    if values[0] < _FLAT:
+        section = _distinct(points @ axes[:, 1:])
+        if len(section) < _FEWEST_LINES:
+            section = _distinct(np.concatenate([points, outer]) @ axes[:, 1:])
+        return _fitted(section) if len(section) >= _FEWEST_LINES else float("nan")
+    return _fitted(_distinct(points)) if len(points) >= _FEWEST_POINTS else float("nan")
+
+
+def _distinct(points: Floats) -> Floats:
+    """Return one of all points that are the same to a thousandth of a millimetre."""
+    return points[np.unique(np.round(points, 3), axis=0, return_index=True)[1]]
+
+
+def _fitted(points: Floats) -> float:
+    """Return the diameter of the circle or sphere through points ``(n, 2 or 3)``, or NaN if there is none.
+
+    Least squares in the equation of the circle, which is linear in its centre (Kasa 1976, doi
+    10.1109/TIM.1976.6312298).
+    """
+    points = points - points.mean(axis=0)
+    terms = np.column_stack([2 * points, np.ones(len(points))])
+    solution, _, rank, _ = np.linalg.lstsq(terms, (points**2).sum(axis=1), rcond=None)
+    centre = solution[:-1]
+    square = float(solution[-1] + centre @ centre)
+    if rank < terms.shape[1] or square <= 0:
+        return float("nan")
+    radius = square**0.5
+    off = np.abs(np.linalg.norm(points - centre, axis=1) - radius).max()
+    return 2 * radius if off <= _NEAR * min(radius, 1.0) + 2e-3 else float("nan")
+
+
+def arch_limits(diameters: Floats, label: Int64s, bore: float, angle_deg: float) -> Floats:
+    """Return the largest chord (mm) of an arch that carries itself, for each face.
+
+    Parameters
+    ----------
+    diameters
+        ``(n,)`` diameter of each region, NaN where it is no cylinder or sphere.
+    label
+        ``(m,)`` region of each face.
+    bore
+        Largest diameter of a horizontal bore, mm.
+    angle_deg
+        Overhang angle: a bore is flatter than it over the width ``diameter * sin(angle)``.
+    """
+    width = bore * float(np.sin(np.radians(angle_deg)))
+    limit = np.where(np.isnan(diameters), width, np.where(diameters <= bore, np.inf, 0.0))
+    return np.asarray(limit[label], np.float64)

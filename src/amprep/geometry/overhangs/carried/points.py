@@ -1,0 +1,178 @@
+"""Measure how the part carries points of overhang regions."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Int64s
+from amprep.geometry.overhangs.carried.arches import arch_limits, fitted_diameters
+from amprep.geometry.overhangs.carried.borders import RegionFaces
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+    from amprep.kernels.overhangs.walks import CarryingLimits, WalkableFaces
+
+TOLERANCE = 0.01
+"""Lengths (mm) that exceed a limit by less are within it."""
+
+_SPACING = 0.25
+"""Distance (mm) of sample points along anchors."""
+
+_APART = 1e5
+"""Distance (mm) between the samples of two regions in the third coordinate of the search tree."""
+
+_END = 1e-3
+"""Walks end at least at this fraction of an anchor's length from its ends."""
+
+
+class Limits(NamedTuple):
+    """Limits up to which the part itself carries overhangs, as in `amprep.model.supports.rules.OverhangRules`.
+
+    Attributes
+    ----------
+    angle_deg
+        Overhang angle.
+    ledge, bridge, bore
+        Largest length, span and diameter, mm.
+    plate
+        Height (mm) up to which geometry is on the plate.
+    layer
+        Height (mm) of a layer.
+    """
+
+    angle_deg: float
+    ledge: float
+    bridge: float
+    bore: float
+    plate: float
+    layer: float
+
+
+class Carrier(NamedTuple):
+    """The faces of overhang regions with the limits up to which the part carries them.
+
+    Attributes
+    ----------
+    regions, limits
+        The faces, and the limits.
+    diameters
+        ``(n,)`` mm of the regions that are part of a cylinder or sphere, else NaN.
+    arch
+        ``(m,)`` mm, largest chord of an arch over each face.
+    tree
+        Samples of the anchors, with their region as the third coordinate.
+    owner
+        Anchor of each sample.
+    """
+
+    regions: RegionFaces
+    limits: Limits
+    diameters: Floats
+    arch: Floats
+    tree: "KDTree"
+    owner: Int64s
+
+    def ledges(self, points: Floats, face: Int64s) -> Floats:
+        """Return the length ``(n,)`` mm of the shortest ledge at points ``(n, 3)`` on the regions' faces ``(n,)``."""
+        from amprep.kernels.overhangs.walks import find_ledges
+
+        target, _ = self.nearest(points, face)
+        ledges = np.empty(len(points))
+        find_ledges(
+            self._faces(), self._kernel_limits(np.inf), np.ascontiguousarray(points), face, target, ledges
+        )
+        return ledges
+
+    def spans(self, points: Floats, face: Int64s, *, fully: bool = False) -> tuple[Floats, Floats]:
+        """Return the shortest bridge and arch ``(n,)`` mm at points, infinite where there is none.
+
+        Without `fully` the search ends as soon as one is within its limit, and it does not find longer ones.
+        """
+        from amprep.kernels.overhangs.walks import find_spans
+
+        target, _ = self.nearest(points, face)
+        spans = np.empty((len(points), 2))
+        most = np.inf if fully else self._longest()
+        find_spans(
+            self._faces(), self._kernel_limits(most), np.ascontiguousarray(points), face, target, fully, spans
+        )
+        return spans[:, 0], spans[:, 1]
+
+    def carries(self, points: Floats, face: Int64s) -> Bools:
+        """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries."""
+        carried = self.ledges(points, face) <= self.limits.ledge + TOLERANCE
+        left = np.flatnonzero(~carried)
+        bridge, arch = self.spans(points[left], face[left])
+        carried[left] = (bridge <= self.limits.bridge + TOLERANCE) | (
+            arch <= self.arch[face[left]] + TOLERANCE
+        )
+        return np.asarray(carried)
+
+    def nearest(self, points: Floats, face: Int64s) -> tuple[Floats, Floats]:
+        """Return the point ``(n, 2)`` of the nearest anchor, and a lower bound ``(n,)`` mm on its distance in plan.
+
+        Where the region has no anchor, these are NaN and infinity.
+        """
+        if not len(self.owner):
+            return np.full((len(points), 2), np.nan), np.full(len(points), np.inf)
+        keys = np.column_stack([points[:, :2], _APART * self.regions.label[face]])
+        distance, sample = self.tree.query(keys)
+        distance = np.asarray(distance)
+        start, end = (self.regions.anchors[self.owner[sample], i] for i in (0, 1))
+        along = end - start
+        share = np.einsum("ij,ij->i", points[:, :2] - start, along)
+        share /= np.maximum(np.einsum("ij,ij->i", along, along), 1e-300)
+        target = start + np.clip(share, _END, 1 - _END)[:, None] * along
+        alien = distance > _APART / 2
+        target[alien] = np.nan
+        return target, np.where(alien, np.inf, np.maximum(distance - _SPACING / 2, 0.0))
+
+    def farthest(self, face: Int64s) -> Floats:
+        """Return the greatest distance (mm) from the nearest anchor at which a point of each face may be carried."""
+        chord = np.maximum(
+            self.limits.bridge, np.where(np.isinf(self.arch[face]), self._width(face), self.arch[face])
+        )
+        return np.asarray(np.maximum(self.limits.ledge, chord / 2) + TOLERANCE)
+
+    def _width(self, face: Int64s) -> Floats:
+        return np.nan_to_num(self.diameters[self.regions.label[face]])
+
+    def _faces(self) -> "WalkableFaces":
+        from amprep.kernels.overhangs.walks import WalkableFaces
+
+        return WalkableFaces(self.regions.corners, self.regions.beyond)
+
+    def _longest(self) -> float:
+        """Return a length (mm) that lines which carry points do not exceed, but for oblique lines across bores."""
+        chords = self.arch[np.isfinite(self.arch)]
+        bores = self.diameters[self.diameters <= self.limits.bore + TOLERANCE]
+        return float(max(self.limits.bridge, chords.max(initial=0.0), 2 * bores.max(initial=0.0)) + TOLERANCE)
+
+    def _kernel_limits(self, most: float) -> "CarryingLimits":
+        from amprep.kernels.overhangs.walks import CarryingLimits
+
+        rise = float(np.tan(np.radians(self.limits.angle_deg) / 2) / 4) - 1e-3
+        bridge = self.limits.bridge + TOLERANCE
+        return CarryingLimits(bridge, self.arch + TOLERANCE, rise, most, self.limits.plate)
+
+
+def make_carrier(regions: RegionFaces, normals: Floats, limits: Limits) -> Carrier:
+    """Prepare the faces of regions for measurements; `normals` are those of all faces of the surface."""
+    from scipy.spatial import KDTree
+
+    diameters = fitted_diameters(regions, normals, int(regions.label.max(initial=-1)) + 1)
+    arch = arch_limits(diameters, regions.label, limits.bore + TOLERANCE, limits.angle_deg)
+    samples, owner = _samples(regions.anchors)
+    keys = np.column_stack([samples, _APART * regions.anchor_label[owner]])
+    return Carrier(regions, limits, diameters, arch, KDTree(keys), owner)
+
+
+def _samples(segments: Floats) -> tuple[Floats, Int64s]:
+    """Return the middles of pieces of segments that are at most `_SPACING` long, and the segment of each."""
+    along = segments[:, 1] - segments[:, 0]
+    pieces = np.maximum(np.ceil(np.linalg.norm(along, axis=1) / _SPACING), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(segments)), pieces)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    share = (number + 0.5) / pieces[owner]
+    return segments[owner, 0] + share[:, None] * along[owner], owner

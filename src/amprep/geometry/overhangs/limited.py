@@ -1,0 +1,180 @@
+"""Find the overhangs of a mesh that the part itself does not carry."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Int32s, Int64s
+from amprep.geometry.overhangs.candidates import Candidates, Modifiers, find_candidates
+from amprep.geometry.overhangs.carried.borders import region_faces
+from amprep.geometry.overhangs.carried.points import Carrier, Limits, make_carrier
+from amprep.geometry.overhangs.carried.sizes import region_sizes
+from amprep.geometry.overhangs.carried.stitch import Stitched, stitch
+from amprep.geometry.overhangs.carried.stretches import edge_regions
+from amprep.geometry.overhangs.carried.subdivide import Pieces, subdivide_at_limits
+from amprep.geometry.overhangs.carried.summaries import face_regions, noncritical_regions, tip_regions
+from amprep.geometry.overhangs.faces import overhanging_faces
+from amprep.geometry.overhangs.regions import (
+    OverhangRegion,
+    Overhangs,
+    components_of_faces,
+    numbered_by_first,
+)
+
+# Strategy. Faces flatter than the angle form natural regions, whether blocked, enforced or not: how the part carries
+# them is geometry. Regions that start in the air need support as a whole; the others are subdivided at the limits.
+# Only then blockers take pieces away and enforcers add faces, and what is left is labelled again, since a blocker may
+# cut a region in two. Natural regions that need support as a whole or not at all keep their own triangles, so the
+# mesh grows only where a limit divides a region.
+
+
+class LimitedOverhangs(NamedTuple):
+    """Overhangs, and the mesh ``(n, 3)``, ``(m, 3)`` that their indices refer to."""
+
+    vertices: Floats
+    triangles: Int32s
+    overhangs: Overhangs
+
+
+class _JudgedFaces(NamedTuple):
+    """The triangles of a mesh that is subdivided at the limits.
+
+    Attributes
+    ----------
+    points, stitched
+        Points ``(n, 3)`` mm, those of the surface first, and the triangles.
+    needed
+        ``(k,)`` bool, triangles of natural regions that need support.
+    """
+
+    points: Floats
+    stitched: Stitched
+    needed: Bools
+
+
+def find_limited_overhangs(
+    vertices: Floats,
+    triangles: Int32s,
+    limits: Limits,
+    *,
+    noncritical_deg: float = 0.0,
+    modifiers: Modifiers | None = None,
+) -> LimitedOverhangs:
+    """Find the overhangs of a mesh, and which of them the part itself carries.
+
+    A point of an overhang region is carried if a straight line in plan leads over the region to a border that the
+    part holds, no longer than a ledge may be; if it is on a line between two such borders, no longer than a bridge
+    may be; or if it is under an arch whose diameter is at most that of a bore. Nothing is carried in a region in
+    which the part starts in the air. Where a limit divides a region, the mesh is subdivided.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm in build coordinates, ``(m, 3)`` with normals out of the solid.
+    limits
+        Overhang angle and limits.
+    noncritical_deg
+        Faces from the overhang angle up to this angle form regions that need no support.
+    modifiers
+        Triangles and vertices selected by blockers and enforcers.
+    """
+    found = find_candidates(
+        vertices, triangles, limits.angle_deg, modifiers, plate=limits.plate, dip=limits.layer
+    )
+    surface = found.surface
+    carrier = make_carrier(
+        region_faces(surface, found.normals, found.natural, limits.plate), found.normals, limits
+    )
+    judged = _judge_faces(found, carrier)
+    label = np.full(len(triangles), -1)
+    label[found.faces] = numbered_by_first(components_of_faces(surface, found.faces))
+    parent = judged.stitched.parent
+    region, needed = label[parent], (judged.needed | found.enforced[parent]) & found.faces[parent]
+    corners = judged.points[judged.stitched.triangles]
+    regions = _sized_regions(found, carrier, corners, parent, region, needed)
+    spared = np.zeros(len(triangles), np.bool_)
+    if noncritical_deg > limits.angle_deg:
+        spared = overhanging_faces(surface, found.normals, noncritical_deg, limits.plate)
+        spared &= ~found.natural & ~found.enforced & ~found.blocked
+    regions += noncritical_regions(surface, spared)
+    edges, edge_number, of_edges = edge_regions(found, limits)
+    edge_number += len(regions)
+    regions += of_edges
+    tip_number, of_tips = tip_regions(found)
+    tip_number += len(regions)
+    regions += of_tips
+    chosen = np.flatnonzero(needed)
+    beside = np.flatnonzero(~needed & (region >= 0) & np.isin(region, region[chosen]))
+    first = surface.first.astype(np.int32)
+    overhangs = Overhangs(
+        chosen.astype(np.int32),
+        region[chosen].astype(np.int32),
+        first[edges],
+        edge_number.astype(np.int32),
+        first[found.tips],
+        tip_number.astype(np.int32),
+        tuple(regions),
+        beside.astype(np.int32),
+    )
+    return LimitedOverhangs(*_mesh(vertices, triangles, found, judged), overhangs)
+
+
+def _judge_faces(found: Candidates, carrier: Carrier) -> _JudgedFaces:
+    """Subdivide the natural regions at the limits, and tell which triangles need support."""
+    surface, own = found.surface, carrier.regions
+    corners = surface.triangles[own.face]
+    hanging = np.zeros(int(own.label.max(initial=-1)) + 1, np.bool_)
+    hanging[own.label[(found.minimum[corners] >= 0).any(axis=1)]] = True
+    pieces = subdivide_at_limits(carrier, surface.points, corners, ~hanging[own.label])
+    mixed = _mixed(pieces, own.label, len(hanging))
+    needed = hanging[own.label]
+    needed[pieces.face[pieces.needed]] = True
+    kept = mixed[own.label[pieces.face]]
+    stitched = stitch(
+        surface.triangles, pieces.triangles[kept], own.face[pieces.face[kept]], len(surface.points)
+    )
+    of_surface = np.zeros(len(surface.triangles), np.bool_)
+    of_surface[own.face] = needed
+    judged = of_surface[stitched.parent]
+    judged[stitched.piece >= 0] = pieces.needed[kept]
+    return _JudgedFaces(pieces.points, stitched, judged)
+
+
+def _mixed(pieces: Pieces, label: Int64s, count: int) -> Bools:
+    """Tell which natural regions have both pieces that need support and pieces that do not."""
+    both = np.zeros((2, count), np.bool_)
+    both[pieces.needed.astype(np.int64), label[pieces.face]] = True
+    return np.asarray(both.all(axis=0))
+
+
+def _sized_regions(
+    found: Candidates, carrier: Carrier, corners: Floats, parent: Int64s, region: Int64s, needed: Bools
+) -> list[OverhangRegion]:
+    """Return the regions of faces with their kinds and sizes."""
+    count = int(region.max(initial=-1)) + 1
+    holds = np.bincount(region[needed], minlength=count) == 0
+    position = np.full(len(found.natural), -1)
+    position[carrier.regions.face] = np.arange(len(carrier.regions.face))
+    chosen = needed | (region >= 0)
+    chosen[chosen] &= needed[chosen] | holds[region[chosen]]
+    judged = np.flatnonzero(chosen & (position[parent] >= 0))
+    sizes = region_sizes(carrier, corners[judged], position[parent[judged]], region[judged], holds)
+    own = np.flatnonzero(chosen)
+    starts = np.zeros(count, np.bool_)
+    touching = (found.minimum[found.surface.triangles[parent]] >= 0).any(axis=1) & (region >= 0)
+    starts[region[touching]] = True
+    return face_regions(corners[own], region[own], sizes, holds, starts)
+
+
+def _mesh(
+    vertices: Floats, triangles: Int32s, found: Candidates, judged: _JudgedFaces
+) -> tuple[Floats, Int32s]:
+    """Return the mesh given with the triangles that were subdivided."""
+    count = len(found.surface.points)
+    if len(judged.stitched.parent) == len(triangles) and (judged.stitched.piece < 0).all():
+        return vertices, triangles
+    old = np.concatenate([found.surface.first, len(vertices) + np.arange(len(judged.points) - count)])
+    finer = old[judged.stitched.triangles].astype(np.int32)
+    uncut = np.bincount(judged.stitched.parent)[judged.stitched.parent] == 1
+    finer[uncut] = triangles[judged.stitched.parent[uncut]]
+    return np.concatenate([vertices, judged.points[count:]]), finer

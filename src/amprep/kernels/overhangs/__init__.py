@@ -1,0 +1,1 @@
+"""Walk over overhanging faces, and flood the surroundings of local minima."""

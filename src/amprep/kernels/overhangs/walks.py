@@ -1,0 +1,226 @@
+"""Walk from points of overhang regions to the borders of these, over their faces."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from amprep.arrays import Floats, Int64s
+from amprep.kernels.helper import helper
+
+# Strategy. The faces of a region are flatter than 90 degrees, so each of them is a triangle in plan, and a horizontal
+# straight line over the region is a line from triangle to triangle through their common sides. In each triangle the
+# line leaves through the side that it reaches first; there it enters the face beyond, or ends at the border. So
+# regions that overlap themselves in plan are walked correctly. A walk takes a few nanoseconds a triangle.
+# The walk towards the nearest anchor comes first. If it arrives, it is the shortest ledge; and the shortest line
+# between two anchors through the point is often its continuation. All directions are tried only where these do not
+# suffice. No line between two anchors is shorter than twice the shortest ledge.
+
+ANCHOR, FREE = -1, -2
+"""What is beyond a side at the border of a region: the part carries it there, or it does not."""
+
+_FAR = -3
+_CHORDS = 32
+_MOST_STEPS = 100_000
+
+
+class WalkableFaces(NamedTuple):
+    """The faces of overhang regions, counter-clockwise seen from above.
+
+    Attributes
+    ----------
+    corners
+        ``(m, 3, 3)`` mm.
+    beyond
+        ``(m, 3)`` for the side from corner i to corner i + 1: 3 times the face beyond it, plus the number of the same
+        side there; or `ANCHOR` or `FREE`.
+    """
+
+    corners: Floats
+    beyond: Int64s
+
+
+class CarryingLimits(NamedTuple):
+    """Limits up to which the part carries points, and what ends a walk.
+
+    Attributes
+    ----------
+    bridge
+        Largest length of a bridge, mm.
+    arch
+        ``(m,)`` largest chord of an arch over each face, mm.
+    rise
+        Least rise of an arch as a fraction of its chord.
+    most
+        Length (mm) at which walks end.
+    plate
+        Height (mm) up to which a region is on the plate.
+    """
+
+    bridge: float
+    arch: Floats
+    rise: float
+    most: float
+    plate: float
+
+
+@helper
+def _walk(
+    faces: WalkableFaces,
+    face: int,
+    x: float,
+    y: float,
+    z: float,
+    dx: float,
+    dy: float,
+    most: float,
+    plate: float,
+) -> tuple[float, int, float, float]:
+    """Return length, kind of end, height at the end, and greatest height of a walk from a point in a face."""
+    corners, beyond = faces.corners, faces.beyond
+    came, length, top, height = -1, 0.0, z, z
+    for _ in range(_MOST_STEPS):
+        best, side = np.inf, -1
+        for i in range(3):
+            if i != came:
+                j = i + 1 if i < 2 else 0
+                ex = corners[face, j, 0] - corners[face, i, 0]
+                ey = corners[face, j, 1] - corners[face, i, 1]
+                out = dx * ey - dy * ex
+                if out > 1e-15:
+                    at = ((corners[face, i, 0] - x) * ey - (corners[face, i, 1] - y) * ex) / out
+                    if at < best:
+                        best, side = at, i
+        if side < 0:
+            return length, FREE, height, top
+        best = max(best, length)
+        j = side + 1 if side < 2 else 0
+        ex = corners[face, j, 0] - corners[face, side, 0]
+        ey = corners[face, j, 1] - corners[face, side, 1]
+        along = (x + best * dx - corners[face, side, 0]) * ex + (y + best * dy - corners[face, side, 1]) * ey
+        along = min(max(along / (ex * ex + ey * ey), 0.0), 1.0)
+        low = height
+        height = corners[face, side, 2] + along * (corners[face, j, 2] - corners[face, side, 2])
+        if height <= plate:
+            share = (low - plate) / (low - height) if low > height else 0.0
+            return length + share * (best - length), ANCHOR, plate, top
+        top = max(top, height)
+        length = best
+        if length > most:
+            return length, _FAR, height, top
+        onward = beyond[face, side]
+        if onward < 0:
+            return length, onward, height, top
+        face, came = onward // 3, onward % 3
+    return length, FREE, height, top
+
+
+@helper
+def _chord(
+    faces: WalkableFaces,
+    limits: CarryingLimits,
+    face: int,
+    point: tuple[float, float, float],
+    direction: tuple[float, float],
+) -> tuple[float, float]:
+    """Return the bridge and the arch along a line through a point, infinite where there is none."""
+    x, y, z = point
+    dx, dy = direction
+    one, kind, z1, top1 = _walk(faces, face, x, y, z, dx, dy, limits.most, limits.plate)
+    if kind != ANCHOR:
+        return np.inf, np.inf
+    other, kind, z2, top2 = _walk(faces, face, x, y, z, -dx, -dy, limits.most - one, limits.plate)
+    if kind != ANCHOR:
+        return np.inf, np.inf
+    bridge = one + other
+    rise = max(top1, top2) - max(z1, z2)
+    return bridge, bridge if rise >= limits.rise * bridge else np.inf
+
+
+@helper
+def _towards(
+    faces: WalkableFaces,
+    limits: CarryingLimits,
+    face: int,
+    point: tuple[float, float, float],
+    direction: tuple[float, float],
+) -> float:
+    """Return the length of a walk to an anchor, infinite where it does not lead to one."""
+    x, y, z = point
+    length, kind, _, _ = _walk(faces, face, x, y, z, direction[0], direction[1], limits.most, limits.plate)
+    return length if kind == ANCHOR else np.inf
+
+
+@njit(cache=True)
+def find_ledges(
+    faces: WalkableFaces,
+    limits: CarryingLimits,
+    points: Floats,
+    face: Int64s,
+    targets: Floats,
+    ledges: Floats,
+) -> None:
+    """Find the length of the shortest ledge at each point; parameters as of `find_spans`.
+
+    Parameters
+    ----------
+    ledges
+        ``(n,)`` out: mm, infinite where no straight line leads to an anchor.
+    """
+    for n in range(len(points)):
+        x, y, z = points[n]
+        ledge = np.inf
+        if z <= limits.plate:
+            ledge = 0.0
+        elif not np.isnan(targets[n, 0]):
+            dx, dy = targets[n, 0] - x, targets[n, 1] - y
+            size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
+            ledge = _towards(faces, limits, face[n], (x, y, z), (dx / size, dy / size))
+            if ledge > size + 1e-6:
+                for k in range(2 * _CHORDS):
+                    towards = (np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS))
+                    ledge = min(ledge, _towards(faces, limits, face[n], (x, y, z), towards))
+        ledges[n] = ledge
+
+
+@njit(cache=True)
+def find_spans(
+    faces: WalkableFaces,
+    limits: CarryingLimits,
+    points: Floats,
+    face: Int64s,
+    targets: Floats,
+    fully: bool,
+    spans: Floats,
+) -> None:
+    """Find the shortest bridge and arch through each point.
+
+    Parameters
+    ----------
+    faces, limits
+        The faces of the regions, and the limits.
+    points, face
+        ``(n, 3)`` mm, and the face ``(n,)`` that each is on.
+    targets
+        ``(n, 2)`` mm, the anchor nearest to each point; not a number if its region has none.
+    fully
+        Whether to try all directions even if a bridge or arch is within its limit.
+    spans
+        ``(n, 2)`` out: length of the shortest bridge and of the shortest arch, mm.
+    """
+    for n in range(len(points)):
+        x, y, z = points[n]
+        at = face[n]
+        bridge, arch = np.inf, np.inf
+        if not np.isnan(targets[n, 0]):
+            for k in range(_CHORDS + 1):
+                dx, dy = np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS)
+                if k == 0:
+                    dx, dy = targets[n, 0] - x, targets[n, 1] - y
+                    size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
+                    dx, dy = dx / size, dy / size
+                one, two = _chord(faces, limits, at, (x, y, z), (dx, dy))
+                bridge, arch = min(bridge, one), min(arch, two)
+                if not fully and (bridge <= limits.bridge or arch <= limits.arch[at]):
+                    break
+        spans[n, 0], spans[n, 1] = bridge, arch
