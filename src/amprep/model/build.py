@@ -10,6 +10,7 @@ from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
 from amprep.model.supports.rules import SupportRules
+from amprep.model.supports.sizes import SupportSizes
 
 Target = Literal["generic", "prusaslicer", "cura"]
 SupportsAs = Literal["support", "model"]
@@ -42,6 +43,8 @@ class BuildSettings:
         False when the job asked for no supports.
     supports_as
         Type that a generic file gives to solid supports.
+    sizes
+        Sizes of supports that judges need.
     """
 
     build_id: str
@@ -55,6 +58,7 @@ class BuildSettings:
     rules: SupportRules = field(default_factory=SupportRules)
     supported: bool = True
     supports_as: SupportsAs = "support"
+    sizes: SupportSizes = field(default_factory=SupportSizes)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from amprep.model import (
     Stop,
 )
 from amprep.model.summary import Summarised
+from amprep.model.supports.sizes import SupportSizes
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
@@ -218,6 +219,20 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         rules=job.supports,
         supported=job.supports.enabled,
         supports_as=job.supports.write_as,
+        sizes=_sizes(job, pitch),
+    )
+
+
+def _sizes(job: Job, pitch: float) -> SupportSizes:
+    cells = job.cells
+    tips, base = cells.has_tips, cells.base != "direct"
+    return SupportSizes(
+        square_mm=pitch,
+        tip_width_mm=cells.tip_width_mm if tips else 0.0,
+        tip_height_mm=cells.tip_height_mm if tips else 0.0,
+        neck_mm=cells.neck_mm,
+        base_margin_mm=cells.base_margin_mm if base else 0.0,
+        base_height_mm=cells.base_height_mm if base else 0.0,
     )
 
 

@@ -64,7 +64,9 @@ class _Ends(NamedTuple):
     at_anchor: Bools
 
 
-def carried(points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches) -> Bools:
+def carried(
+    points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches, *, thorough: bool = True
+) -> Bools:
     """Tell which points of overhang regions the part itself carries, ``(n,)``.
 
     Parameters
@@ -75,11 +77,13 @@ def carried(points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches
         Edges of the regions.
     reaches
         Limits.
+    thorough
+        Whether points that no line carries are tried with more lines.
     """
     found = _sees_anchor(points, region, edges, reaches)
     longest = max(reaches.ledge, reaches.bridge, reaches.bore)
     anchored = np.unique(edges.region[edges.is_anchor])
-    for count in _LINES:
+    for count in _LINES if thorough else _LINES[:1]:
         left = np.flatnonzero(~found & np.isin(region, anchored))
         found[left] = _carried_by_lines(points[left], region[left], edges, reaches, longest, count)
     return found

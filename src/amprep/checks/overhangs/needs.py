@@ -38,7 +38,8 @@ def are_needed(found: JudgedOverhangs, rules: OverhangRules, rows: Int64s, *, st
     rows
         Indices of samples.
     strict
-        Whether the tolerances count against the part instead: the other samples are certainly carried.
+        Whether the tolerances count against the part instead, and only few lines are tried: then the other samples are
+        certainly carried.
     """
     if not rules.has_limits or not len(rows):
         return np.ones(len(rows), np.bool_)
@@ -50,7 +51,7 @@ def are_needed(found: JudgedOverhangs, rules: OverhangRules, rows: Int64s, *, st
     needed = samples.points[:, 2] > plate
     on_faces = np.flatnonzero(needed & (samples.kind == 0) & (samples.owner != ENFORCED))
     needed[on_faces] = ~_carried_faces(
-        found, samples.points[on_faces], samples.owner[on_faces], starts, reaches, plate
+        found, samples.points[on_faces], samples.owner[on_faces], starts, reaches, plate, not strict
     )
     on_edges = np.flatnonzero(needed & (samples.kind == 1))
     needed[on_edges] = ~_carried_edges(
@@ -67,7 +68,13 @@ def _reaches(rules: OverhangRules, angle: float, sign: float) -> Reaches:
 
 
 def _carried_faces(
-    found: JudgedOverhangs, points: Floats, owner: Int64s, starts: Bools, reaches: Reaches, plate: float
+    found: JudgedOverhangs,
+    points: Floats,
+    owner: Int64s,
+    starts: Bools,
+    reaches: Reaches,
+    plate: float,
+    thorough: bool,
 ) -> Bools:
     """Tell which samples on faces the part itself carries."""
     surface = found.surface
@@ -81,7 +88,7 @@ def _carried_faces(
     is_carried = np.zeros(len(points), np.bool_)
     rows = np.flatnonzero(~in_air[region[owner]])
     inner = _inwards(surface, points[rows], faces[owner[rows]])
-    is_carried[rows] = carried(inner, region[owner[rows]], edges, reaches)
+    is_carried[rows] = carried(inner, region[owner[rows]], edges, reaches, thorough=thorough)
     return is_carried
 
 

@@ -1,6 +1,7 @@
 """Convert the records of a build to the JSON in a build file's metadata, and back."""
 
 from collections.abc import Sequence
+from dataclasses import asdict, fields
 from pathlib import PurePath
 from typing import Any, Literal, cast, get_args
 
@@ -11,6 +12,7 @@ from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
 from amprep.model.supports.rules import Grounding, OverhangJudgement, SupportRules, Territory
+from amprep.model.supports.sizes import SupportSizes
 from amprep.threemf.build.values import (
     JsonObject,
     as_list,
@@ -60,7 +62,8 @@ def settings_record(settings: BuildSettings) -> JsonObject:
     """Return the settings of a build without its build volume."""
     names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "supports_as")
     rules = {name: getattr(settings.rules, name) for name in _RULE_NAMES}
-    return {name: getattr(settings, name) for name in names} | rules
+    sizes = {"sizes": asdict(settings.sizes)}
+    return {name: getattr(settings, name) for name in names} | rules | sizes
 
 
 def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
@@ -80,6 +83,7 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         choice(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
     )
     supported = boolean(values, "supported")
+    sizes = _sizes_of(values.get("sizes", {}))
     return BuildSettings(
         **strings,  # type: ignore[arg-type]
         **numbers,  # type: ignore[arg-type]
@@ -88,7 +92,15 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         rules=SupportRules(grounding=grounding, **limits),
         supports_as=supports_as,
         space=space,
+        sizes=sizes,
     )
+
+
+def _sizes_of(record: Any) -> SupportSizes:
+    """Return the sizes of supports; older files have none."""
+    values = as_object(record, "sizes")
+    known = [each.name for each in fields(SupportSizes) if each.name in values]
+    return SupportSizes(**{name: number(values, name) for name in known})
 
 
 def volume_record(space: BuildVolume) -> JsonObject:

@@ -1,0 +1,108 @@
+"""Judge drift: no support is farther to the side of the overhangs above it than the rules allow."""
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats
+from amprep.checks.overhangs.needs import are_needed
+from amprep.checks.overhangs.samples import judged_overhangs
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.sampling import sample_segments
+from amprep.model.build import Build, PlacedPart, SupportBody
+from amprep.model.control import Stop
+
+PROMISE = "drift"
+
+TOLERANCE = 0.1
+"""Distance (mm) that is granted to supports."""
+
+_SPACING = 1.0
+"""Distance (mm) of samples on overhangs and supports."""
+
+_CELL = 0.5
+"""Side (mm) of the squares in plan of which only the highest sample counts."""
+
+_CHUNK = 2_000_000
+"""Pairs of samples that are computed at once."""
+
+
+def check_drift(build: Build, stop: Stop) -> list[Violation]:
+    """Return the supports with a point that is too far to the side of all overhangs above it that need support.
+
+    A point may be away by the smaller of `drift_mm` and `drift_ratio` times the height up to the overhang, and by one
+    square of the support grid more, because drift is planned in squares; at the foot the margin of the base comes on
+    top. Supports that parts share may be below the overhangs of any of them.
+    """
+    rules = build.settings.rules
+    found: list[Violation] = []
+    if rules.territory != "own" or (rules.drift_mm <= 0.0 and rules.drift_ratio <= 0.0):
+        return found
+    targets: dict[int, Floats] = {}
+    for body in build.supports:
+        if stop.cancelled.is_set():
+            return found
+        for part in body.parts:
+            if part not in targets:
+                targets[part] = _targets(build.parts[part], build)
+        above = np.concatenate([np.empty((0, 3)), *(targets[part] for part in body.parts)])
+        found += _judged(body, above, build)
+    return found
+
+
+def _targets(placed: PlacedPart, build: Build) -> Floats:
+    """Return points on the overhangs of a part that may need support, ``(n, 3)`` mm."""
+    found = judged_overhangs(placed, build.settings.rules, _SPACING)
+    rows = np.arange(len(found.samples.points))
+    needed = are_needed(found, build.settings.rules, rows, strict=True)
+    points = found.samples.points[needed]
+    return points[_highest(points)]
+
+
+def _judged(body: SupportBody, above: Floats, build: Build) -> list[Violation]:
+    corners = body.mesh.triangles
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    once = start < end
+    points, _ = sample_segments(body.mesh.vertices[start[once]], body.mesh.vertices[end[once]], _SPACING)
+    points = points[_highest(points)]
+    excess = _excess(points, above, build)
+    far = np.flatnonzero(excess > TOLERANCE)
+    if not len(far):
+        return []
+    worst = far[excess[far].argmax()]
+    place = np.round(points[worst], 2).tolist()
+    message = f"the point at {place} mm is {excess[worst]:.2f} mm too far sideways of all overhangs that it can carry"
+    if np.isinf(excess[worst]):
+        message = f"above the point at {place} mm no overhang needs support"
+    message += f" ({len(far)} of {len(points)} points)"
+    return [Violation(PROMISE, body.name, message)]
+
+
+def _excess(points: Floats, above: Floats, build: Build) -> Floats:
+    """Return how much farther each point is to the side than it may be, mm; at most 0 where it is not."""
+    rules, sizes = build.settings.rules, build.settings.sizes
+    least = np.full(len(points), np.inf)
+    if not len(above):
+        return least
+    limit = rules.drift_mm or np.inf
+    square = sizes.square_mm or build.settings.reach
+    nearby = np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0)
+    rows = max(_CHUNK // len(above), 1)
+    for at in range(0, len(points), rows):
+        own = points[at : at + rows]
+        away = np.hypot(own[:, None, 0] - above[:, 0], own[:, None, 1] - above[:, 1])
+        climb = above[:, 2] - own[:, None, 2]
+        allowed = np.minimum(rules.drift_ratio * climb if rules.drift_ratio > 0.0 else np.inf, limit)
+        over = away - np.maximum(allowed, 0.0) - nearby
+        least[at : at + rows] = np.where(climb > -build.settings.overlap - square, over, np.inf).min(axis=1)
+    base = points[:, 2] <= sizes.base_height_mm
+    return np.asarray(least - np.where(base, sizes.base_margin_mm, 0.0))
+
+
+def _highest(points: Floats) -> Bools:
+    """Tell which points are the highest in their square of the plan."""
+    square = np.floor(points[:, :2] / _CELL).astype(np.int64)
+    order = np.lexsort((-points[:, 2], square[:, 1], square[:, 0]))
+    first = np.ones(len(order), np.bool_)
+    first[1:] = (np.diff(square[order], axis=0) != 0).any(axis=1)
+    highest = np.zeros(len(points), np.bool_)
+    highest[order[first]] = True
+    return highest

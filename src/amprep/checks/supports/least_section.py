@@ -1,0 +1,262 @@
+"""Judge the least section: no horizontal section of a support is thinner or smaller than the rules allow.
+
+Strategy. Horizontal planes cut each finished solid. A connected piece of a section is too narrow if nothing is left of
+it when its border moves inwards by half the least wall: no disc of that size fits in it. A fin is too thin if it
+reaches far beyond what such discs cover; near the discs are the corners, which no disc fills. A piece beside a wall of
+a part is one with the part there, and is judged together with it. Ends that taper on purpose, of teeth, points and
+necks, have their own least size up to the height of the taper below the part.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.model.build import Build, BuildSettings, SupportBody
+from amprep.model.control import Stop
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection, Manifold
+
+LEAST_WALL = "least wall"
+LEAST_CONTACT = "least contact"
+
+TOLERANCE = 0.03
+"""Length (mm) by which a section may be thinner than the least wall, because circles are polygons and files round."""
+
+_STEP = 0.4
+"""Distance (mm) of sections."""
+
+_MOST_SECTIONS = 60
+"""Largest number of sections of one support."""
+
+_CORNER = 1.5
+"""Distance (in least walls) up to which corners reach beyond the discs that fit in them: those of 30 degrees do."""
+
+_TOUCH = 0.02
+"""Distance (mm) up to which a piece touches a part."""
+
+_SLOPE = 0.3
+"""Height (mm) by which a tip may begin lower, because the part above it is not level."""
+
+_SEGMENTS = 24
+"""Sides of the polygons that stand for circles."""
+
+_SPECK = 1e-3
+"""Area (mm2) that offsets of polygons leave by rounding."""
+
+
+class ThinPlace(NamedTuple):
+    """A place where a support is too thin.
+
+    Attributes
+    ----------
+    promise
+        `LEAST_WALL` or `LEAST_CONTACT`.
+    size
+        Thickness in mm, or area in mm2.
+    position_mm
+        ``(3,)``.
+    is_fin
+        Whether the rest of the piece is thick enough.
+    """
+
+    promise: str
+    size: float
+    position_mm: Floats
+    is_fin: bool = False
+
+
+class ThinPlaces(NamedTuple):
+    """The places where a support is too thin, and how many sections were judged."""
+
+    places: list[ThinPlace]
+    sections: int
+
+
+def check_least_section(build: Build, stop: Stop) -> tuple[list[Violation], int]:
+    """Return the supports that are too thin somewhere, and the number of sections that were judged.
+
+    Walls without thickness are not judged.
+    """
+    found: list[Violation] = []
+    sections = 0
+    rules = build.settings.rules
+    if rules.least_wall_mm <= 0.0 and rules.least_contact_mm2 <= 0.0:
+        return found, sections
+    parts = [as_manifold(placed.mesh.vertices, placed.mesh.triangles) for placed in build.parts]
+    for body in build.supports:
+        if stop.cancelled.is_set():
+            break
+        if not body.surface:
+            thin = thin_places(body, build.settings, parts)
+            sections += thin.sections
+            found += _violations(body, build.settings, thin.places)
+    return found, sections
+
+
+def _violations(body: SupportBody, settings: BuildSettings, places: Sequence[ThinPlace]) -> list[Violation]:
+    found = []
+    rules = settings.rules
+    for promise, limit, unit in (
+        (LEAST_WALL, rules.least_wall_mm, "mm"),
+        (LEAST_CONTACT, rules.least_contact_mm2, "mm2"),
+    ):
+        own = [place for place in places if place.promise == promise]
+        if own:
+            worst = min(own, key=lambda place: place.size)
+            what = "a fin of" if worst.is_fin else "a section of"
+            message = (
+                f"{what} {worst.size:.3f} {unit}, expected at least {limit:g} {unit}, at "
+                f"{np.round(worst.position_mm, 2).tolist()} mm ({len(own)} such sections)"
+            )
+            found.append(Violation(promise, body.name, message))
+    return found
+
+
+def thin_places(body: SupportBody, settings: BuildSettings, parts: "Sequence[Manifold]") -> ThinPlaces:
+    """Return the places where a support is too thin.
+
+    Parameters
+    ----------
+    body
+        A solid.
+    settings
+        Rules, and the sizes of tips.
+    parts
+        The parts of the build as solids.
+    """
+    solid = as_manifold(body.mesh.vertices, body.mesh.triangles)
+    if not accepted(solid):
+        return ThinPlaces([], 0)
+    places: list[ThinPlace] = []
+    heights = _heights(body)
+    for height in heights.tolist():
+        section = _Section(solid.slice(height), height, settings, parts)
+        places += [*section.small_pieces(), *section.fins()]
+    return ThinPlaces(places, len(heights))
+
+
+def _heights(body: SupportBody) -> Floats:
+    """Return heights for sections, evenly spaced, away from the heights at which vertices are frequent."""
+    low, high = (float(corner[2]) for corner in body.mesh.bounds)
+    count = int(np.clip(np.ceil((high - low) / _STEP), 2, _MOST_SECTIONS))
+    return np.asarray(low + (high - low) * (np.arange(count) + 0.4937) / count)
+
+
+class _Section:
+    """A horizontal section of a support."""
+
+    def __init__(
+        self, region: "CrossSection", height: float, settings: BuildSettings, parts: "Sequence[Manifold]"
+    ) -> None:
+        self.region, self.height = region, height
+        self.parts, self.sizes = parts, settings.sizes
+        self.wall = max(settings.rules.least_wall_mm - TOLERANCE, 0.0)
+        self.contact = max(
+            settings.rules.least_contact_mm2 - 2.0 * TOLERANCE * settings.rules.least_wall_mm, 0.0
+        )
+
+    def small_pieces(self) -> list[ThinPlace]:
+        """Return the pieces that are too narrow or too small, unless they are tips or touch a part."""
+        found = []
+        for piece in self.region.decompose():
+            area, width = piece.area(), _mean_width(piece)
+            narrow = width < self.wall and piece.offset(-self.wall / 2.0).is_empty()
+            if not (narrow or area < self.contact) or area < _SPECK**2:
+                continue
+            place = self._place(piece)
+            wall, contact = self._limits_at(place)
+            if self._touches_part(piece):
+                continue
+            if narrow and width < wall and piece.offset(-wall / 2.0).is_empty():
+                found.append(ThinPlace(LEAST_WALL, width, place))
+            if area < contact:
+                found.append(ThinPlace(LEAST_CONTACT, area, place))
+        return found
+
+    def fins(self) -> list[ThinPlace]:
+        """Return what reaches beyond the discs of the least wall farther than corners do."""
+        rest = self._beyond_discs(self.region) if self.wall > 0.0 else None
+        if rest is None or rest.area() <= _SPECK:
+            return []
+        found = []
+        for piece in rest.decompose():
+            place = self._place(piece)
+            if piece.area() <= _SPECK or self._is_alone(piece) or self._limits_at(place)[0] < self.wall:
+                continue
+            if self._touches_part(piece):
+                together = self._beyond_discs(self.region + self._part(piece)) ^ piece
+                if together.area() <= _SPECK or self._touches_part(together):
+                    continue
+            found.append(ThinPlace(LEAST_WALL, min(_mean_width(piece), self.wall), place, is_fin=True))
+        return found
+
+    def _beyond_discs(self, region: "CrossSection") -> "CrossSection":
+        from manifold3d import JoinType
+
+        discs = region.offset(-self.wall / 2.0)
+        reach = self.wall / 2.0 + _CORNER * self.wall
+        return region - discs.offset(reach, JoinType.Round, 2.0, _SEGMENTS)
+
+    def _is_alone(self, piece: "CrossSection") -> bool:
+        """Tell whether a piece belongs to a connected piece in which no disc fits; that is judged as a whole."""
+        return any(
+            not (each ^ piece).is_empty() and each.offset(-self.wall / 2.0).is_empty()
+            for each in self.region.decompose()
+        )
+
+    def _part(self, piece: "CrossSection") -> "CrossSection":
+        """Return the section of the parts around a piece."""
+        from manifold3d import CrossSection
+
+        low, high = _bounds(piece)
+        found = CrossSection()
+        for part in self.parts:
+            box = part.bounding_box()
+            margin = 2.0 * self.wall
+            if (low - margin <= np.array(box[3:5])).all() and (high + margin >= np.array(box[:2])).all():
+                found += part.slice(self.height)
+        return found
+
+    def _touches_part(self, piece: "CrossSection") -> bool:
+        return not (piece.offset(_TOUCH) ^ self._part(piece)).is_empty()
+
+    def _place(self, piece: "CrossSection") -> Floats:
+        """Return a point of a piece."""
+        points = np.asarray(piece.to_polygons()[0])
+        return np.append(points.mean(axis=0), self.height)
+
+    def _limits_at(self, place: Floats) -> tuple[float, float]:
+        """Return the least wall and the least contact at a place: those of tips up to their height below a part."""
+        least = min(
+            (size for size in (self.sizes.tip_width_mm, self.sizes.neck_mm) if size > 0.0), default=0.0
+        )
+        if least <= 0.0 or least >= self.wall + TOLERANCE or not self._is_tip(place):
+            return self.wall, self.contact
+        least = max(least - TOLERANCE, 0.0)
+        return least, min(self.contact, np.pi / 4.0 * least**2)
+
+    def _is_tip(self, place: Floats) -> bool:
+        from manifold3d import Manifold
+
+        height = self.sizes.tip_height_mm + (self.sizes.square_mm if self.sizes.neck_mm else 0.0) + _SLOPE
+        column = Manifold.cube((self.wall, self.wall, height)).translate(place.tolist())
+        return any(not (part ^ column).is_empty() for part in self.parts)
+
+
+def _mean_width(region: "CrossSection") -> float:
+    """Return twice the area over the perimeter, mm: at most the diameter of the largest disc that fits inside."""
+    length = 0.0
+    for contour in region.to_polygons():
+        points = np.asarray(contour)
+        length += float(np.hypot(*(points - np.roll(points, -1, axis=0)).T).sum())
+    return 2.0 * float(region.area()) / max(length, 1e-12)
+
+
+def _bounds(region: "CrossSection") -> tuple[Floats, Floats]:
+    box = region.bounds()
+    return np.asarray(box[:2]), np.asarray(box[2:])

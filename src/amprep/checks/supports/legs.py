@@ -1,0 +1,146 @@
+"""Judge legs: no stretch of support without a brace or a wall beside it is too long for its width."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats, Int64s
+from amprep.checks.supports.slices import Slices, slices_of
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.containment import inside
+from amprep.model.build import Build, PlacedPart, SupportBody
+from amprep.model.control import Stop
+
+PROMISE = "legs"
+
+STEP = 0.5
+"""Distance (mm) of the planes that cut supports; a leg may be longer by it than is measured."""
+
+_MOST_PLANES = 400
+"""Largest number of planes for one support."""
+
+_GRANT = 1.02
+"""Factor that is granted on the ratio."""
+
+_TOUCH = 0.1
+"""Horizontal distance (mm) up to which a support touches a wall of a part."""
+
+
+class Leg(NamedTuple):
+    """A stretch of support without a brace or a wall beside it.
+
+    Attributes
+    ----------
+    length_mm, width_mm
+        Length between the lowest and the highest plane that cuts it, and least width between its ends.
+    position_mm
+        ``(3,)`` middle of the lowest contour.
+    """
+
+    length_mm: float
+    width_mm: float
+    position_mm: Floats
+
+    @property
+    def ratio(self) -> float:
+        """Length over width."""
+        return self.length_mm / max(self.width_mm, 1e-3)
+
+
+def check_legs(build: Build, stop: Stop) -> list[Violation]:
+    """Return the supports of a build with a leg above `leg_ratio`; walls without thickness are not judged."""
+    limit = build.settings.rules.leg_ratio
+    found: list[Violation] = []
+    for body in build.supports:
+        if stop.cancelled.is_set() or limit <= 0.0:
+            return found
+        legs = [] if body.surface else legs_above(body, build, limit)
+        if legs:
+            worst = max(legs, key=lambda leg: leg.ratio)
+            message = (
+                f"a leg of {worst.length_mm:.1f} mm is {worst.width_mm:.2f} mm wide, {worst.ratio:.1f} to 1, expected "
+                f"at most {limit:g} to 1; at {np.round(worst.position_mm, 2).tolist()} mm ({len(legs)} such legs)"
+            )
+            found.append(Violation(PROMISE, body.name, message))
+    return found
+
+
+def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
+    """Return the legs of a support with a ratio of length to width above a limit.
+
+    Strategy. Horizontal planes cut the solid into contours. A leg is a chain of contours of which each has exactly one
+    above and one below; at a brace, a fork or an end it ends. Long chains are cut where they touch a part, and end
+    where their tips begin.
+    """
+    low, high = (float(corner[2]) for corner in body.mesh.bounds)
+    step = max(STEP, (high - low) / _MOST_PLANES)
+    slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
+    legs = []
+    for chain in _chains(slices):
+        if _is_long(slices, chain, limit):
+            touches = _touches(slices, chain, build)
+            legs += [_leg(slices, own) for own in _runs(chain, ~touches) if _is_long(slices, own, limit)]
+    return legs
+
+
+def _chains(slices: Slices) -> list[Int64s]:
+    """Return the chains of outer contours, from below, longest possible."""
+    outer = slices.area > 0.0
+    follows = np.zeros(len(outer), np.bool_)
+    follows[slices.above[slices.above >= 0]] = True
+    chains = []
+    for first in np.flatnonzero(outer & ~follows).tolist():
+        chain, at = [first], int(slices.above[first])
+        while at >= 0:
+            chain.append(at)
+            at = int(slices.above[at])
+        chains.append(np.array(chain))
+    return chains
+
+
+def _is_long(slices: Slices, chain: Int64s, limit: float) -> bool:
+    leg = _leg(slices, chain)
+    return leg.length_mm > limit * _GRANT * leg.width_mm
+
+
+def _leg(slices: Slices, chain: Int64s) -> Leg:
+    """Return the figures of a chain; the stretches of one width at both ends, which the part cuts, set no width."""
+    heights, widths = slices.heights[slices.plane[chain]], slices.width[chain]
+    usual = float(np.median(widths))
+    inner = (heights >= heights[0] + usual) & (heights <= heights[-1] - usual)
+    width = float(widths[inner].min()) if inner.any() else usual
+    lowest = slices.points_of(int(chain[0]))
+    return Leg(float(heights[-1] - heights[0]), width, lowest.mean(axis=0))
+
+
+def _runs(chain: Int64s, free: Bools) -> list[Int64s]:
+    """Return the runs of consecutive contours that touch no part."""
+    changes = np.flatnonzero(np.diff(free)) + 1
+    return [run for run, own in zip(np.split(chain, changes), np.split(free, changes), strict=True) if own[0]]
+
+
+def _touches(slices: Slices, chain: Int64s, build: Build) -> Bools:
+    """Tell which contours of a chain touch a part."""
+    points = [slices.points_of(int(contour)) for contour in chain]
+    owner = np.repeat(np.arange(len(chain)), [len(each) for each in points])
+    every = np.concatenate(points)
+    touches = np.zeros(len(chain), np.bool_)
+    for placed in build.parts:
+        touches[owner[_near_part(every, placed)]] = True
+        tip = build.settings.sizes.tip_height_mm
+        for share in (0.5, 1.0) if tip > 0.0 else ():
+            above = every + (0.0, 0.0, share * tip)
+            touches[owner[inside(above, placed.mesh.vertices, placed.mesh.triangles)]] = True
+    return touches
+
+
+def _near_part(points: Floats, placed: PlacedPart) -> Bools:
+    """Tell which points are within `_TOUCH` of a part, horizontally."""
+    lo, hi = placed.mesh.bounds
+    near = ((points >= np.asarray(lo) - _TOUCH) & (points <= np.asarray(hi) + _TOUCH)).all(axis=1)
+    found = np.zeros(len(points), np.bool_)
+    rows = np.flatnonzero(near)
+    for angle in np.arange(8) * np.pi / 4.0:
+        moved = points[rows] + _TOUCH * np.array([np.cos(angle), np.sin(angle), 0.0])
+        found[rows] |= inside(moved, placed.mesh.vertices, placed.mesh.triangles)
+    return found

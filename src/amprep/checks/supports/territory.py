@@ -1,0 +1,85 @@
+"""Judge territory: supports stay in the shadow of their part with its margin, and out of the shadows of others."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.checks.packing.shadows import Shadow, shadows_of
+from amprep.checks.violation import Violation
+from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.model.build import Build, SupportBody
+from amprep.model.control import Stop
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection
+
+PROMISE = "own territory"
+
+TOLERANCE = 0.05
+"""Distance (mm) that is granted at the borders of territories, because circles are polygons and files round."""
+
+_SEGMENTS = 64
+"""Sides of the polygons that stand for circles."""
+
+
+def check_territory(build: Build, stop: Stop) -> list[Violation]:
+    """Return the supports that leave the territory of their part; with ``territory = "shared"`` there are none.
+
+    The territory of a part is its shadow grown by the margin, without the shadows of other parts where they are not
+    below its own shadow. A support that several parts share may be in the territory of any of them; walls without
+    thickness and beams are judged as the solids that stand in for them.
+    """
+    found: list[Violation] = []
+    if build.settings.rules.territory != "own" or not build.supports:
+        return found
+    shadows = shadows_of(build.parts)
+    for body in build.supports:
+        if stop.cancelled.is_set():
+            return found
+        found += _judged(body, shadows, build)
+    return found
+
+
+def _judged(body: SupportBody, shadows: Sequence[Shadow], build: Build) -> list[Violation]:
+    from manifold3d import CrossSection, JoinType, OpType
+
+    solid = as_manifold(body.mesh.vertices, body.mesh.triangles)
+    if body.surface or not accepted(solid):
+        return []
+    covered = solid.project()
+    own = CrossSection.batch_boolean([shadows[part].polygons for part in body.parts], OpType.Add)
+    margin = build.settings.rules.territory_margin_mm + TOLERANCE
+    outside = covered - own.offset(margin, JoinType.Round, 2.0, _SEGMENTS)
+    found = []
+    names = " and ".join(build.parts[part].label for part in body.parts)
+    if not _is_thin(outside):
+        limit = build.settings.rules.territory_margin_mm
+        message = f"leaves the shadow of {names} by more than the margin of {limit:g} mm{_where(outside)}"
+        found.append(Violation(PROMISE, body.name, message))
+    for part, other in enumerate(shadows):
+        if part not in body.parts and _boxes_meet(covered, other.polygons):
+            inside = (covered ^ other.polygons) - own.offset(TOLERANCE, JoinType.Round, 2.0, _SEGMENTS)
+            if not _is_thin(inside):
+                message = f"enters the shadow of {other.label}, although it holds {names}{_where(inside)}"
+                found.append(Violation(PROMISE, body.name, message))
+    return found
+
+
+def _is_thin(region: "CrossSection") -> bool:
+    """Tell whether a region is empty, or so thin that rounding explains it."""
+    return bool(region.is_empty() or region.offset(-TOLERANCE / 2.0).is_empty())
+
+
+def _boxes_meet(one: "CrossSection", other: "CrossSection") -> bool:
+    if one.is_empty() or other.is_empty():
+        return False
+    a, b = np.asarray(one.bounds()), np.asarray(other.bounds())
+    return bool((a[:2] <= b[2:]).all() and (b[:2] <= a[2:]).all())
+
+
+def _where(region: "CrossSection") -> str:
+    points = np.concatenate([np.asarray(contour) for contour in region.to_polygons()])
+    low, high = points.min(axis=0), points.max(axis=0)
+    place = f"from ({low[0]:.2f}, {low[1]:.2f}) to ({high[0]:.2f}, {high[1]:.2f}) mm"
+    return f": {region.area():.3g} mm2 of its shadow, {place}"

@@ -1,0 +1,101 @@
+"""Legs: length over width, between braces, walls and ends."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold
+from tests.shared.examples import examples
+from tests.shared.supported import box, build_of, table
+
+from amprep.checks.supports.legs import STEP, check_legs, legs_above
+from amprep.model import Stop
+from amprep.model.supports.sizes import SupportSizes
+
+
+def legs(body, height=60.0, part=None, limit=10.0, sizes=None):
+    build = build_of([table(height) if part is None else part], [body], sizes, leg_ratio=limit)
+    assert len(check_legs(build, Stop())) == bool(legs_above(build.supports[0], build, limit))
+    return legs_above(build.supports[0], build, limit)
+
+
+@given(st.floats(0.4, 3.0), st.floats(5.0, 60.0), st.floats(0, 90))
+@examples(15)
+def test_a_single_post_is_one_leg_with_its_length_and_width(width, height, turn):
+    found = legs(box((width, width + 1, height), (0, 0, 0)).rotate((0, 0, turn)), height)
+    if height - 2 * STEP > 10.3 * width:
+        (leg,) = found
+        assert leg.width_mm == pytest.approx(width, rel=0.02)
+        assert height - 2 * STEP <= leg.length_mm <= height
+    elif height < 10 * width:
+        assert found == []
+
+
+def two_posts(height, braces, width=1.0):
+    posts = [box((width, width, height), (x, 5, 0)) for x in (5, 9)]
+    struts = [
+        box((5.2, width, width), (0, 0, -width)).rotate((0, -45, 0)).translate((5.2, 5, z + 1))
+        for z in braces
+    ]
+    return Manifold.batch_boolean([*posts, *struts], _add())
+
+
+def _add():
+    from manifold3d import OpType
+
+    return OpType.Add
+
+
+def test_braces_end_legs_and_a_removed_brace_is_found():
+    assert len(legs(two_posts(20, []), 20.0)) == 2
+    assert legs(two_posts(20, [6, 12]), 20.0) == []
+    assert len(legs(two_posts(30, [6, 12]), 30.0)) == 2
+
+
+def test_leaning_legs_count_by_their_height():
+    steps = [box((0.8, 0.8, 0.5), (5 + 0.4 * k, 5, 0.45 * k)) for k in range(40)]
+    assert len(legs(Manifold.batch_boolean(steps, _add()), 18.0)) == 1
+
+
+def test_a_wall_of_the_part_holds_a_leg_that_touches_it():
+    post = box((1, 1, 30), (5, 5, 0))
+    wall = table(30) + box((2, 20, 30), (3.05, 0, 0))
+    assert len(legs(post, 30.0)) == 1
+    assert legs(post, part=wall) == []
+    apart = table(30) + box((2, 20, 30), (2.5, 0, 0))
+    assert len(legs(post, part=apart)) == 1
+
+
+def test_a_wall_beside_half_of_a_leg_leaves_the_other_half():
+    post = box((1, 1, 30), (5, 5, 0))
+    (leg,) = legs(post, part=table(30) + box((2, 20, 15), (3, 0, 0)))
+    assert leg.length_mm == pytest.approx(15, abs=1.1)
+    assert legs(post, part=table(30) + box((2, 20, 15), (3, 0, 7))) == []
+
+
+def test_a_leg_is_as_wide_as_its_thinnest_place_between_the_ends():
+    waist = box((2, 2, 15), (5, 5, 0)) - box((2, 4, 2), (5.8, 4, 7))
+    (leg,) = legs(waist, 15.0)
+    assert leg.width_mm == pytest.approx(0.8, abs=0.02)
+    assert legs(box((2, 2, 15), (5, 5, 0)), 15.0) == []
+
+
+def test_ends_that_the_part_cuts_and_tips_set_no_width():
+    slope = box((2, 2, 17), (5, 5, 0)) - box((6, 6, 6), (0, 0, 0)).rotate((0, -45, 0)).translate((7.2, 4, 15))
+    assert legs(slope, 16.0) == []
+    pointed = box((2, 2, 12), (5, 5, 0)) + Manifold.cylinder(3.1, 1.0, 0.1, 24).translate((6, 6, 12))
+    sizes = SupportSizes(tip_width_mm=0.2, tip_height_mm=3.0)
+    assert legs(pointed, 15.0, sizes=sizes) == []
+
+
+def test_without_a_limit_nothing_is_judged():
+    build = build_of([table(60)], [box((0.2, 0.2, 60), (5, 5, 0))])
+    assert check_legs(build, Stop()) == []
+
+
+def test_the_message_names_length_width_and_place():
+    build = build_of([table(40)], [box((1, 1, 40), (5, 7, 0))], leg_ratio=10.0)
+    (violation,) = check_legs(build, Stop())
+    assert "1.00 mm wide" in violation.message
+    assert "to 1" in violation.message
+    assert np.isin(["5.5", "7.5"], violation.message.replace(",", " ").replace("[", " ").split()).all()
