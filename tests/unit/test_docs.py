@@ -15,6 +15,7 @@ from amprep.job.settings.cells import CellSettings
 from amprep.job.settings.job import ReadingSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.rules import RuleSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.model.supports import REASONS
 from amprep.model.supports.rules import OverhangRules, SectionRules
@@ -40,6 +41,7 @@ SECTIONS = {
     "`[cells]`": CellSettings,
     "`[reading]`": ReadingSettings,
     "`[[part]]`": PartSettings,
+    "`[[rule]]`": RuleSettings,
     "Printers": PrinterProfile,
 }
 BY_OTHER_KEYS = {
@@ -113,7 +115,7 @@ def test_every_hook_is_documented_and_tested(hook):
 
 def test_every_key_at_the_top_is_documented():
     keys = documented(section("Top level"))
-    assert set(keys) | {"packing", "supports", "cells", "reading", "part"} == set(KEYS)
+    assert set(keys) | {"packing", "supports", "cells", "reading", "part", "rule"} == set(KEYS)
 
 
 @pytest.mark.parametrize("name", SECTIONS)

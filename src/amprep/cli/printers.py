@@ -73,7 +73,8 @@ def _print_table(printers: "list[Printer]") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from amprep.printers.catalogue import DEFAULT_PRINTER, normalised
+    from amprep.printers.catalogue import DEFAULT_PRINTER
+    from amprep.profiles import normalised
 
     table = Table("name", "build volume (mm)", "technology", "source", box=None)
     for printer in printers:

@@ -10,6 +10,7 @@ from amprep.job.settings.cells import CellSettings
 from amprep.job.settings.job import InputSpec, Job, ReadingSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.rules import RuleSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.materials.catalogue import DEFAULT_MATERIALS, find_material
 from amprep.materials.profile import MaterialProfile
@@ -19,7 +20,19 @@ from amprep.typed import convert, make
 from amprep.validation import read_table
 
 T = TypeVar("T")
-KEYS = ("printer", "material", "seed", "target", "inputs", "reading", "packing", "supports", "cells", "part")
+KEYS = (
+    "printer",
+    "material",
+    "seed",
+    "target",
+    "inputs",
+    "reading",
+    "packing",
+    "supports",
+    "cells",
+    "part",
+    "rule",
+)
 
 
 def job_of(inputs: Sequence[str | Path], source: str = "command line") -> Job:
@@ -104,6 +117,10 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         make(PartSettings, _is_table(entry, f"{source}: [[part]] {number}"), f"{source}: [[part]] {number}")
         for number, entry in enumerate(convert(table.get("part", []), tuple[Any, ...], f"{source}: part"), 1)
     )
+    supports = _section(
+        SupportSettings, table, "supports", source, **_support_defaults(table, printer, material)
+    )
+    cells = _cells(table, folder, source)
     return Job(
         name=name,
         inputs=_inputs(table, parts, folder, source),
@@ -114,11 +131,10 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         target=convert(table.get("target", "generic"), Target, f"{source}: target"),
         reading=_section(ReadingSettings, table, "reading", source),
         packing=_section(PackingSettings, table, "packing", source, **printer.packing_defaults),
-        supports=_section(
-            SupportSettings, table, "supports", source, **_support_defaults(table, printer, material)
-        ),
-        cells=_cells(table, folder, source),
+        supports=supports,
+        cells=cells,
         parts=parts,
+        rules=_rules(table, supports, cells, folder, source),
         source=source,
         table=table,
     )
@@ -151,12 +167,36 @@ def _section(cls: type[T], table: Mapping[str, Any], key: str, source: str, **de
 def _cells(table: Mapping[str, Any], folder: Path | None, source: str) -> CellSettings:
     """Return the cell settings, with the path of the file that declares the cell made absolute."""
     settings = _section(CellSettings, table, "cells", source)
-    if settings.file is None:
-        return settings
-    path = (folder or Path()) / settings.file
+    return replace(settings, strategy=_cell_file(settings.strategy, folder, f"{source}: [cells]: strategy"))
+
+
+def _cell_file(cell: str, folder: Path | None, where: str) -> str:
+    """Return the absolute path of the file that declares a cell; the name of a cell stays as it is."""
+    file = CellSettings(strategy=cell).file
+    if file is None:
+        return cell
+    path = (folder or Path()) / file
     if not path.is_file():
-        raise JobError(f"{source}: [cells]: strategy: no file at {path}")
-    return replace(settings, strategy=str(path.resolve()))
+        raise JobError(f"{where}: no file at {path}")
+    return str(path.resolve())
+
+
+def _rules(
+    table: Mapping[str, Any], supports: SupportSettings, cells: CellSettings, folder: Path | None, source: str
+) -> tuple[RuleSettings, ...]:
+    """Return the settings of overhang regions, each of which must fit the settings of the job."""
+    rules = []
+    for number, entry in enumerate(convert(table.get("rule", []), tuple[Any, ...], f"{source}: rule"), 1):
+        where = f"{source}: [[rule]] {number}"
+        rule = make(RuleSettings, _is_table(entry, where), where)
+        if rule.cell is not None:
+            rule = replace(rule, cell=_cell_file(rule.cell, folder, f"{where}: cell"))
+        try:
+            rule.cells(cells), rule.supports(supports)
+        except ValueError as error:
+            raise JobError(f"{where}: {error}") from error
+        rules.append(rule)
+    return tuple(rules)
 
 
 def _is_table(value: Any, where: str) -> Mapping[str, Any]:

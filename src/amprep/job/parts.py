@@ -13,6 +13,7 @@ from amprep.job.settings.packing import as_names
 from amprep.job.settings.parts import PartSettings
 from amprep.model.counting import counted
 from amprep.model.part import Part
+from amprep.overhangs.conditions import is_named
 
 
 def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
@@ -23,8 +24,13 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
     Raises
     ------
     JobError
-        When an entry names no part; the message suggests a similar file or name.
+        When an entry, or the condition `part` of a ``[[rule]]`` entry, names no part; the message suggests a similar
+        file or name.
     """
+    for number, rule in enumerate(job.rules, start=1):
+        if rule.part is not None and not any(is_named(part, rule.part) for part in parts):
+            near = nearest_hint(rule.part, [part.name for part in parts])
+            raise JobError(f"{job.source}: [[rule]] {number}: no part is called {rule.part!r}{near}")
     result = list(parts)
     for number, entry in enumerate(job.parts, start=1):
         chosen = [index for index, part in enumerate(parts) if names_part(entry, part, job)]

@@ -13,8 +13,10 @@ class MaterialProfile(OverhangRules, SectionRules):
 
     Attributes
     ----------
-    name
-        Name in job files.
+    name, aliases
+        Name in job files, and other names of the material.
+    based_on
+        Name of the profile from which keys are taken that this one does not state.
     density_g_cm3
         Density of the solid material; None if the profile is for several materials.
     recoating_s
@@ -27,6 +29,8 @@ class MaterialProfile(OverhangRules, SectionRules):
 
     rules: OverhangJudgement = "limits"
     name: str = ""
+    aliases: tuple[str, ...] = ()
+    based_on: str = ""
     density_g_cm3: float | None = None
     recoating_s: float = 10.0
     scan_mm2_s: float = 60.0

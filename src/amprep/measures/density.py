@@ -21,10 +21,14 @@ def build_density(build: Build) -> float:
 
     Supports do not count, and forbidden zones are not subtracted from the plate.
     """
-    x, y, _ = build.settings.space.size.tolist()
-    plate = x * y if build.settings.space.shape == "box" else pi / 4 * x * x
-    height = build_height(build)
+    plate, height = plate_area(build), build_height(build)
     return sum(part_volume(placed) for placed in build.parts) / (plate * height) if height > 0 else 0.0
+
+
+def plate_area(build: Build) -> float:
+    """Return the area of the build plate, mm2; forbidden zones are not subtracted."""
+    x, y, _ = build.settings.space.size.tolist()
+    return float(x * y if build.settings.space.shape == "box" else pi / 4 * x * x)
 
 
 def support_volume(build: Build) -> float:

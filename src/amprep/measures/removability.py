@@ -1,16 +1,12 @@
 """Measure mass, scanned area, contacts and trapped powder of supports."""
 
 import os
-import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from amprep.geometry.powder.pockets import Pocket, find_pockets, spacing_for
 from amprep.geometry.supports.contact_area import measure_contact
 from amprep.model import Build, SupportBody
-
-DENSITIES = {"alsi10mg": 2.67, "ti64": 4.41, "ti6al4v": 4.41, "316l": 7.9, "in718": 8.15, "inconel718": 8.15}
-"""Densities (g/cm3) of metals by words in the name of a material, rounded; `cells.density_g_cm3` takes precedence."""
 
 _MOST_AT_ONCE = 4
 """Largest number of bodies measured at the same time, because each needs memory."""
@@ -24,8 +20,8 @@ class RemovalRules:
     ----------
     layer_mm
         Layer height of the printer.
-    density_g_cm3
-        Density of the supports; None takes that of the material of the part that they hold, if it is known.
+    densities
+        Density (g/cm3) of the supports of each part; None if it is unknown. Empty if none is known.
     hole_mm
         Diameter of a ball that must be able to escape; otherwise powder is trapped.
     thorough
@@ -33,7 +29,7 @@ class RemovalRules:
     """
 
     layer_mm: float = 0.04
-    density_g_cm3: float | None = None
+    densities: tuple[float | None, ...] = ()
     hole_mm: float = 0.2
     thorough: bool = False
 
@@ -89,16 +85,9 @@ def _sum(values: list[float | None]) -> float | None:
     return sum(known) if len(known) == len(values) else None
 
 
-def density_of(material: str | None) -> float | None:
-    """Return the density (g/cm3) of the known metal that `material` names, or None."""
-    name = re.sub(r"[\W_]+", "", (material or "").casefold())
-    return next((density for word, density in DENSITIES.items() if word in name), None)
-
-
 def _removal(build: Build, body: SupportBody, rules: RemovalRules) -> Removal:
     volume = 0.0 if body.surface else abs(body.mesh.signed_volume)
-    materials = [build.parts[index].part.appearance.material for index in body.parts]
-    density = rules.density_g_cm3 or next(filter(None, map(density_of, materials)), None)
+    density = next(filter(None, (rules.densities[index] for index in body.parts if rules.densities)), None)
     mass = None if density is None else volume * density / 1000.0
     scan = volume / rules.layer_mm
     if body.surface or not rules.thorough:

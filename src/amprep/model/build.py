@@ -9,6 +9,7 @@ from amprep.arrays import Floats, Ints, frozen
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Orientations, Part
+from amprep.model.supports import EXCEPTED
 from amprep.model.supports.rules import SupportRules
 from amprep.model.supports.sizes import SupportSizes
 
@@ -165,8 +166,8 @@ class Unsupported:
     radius
         mm.
     minor
-        True if below the smallest area or length and adjacent to supported surface; listed but not counted as a
-        fault.
+        True if listed but not counted as a fault: below the smallest area or length and adjacent to supported
+        surface, or excepted by a rule of the job.
     """
 
     part: int
@@ -180,6 +181,11 @@ class Unsupported:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", frozen(self.points, np.float64, 3))
+
+    @property
+    def is_small(self) -> bool:
+        """Whether it is minor because of its size."""
+        return self.minor and self.reason != EXCEPTED
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from amprep.infill.block import default_size
 from amprep.infill.fill_region import FilledPart, fill_region, meets
 from amprep.infill.regions import KIND, chosen, with_files, without
 from amprep.job import Job
+from amprep.materials.catalogue import densities_of
 from amprep.measures.filled_part import pockets_of
-from amprep.measures.removability import density_of
 from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Progress, Region, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.reading import expand_inputs, read_all
@@ -216,7 +216,7 @@ def _measured(each: _PartFill, filled: FilledPart, job: Job, clock: Clock) -> Fi
         part,
         tuple(region.name for region in each.regions),
         filled,
-        settings.density_g_cm3 or density_of(part.appearance.material),
+        settings.density_g_cm3 or densities_of([part.appearance.material], job.material, job.folder)[0],
         pockets,
         sum(pocket.volume for pocket in before),
         tuple(found),

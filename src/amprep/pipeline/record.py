@@ -7,10 +7,12 @@ import numpy as np
 
 from amprep import __version__
 from amprep.geometry.overhangs.regions import OverhangRegion
+from amprep.job import Job
 from amprep.measures.bounding_volume import kind_of_volumes
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.height_profile import measure_profile
 from amprep.measures.objective import objective_reached
+from amprep.measures.printing.estimate import PrintingEstimate, PrintingSpeed, estimate_printing
 from amprep.measures.removal_order import measure_removal_order
 from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Stop, Unsupported
@@ -18,7 +20,7 @@ from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
 from amprep.pipeline.reading import LoadedParts
-from amprep.pipeline.supporting import SupportedBuild
+from amprep.pipeline.supporting import SupportedBuild, part_densities
 from amprep.report.record import (
     BuildRecord,
     OverhangRecord,
@@ -32,7 +34,7 @@ from amprep.report.triage.words import region_words, verdict_words
 from amprep.supports.plan import SupportLayout
 
 
-def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
+def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord:
     """Return the record of a build, without file names and verification.
 
     The search for the removal order ends at the stop.
@@ -45,6 +47,7 @@ def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
         support_volume_mm3=support_volume(build),
         advice=supported.advice,
         removal=supported.removal,
+        printing=_printing(supported, job),
         removal_order=measure_removal_order(build, stop),
         profile=measure_profile(build),
         slenderness=tuple(measure_slenderness(body) for body in build.supports),
@@ -54,6 +57,13 @@ def build_record(supported: SupportedBuild, stop: Stop) -> BuildRecord:
         shared_supports=tuple(words for layout in layouts for words in layout.shared),
         notes=tuple(words for layout in layouts for words in layout.notes),
     )
+
+
+def _printing(supported: SupportedBuild, job: Job) -> PrintingEstimate:
+    """Return mass, use of the plate and hours of a build, from the job's material and the materials of the parts."""
+    material, build = job.material, supported.build
+    speed = PrintingSpeed(job.supports.layer_mm, material.recoating_s, material.scan_mm2_s)
+    return estimate_printing(build, part_densities(job, build), supported.removal, speed)
 
 
 def run_record(

@@ -41,6 +41,8 @@ class ResolvedJob:
     ----------
     volumes
         Volume makers for parts that choose none, in the order in which they work.
+    rule_cells
+        The lattice cell of each ``[[rule]]`` entry.
     """
 
     job: Job
@@ -49,6 +51,13 @@ class ResolvedJob:
     packer: Chosen[Packer]
     router: Chosen[SupportRouter]
     cell: ChosenCell
+    rule_cells: tuple[ChosenCell, ...] = ()
+
+    def for_rule(self, number: int) -> "ResolvedJob":
+        """Return the job with the settings of a ``[[rule]]`` entry, numbered from 1; 0 is the job itself."""
+        if number == 0:
+            return self
+        return replace(self, job=self.job.for_rule(number), cell=self.rule_cells[number - 1])
 
     def read(self, path: Path) -> list[Part]:
         """Read one file with the reader that the job names for its suffix."""
@@ -104,6 +113,7 @@ def resolve(job: Job, host: Host) -> ResolvedJob:
         packer=packer,
         router=choose(host, "router", supports.strategy, supports.params),
         cell=choose_cell(host, job),
+        rule_cells=tuple(choose_cell(host, job.for_rule(number)) for number, _ in enumerate(job.rules, 1)),
         volumes=choose_volumes(host, job, as_names(packing.volumes or packer.listed.offer.volumes)),
     )
 

@@ -95,7 +95,9 @@ def make_builds(
     with outputs:
         supported = [support_build(build, clock, limit) for build in packed.builds]
         records = [
-            finish_build(each, number, outputs, options.dry_run, options.stl, clock, stop)
+            finish_build(
+                each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stop
+            )
             for number, each in enumerate(supported, start=1)
         ]
         record = run_record(loaded, packed, records, outputs)

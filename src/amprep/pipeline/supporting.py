@@ -7,19 +7,24 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.job import Job
+from amprep.materials.catalogue import densities_of
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
     Build,
     BuildSettings,
     Progress,
     Stop,
+    SupportBody,
+    Unsupported,
 )
 from amprep.model.summary import Summarised
+from amprep.model.supports import EXCEPTED
 from amprep.model.supports.sizes import SupportSizes
-from amprep.overhangs.of_part import PartOverhangs, overhangs_of
+from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
+from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.plan import SupportLayout, plan_supports
@@ -68,12 +73,15 @@ class PlannedPass(NamedTuple):
 
     Attributes
     ----------
+    rules
+        Numbers of the ``[[rule]]`` entries with these settings, from 1; 0 for the settings of the job.
     pitch_mm
         Horizontal size of a voxel of the support grid.
     layout
         Layout of the supports.
     """
 
+    rules: tuple[int, ...]
     pitch_mm: float
     layout: SupportLayout
 
@@ -89,13 +97,13 @@ class PlannedBuild(Summarised):
     passes
         The passes of planning, each with its settings and its layout; the first has the settings of the job. Empty
         when the job has no supports.
-    overhangs
-        The overhangs of each part.
+    taken
+        The overhangs of the parts, and the rules that take them; None when the job has no supports.
     """
 
     build: PackedBuild
     passes: tuple[PlannedPass, ...] = ()
-    overhangs: tuple[PartOverhangs, ...] = ()
+    taken: TakenRegions | None = None
 
     @property
     def layout(self) -> SupportLayout | None:
@@ -151,11 +159,23 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     job = build.resolved.job
     if not job.supports.enabled:
         return PlannedBuild(build)
-    pitch = choose_pitch(build.parts, job.printer.space, job.supports)
     with clock.stage("route") as progress:
-        overhangs = tuple(overhangs_of(placed, job.supports) for placed in build.parts)
-        layout = _layout(build, overhangs, pitch, stop, progress)
-    return PlannedBuild(build, (PlannedPass(pitch, layout),), overhangs)
+        taken = take_regions(build.resolved, build.parts)
+        divided, excepted = passes_of(build.resolved, taken)
+        planned: list[PlannedPass] = []
+        for number, each in enumerate(divided):
+            own = replace(build, resolved=each.resolved)
+            pitch = choose_pitch(build.parts, job.printer.space, each.resolved.job.supports)
+            earlier = [done.layout for done in planned]
+            overhangs = taken.chosen(each.rules, excepted)
+            layout = _layout(own, overhangs, earlier, pitch, stop, _part_of(progress, number, len(divided)))
+            planned.append(PlannedPass(each.rules, pitch, layout))
+    return PlannedBuild(build, tuple(planned), taken)
+
+
+def _part_of(progress: Progress, number: int, count: int) -> Progress:
+    """Return a progress callback for one of `count` equal steps of the work."""
+    return lambda fraction, message: progress((number + fraction) / count, message)
 
 
 def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
@@ -175,34 +195,73 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
     PluginError
         When the cell fails.
     """
-    parts, layout, resolved = planned.build.parts, planned.layout, planned.build.resolved
+    parts, resolved = planned.build.parts, planned.build.resolved
     job = resolved.job
-    settings = build_settings(job, planned.build.build_id, planned.pitch_mm)
-    if layout is None:
-        return SupportedBuild(Build(settings, parts))
+    settings = [
+        build_settings(resolved.for_rule(each.rules[0]).job, planned.build.build_id, each.pitch_mm)
+        for each in planned.passes
+    ]
+    if planned.taken is None:
+        return SupportedBuild(Build(build_settings(job, planned.build.build_id, planned.pitch_mm), parts))
+    bodies: list[SupportBody] = []
     with clock.stage("cells") as progress:
-        bodies = build_supports(
-            layout,
-            parts,
-            lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
-            SolidRules(
-                connector=job.cells,
-                base=job.cells,
-                overlap=settings.overlap,
-                allow_surface=job.target == "generic",
-                beams=job.beams,
-                gap=job.supports.gap_mm,
-                space=job.printer.space,
-            ),
-            stop=stop,
-            progress=progress,
-        )
+        for number in range(len(planned.passes)):
+            bodies += _bodies(planned, number, bodies, stop, _part_of(progress, number, len(planned.passes)))
     with clock.stage("judge"):
-        unsupported = find_unsupported(parts, planned.overhangs, bodies, settings, layout.reason_at)
-        build = Build(settings, parts, bodies, unsupported)
+        reach = max(each.reach for each in settings)
+        unsupported = _unsupported(planned, planned.taken, bodies, settings)
+        build = Build(replace(settings[0], reach=reach), parts, tuple(bodies), unsupported)
         removal = removal_of(job, build)
     advice = tuple(advice_for(job, build, planned.pitch_mm))
-    return SupportedBuild(build, planned.layouts, planned.overhangs, advice, removal)
+    return SupportedBuild(build, planned.layouts, planned.taken.overhangs, advice, removal)
+
+
+def _bodies(
+    planned: PlannedBuild, number: int, earlier: Sequence[SupportBody], stop: Stop, progress: Progress
+) -> tuple[SupportBody, ...]:
+    """Return the support bodies of one pass; they keep out of the bodies of earlier passes."""
+    own, parts = planned.passes[number], planned.build.parts
+    resolved = planned.build.resolved.for_rule(own.rules[0])
+    job = resolved.job
+    bodies = build_supports(
+        own.layout,
+        parts,
+        lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
+        SolidRules(
+            connector=job.cells,
+            base=job.cells,
+            overlap=job.cells.overlap_mm,
+            allow_surface=job.target == "generic",
+            beams=job.beams,
+            gap=job.supports.gap_mm,
+            space=job.printer.space,
+        ),
+        earlier=earlier,
+        later=planned.layouts[number + 1 :],
+        stop=stop,
+        progress=progress,
+    )
+    if number == 0:
+        return bodies
+    return tuple(replace(body, name=f"{body.name}, rule {own.rules[0]}") for body in bodies)
+
+
+def _unsupported(
+    planned: PlannedBuild,
+    taken: TakenRegions,
+    bodies: Sequence[SupportBody],
+    settings: Sequence[BuildSettings],
+) -> tuple[Unsupported, ...]:
+    """List the unsupported overhangs of every pass, and those that a rule excepts, which are no fault."""
+    parts = planned.build.parts
+    found: list[Unsupported] = []
+    for each, rules in zip(planned.passes, settings, strict=True):
+        found += find_unsupported(parts, each.layout.overhangs, bodies, rules, each.layout.reason_at)
+    excepted = [number for number, rule in enumerate(planned.build.resolved.job.rules, 1) if not rule.support]
+    left = find_unsupported(
+        parts, taken.chosen(excepted, ()), bodies, settings[0], lambda _, points: [EXCEPTED] * len(points)
+    )
+    return (*found, *(replace(each, minor=True) for each in left))
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
@@ -237,7 +296,12 @@ def _sizes(job: Job, pitch: float) -> SupportSizes:
 
 
 def _layout(
-    build: PackedBuild, overhangs: Sequence[PartOverhangs], pitch: float, stop: Stop, progress: Progress
+    build: PackedBuild,
+    overhangs: Sequence[PartOverhangs],
+    earlier: Sequence[SupportLayout],
+    pitch: float,
+    stop: Stop,
+    progress: Progress,
 ) -> SupportLayout:
     job, resolved = build.resolved.job, build.resolved
     rules = replace(job.supports, pitch_mm=pitch)
@@ -248,6 +312,7 @@ def _layout(
         job.printer.space,
         rules,
         overhangs=overhangs,
+        earlier=earlier,
         material=material,
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress
@@ -260,5 +325,13 @@ def _layout(
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
     """Return the figures of each support body of `build`."""
     cells = job.cells
-    rules = RemovalRules(job.supports.layer_mm, cells.density_g_cm3, cells.powder_hole_mm, cells.removability)
+    density = cells.density_g_cm3
+    densities = part_densities(job, build) if density is None else (density,) * len(build.parts)
+    rules = RemovalRules(job.supports.layer_mm, densities, cells.powder_hole_mm, cells.removability)
     return measure_removal(build, rules)
+
+
+def part_densities(job: Job, build: Build) -> tuple[float | None, ...]:
+    """Return the density (g/cm3) of each part: that of its own material, or else that of the job's."""
+    materials = [placed.part.appearance.material for placed in build.parts]
+    return densities_of(materials, job.material, job.folder)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from amprep.job import Job
 from amprep.model import Build, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.record import build_record
@@ -13,6 +14,7 @@ from amprep.report.record import BuildRecord, RunRecord
 
 def finish_build(
     supported: SupportedBuild,
+    job: Job,
     number: int,
     outputs: OutputFolder,
     dry_run: bool,
@@ -26,6 +28,8 @@ def finish_build(
     ----------
     supported
         The build with its supports.
+    job
+        Its job, of which material and layer height determine mass and hours.
     number
         Number of the build, from 1.
     outputs
@@ -39,7 +43,7 @@ def finish_build(
     """
     build = supported.build
     with clock.stage("measure"):
-        record = build_record(supported, stop)
+        record = build_record(supported, job, stop)
     if not dry_run:
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)

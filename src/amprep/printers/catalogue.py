@@ -1,11 +1,8 @@
 """Find and read printer profiles: built-in ones, those of the project, and those of the user."""
 
 import os
-import re
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal
@@ -14,11 +11,11 @@ import numpy as np
 
 from amprep.errors import JobError
 from amprep.model.build_volume import BuildVolume
+from amprep.profiles import Catalogue, Origin
 from amprep.typed import make
 from amprep.validation import read_table, require
 
 Technology = Literal["metal-powder-bed", "polymer-powder-bed", "filament"]
-Origin = Literal["built-in", "project", "user", "job"]
 
 DEFAULT_PRINTER = "EOS M290"
 SHIPPED = Path(__file__).parent / "profiles"
@@ -117,16 +114,7 @@ def find_printer(name: str, folder: Path | None = None, env: Mapping[str, str] =
     JobError
         If there is no such printer (with the most similar name), or its profile is invalid.
     """
-    if name.lower().endswith(".toml"):
-        return read_printer((folder or Path()) / name, "job")
-    for path, origin in _profile_files(folder, env):
-        if normalised(path.stem) == normalised(name) or _states_name(path, origin, name):
-            return read_printer(path, origin)
-    printers, warnings = list_printers(folder, env)
-    known = {normalised(printer.name): printer.name for printer in printers}
-    close = get_close_matches(normalised(name), known, n=1)
-    hint = f" (did you mean {known[close[0]]!r}?)" if close else "; 'amprep printers' lists them"
-    raise JobError("; ".join([f"no printer is called {name!r}{hint}", *warnings]))
+    return _catalogue(folder, env).find(name)
 
 
 def list_printers(
@@ -136,16 +124,7 @@ def list_printers(
 
     The first printer of a name hides later ones. An invalid profile gives a warning.
     """
-    found: dict[str, Printer] = {}
-    warnings: list[str] = []
-    for path, origin in _profile_files(folder, env):
-        try:
-            printer = read_printer(path, origin)
-        except JobError as error:
-            warnings.append(str(error))
-        else:
-            found.setdefault(normalised(printer.name), printer)
-    return list(found.values()), warnings
+    return _catalogue(folder, env).listed()
 
 
 def read_printer(path: Path, origin: Origin) -> Printer:
@@ -187,38 +166,8 @@ def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: 
     return Printer(profile.name or name, profile.technology, space, profile.source, origin)
 
 
-def user_folder(env: Mapping[str, str], platform: str = sys.platform) -> Path:
-    """Return the folder of the user's printers, according to the conventions of the platform."""
-    home = Path(env.get("HOME") or env.get("USERPROFILE") or Path.home())
-    if platform == "darwin":
-        base = home / "Library" / "Application Support"
-    elif platform == "win32":
-        base = Path(env.get("APPDATA") or home / "AppData" / "Roaming")
-    else:
-        base = Path(env.get("XDG_CONFIG_HOME") or home / ".config")
-    return base / "amprep" / "printers"
-
-
-def normalised(name: str) -> str:
-    """Return a printer's name in lower case, without spaces and punctuation."""
-    return re.sub(r"[\W_]+", "", name.casefold())
-
-
-def _profile_files(folder: Path | None, env: Mapping[str, str]) -> list[tuple[Path, Origin]]:
-    folders: list[tuple[Path, Origin]] = [
-        ((folder or Path()) / "printers", "project"),
-        (user_folder(env), "user"),
-        (SHIPPED, "built-in"),
-    ]
-    return [(path, origin) for each, origin in folders for path in sorted(each.glob("*.toml"))]
-
-
-def _states_name(path: Path, origin: Origin, name: str) -> bool:
-    """Return whether the profile is valid and states this name."""
-    try:
-        return normalised(read_printer(path, origin).name) == normalised(name)
-    except JobError:
-        return False
+def _catalogue(folder: Path | None, env: Mapping[str, str]) -> Catalogue[Printer]:
+    return Catalogue("printer", SHIPPED, read_printer, folder, env)
 
 
 def _read(path: Path, origin: Origin) -> Printer:

@@ -10,6 +10,7 @@ from amprep.checks.violation import Violation
 from amprep.geometry.overhangs.regions import NOT_FACES, OverhangRegion
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
+from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.measures.removability import Removal
 from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -154,6 +155,8 @@ class BuildRecord:
         How the parts can be taken out of the build, by their indices in it.
     profile
         Area of the cross-section of the parts at each height.
+    printing
+        Mass, use of the plate, layers and hours, for the head of the report.
     """
 
     build: Build
@@ -176,6 +179,7 @@ class BuildRecord:
     removal_order: RemovalOrder = field(default_factory=RemovalOrder)
     profile: HeightProfile = NO_PROFILE
     pairs: PairCounts = field(default_factory=PairCounts)
+    printing: PrintingEstimate = field(default_factory=PrintingEstimate)
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:
@@ -190,7 +194,7 @@ class BuildRecord:
     @property
     def unsupported_minor_mm2(self) -> float:
         """Area of the minor unsupported faces in mm2."""
-        minor = (each for each in self.build.unsupported if each.minor and each.kind not in NOT_FACES)
+        minor = (each for each in self.build.unsupported if each.is_small and each.kind not in NOT_FACES)
         return sum(each.measure for each in minor)
 
 

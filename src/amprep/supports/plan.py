@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from amprep.model.counting import counted
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
+from amprep.supports.grid.taken import close_taken, taken_by
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.routes.bracing import add_cross_bracing
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
@@ -42,6 +44,7 @@ def plan_supports(
     overhangs: Sequence[PartOverhangs] | None = None,
     material: tuple[float, float] = (1.0, 1.0),
     choose: Choose | None = None,
+    earlier: Sequence[SupportLayout] = (),
     stop: Stop,
     progress: Progress,
 ) -> SupportLayout:
@@ -63,6 +66,8 @@ def plan_supports(
         Material of a vertical and of an oblique edge in the chosen cell, mm3.
     choose
         Chooses the red squares to connect; None chooses all.
+    earlier
+        Layouts of earlier passes, whose voxels are closed.
     stop
         Ends the routing; red squares not routed by then are listed as unconnected.
     progress
@@ -78,7 +83,8 @@ def plan_supports(
     if overhangs is None:
         overhangs = [overhangs_of(placed, rules) for placed in parts]
     progress(0.05, "overhangs found")
-    laid = make_grid(parts, overhangs, space, rules, choose)
+    close = partial(close_taken, taken=taken_by(earlier)) if earlier else None
+    laid = make_grid(parts, overhangs, space, rules, choose, close)
     progress(0.15, "grid laid")
     network = SupportNetwork(laid, rules, material, route, stop)
     routed = _route(network, rules, progress)

@@ -170,6 +170,37 @@ def test_every_section_is_read(job_file):
         ('[[part]]\nname = "a"\nboxes = [[0,0,0,1,1,0]]', r"a box must be \[x0, y0, z0, x1, y1, z1\]"),
         ('[[part]]\nname = "a"\nboxes = []', "boxes must have at least one box"),
         ('[[part]]\nfile = "a\\u0000"', "file must be a path"),
+        ("rule = 3", "rule: expected a list"),
+        ("[[rule]]\nsupport = 1", r"\[\[rule\]\] 1: support: expected a truth value|true or false"),
+        (
+            "[[rule]]\nkind = 'hole'\nsupport = false",
+            r"\[\[rule\]\] 1: kind: expected one of 'face', 'ledge'",
+        ),
+        ("[[rule]]\nkind = []\nsupport = false", "kind must name at least one kind"),
+        (
+            "[[rule]]\nangle = [9, 3]\nsupport = false",
+            r"angle must be \[least, greatest\] or \[least\], at least 0",
+        ),
+        ("[[rule]]\nsize = []\nsupport = false", r"size must be \[least, greatest\] or \[least\]"),
+        (
+            "[[rule]]\ncolour = '#12'\nsupport = false",
+            "colour must be '#RRGGBB' or the name of a region, got '#12'",
+        ),
+        (
+            "[[rule]]\nkind = 'edge'",
+            r"\[\[rule\]\] 1: a \[\[rule\]\] entry must have a setting beside its cond",
+        ),
+        (
+            "[[rule]]\nsupport = false\npitch_mm = 1.0",
+            "with support = false must have no other settings, got pitch_mm",
+        ),
+        (
+            "[[rule]]\nneck_mm = 9\nconnector = 'teeth'",
+            r"\[\[rule\]\] 1: neck_mm must be below the tip width",
+        ),
+        ("[[rule]]\npitch_mm = 0", r"\[\[rule\]\] 1: pitch_mm must be above 0, got 0"),
+        ("[[rule]]\ncell = 'own.toml'", r"\[\[rule\]\] 1: cell: no file at "),
+        ("[[rule]]\nsuport = false", r"\[\[rule\]\] 1: unknown key 'suport' \(did you mean 'support'"),
         ('[[part]]\nname = "a"\n[[part]]\nnane = "b"', r"\[\[part\]\] 2: unknown key 'nane' \(did"),
     ],
 )

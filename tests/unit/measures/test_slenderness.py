@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from amprep.measures.density import build_density, build_height, support_volume
-from amprep.measures.removability import density_of
 from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody
 from amprep.model.mesh import join_meshes
@@ -41,10 +40,3 @@ def test_density_is_the_volume_of_the_parts_over_plate_and_height():
         assert build_height(build) == pytest.approx(10.0)
         assert build_density(build) == pytest.approx(1000.0 / (plate * 10.0))
         assert support_volume(build) == pytest.approx(256.0)
-
-
-@pytest.mark.parametrize(
-    ("name", "density"), [("Ti-6Al-4V", 4.41), ("EOS AlSi10Mg", 2.67), ("PLA", None), (None, None)]
-)
-def test_metals_are_known_by_their_names(name, density):
-    assert density_of(name) == density

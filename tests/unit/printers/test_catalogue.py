@@ -8,7 +8,8 @@ from typer.testing import CliRunner
 from amprep.cli.printers import app
 from amprep.errors import JobError
 from amprep.job import find_printer, list_printers
-from amprep.printers.catalogue import DEFAULT_PRINTER, user_folder
+from amprep.printers.catalogue import DEFAULT_PRINTER
+from amprep.profiles import user_folder
 
 PROFILE = 'name = "My Printer"\nsize_mm = [10, 20, 30]\n'
 
@@ -55,7 +56,7 @@ def test_case_spaces_and_dashes_do_not_matter(name):
 def test_own_printers_come_from_the_project_and_from_the_users_folder(places):
     folder, env = places
     (folder / "printers" / "mine.toml").write_text(PROFILE)
-    user = user_folder(env)
+    user = user_folder(env, "printers")
     (user / "lab.toml").write_text('size_mm = [50, 60]\nshape = "cylinder"\ntechnology = "filament"')
     (user / "mine.toml").write_text(PROFILE.replace("10", "99"))
     assert find_printer("my printer", folder, env).space.size.tolist() == [10, 20, 30]
@@ -123,7 +124,7 @@ def test_an_unknown_printer_is_refused_with_the_nearest(places):
     ],
 )
 def test_the_users_folder_follows_the_custom_of_the_platform(platform, env, expected):
-    assert user_folder(env, platform).as_posix() == expected
+    assert user_folder(env, "printers", platform).as_posix() == expected
 
 
 def test_the_command_lists_and_shows_printers(tmp_path):

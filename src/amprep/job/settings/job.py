@@ -1,7 +1,7 @@
 """The record of a job: inputs, printer and settings."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ from amprep.job.settings.bounds import require_quantity
 from amprep.job.settings.cells import CellSettings
 from amprep.job.settings.packing import PackingSettings
 from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.rules import RuleSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.materials.profile import MaterialProfile
 from amprep.model.build import Target
@@ -68,8 +69,16 @@ class Job:
     supports: SupportSettings = field(default_factory=SupportSettings)
     cells: CellSettings = field(default_factory=CellSettings)
     parts: tuple[PartSettings, ...] = ()
+    rules: tuple[RuleSettings, ...] = ()
     source: str = "job"
     table: Mapping[str, Any] = field(default_factory=dict)
+
+    def for_rule(self, number: int) -> "Job":
+        """Return the job with the settings of a ``[[rule]]`` entry, numbered from 1; 0 is the job itself."""
+        if number == 0:
+            return self
+        rule = self.rules[number - 1]
+        return replace(self, cells=rule.cells(self.cells), supports=rule.supports(self.supports))
 
     @property
     def printer_is_default(self) -> bool:

@@ -22,6 +22,7 @@ ENCLOSED = "enclosed"
 CAPACITY = "capacity"
 CONNECTOR_BLOCKED = "connector blocked"
 OUT_OF_TIME = "time limit"
+EXCEPTED = "rule"
 
 REASONS = {
     NO_FREE_VOXEL_BELOW: "the voxels directly below contain material of a part or are outside the grid",
@@ -29,6 +30,7 @@ REASONS = {
     CAPACITY: "there is a path, but `edge_capacity` or `node_capacity` is used up on it",
     CONNECTOR_BLOCKED: "a support stands below, but other material of the part is between",
     OUT_OF_TIME: "there is a path, but the routing ended before it was found",
+    EXCEPTED: "a `[[rule]]` entry of the job with `support = false` takes the region; it is no fault",
 }
 """All reasons why an overhang is unsupported, with their explanations; routers use three of them."""
 

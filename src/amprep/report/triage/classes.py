@@ -5,6 +5,7 @@ from typing import Literal, NamedTuple
 
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model import Unsupported
+from amprep.model.supports import EXCEPTED
 
 Triage = Literal["must fix", "worth a check", "supported", "self-supporting"]
 MUST_FIX: Triage = "must fix"
@@ -57,6 +58,8 @@ def triage_of(region: OverhangRegion, left: Sequence[Unsupported], angle_deg: fl
     if faults:
         outcome = _outcome(region, left)
         return RegionTriage(MUST_FIX, outcome, f"{_not_supported(outcome)}: {_reasons(faults)}")
+    if any(each.reason == EXCEPTED for each in left):
+        return RegionTriage(CHECK, _outcome(region, left), "no supports by a rule of the job")
     if left:
         return RegionTriage(CHECK, "fully", f"a small patch has no support: {_reasons(left)}")
     if not region.is_self_supporting:

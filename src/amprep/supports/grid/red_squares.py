@@ -82,6 +82,9 @@ class SupportGrid(NamedTuple):
 Choose = Callable[[Bytes, RedSquares], Bools]
 """Returns, from the voxels and all red squares, which red squares to connect."""
 
+CloseVoxels = Callable[[Bytes, Grid], None]
+"""Closes voxels of a grid, in place."""
+
 
 def make_grid(
     placed: Sequence[PlacedPart],
@@ -89,6 +92,7 @@ def make_grid(
     space: BuildVolume,
     rules: PlanningRules,
     choose: Choose | None = None,
+    close: CloseVoxels | None = None,
 ) -> SupportGrid:
     """Lay the grid around the parts, find the state of each voxel and the red squares.
 
@@ -102,6 +106,8 @@ def make_grid(
         Pitch, memory, strut angle, overhang angle and gap.
     choose
         Chooses the red squares to connect; None chooses all.
+    close
+        Closes the voxels that the supports of earlier passes take; None closes none.
 
     Raises
     ------
@@ -114,6 +120,8 @@ def make_grid(
         for each, own in zip(placed, overhangs, strict=True)
     )
     voxels, part_count = voxel_states(grid, space, parts)
+    if close is not None:
+        close(voxels, grid)
     red = find_red_squares(voxels, part_count, parts)
     if choose is not None:
         chosen = choose(voxels, red)

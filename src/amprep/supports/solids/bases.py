@@ -7,8 +7,9 @@ import numpy as np
 
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports import footprints
-from amprep.model import CONTACT_TOLERANCE, BuildVolume, PlacedPart
+from amprep.model import CONTACT_TOLERANCE, BuildVolume, PlacedPart, SupportBody
 from amprep.model.contacts import BaseRules
+from amprep.supports.layout import SupportLayout
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -23,6 +24,7 @@ def make_bases(
     rules: BaseRules,
     space: BuildVolume | None,
     gap: float,
+    beside: "CrossSection | None" = None,
 ) -> list["Manifold | None"]:
     """Return the base of each support, None where it has none.
 
@@ -42,6 +44,8 @@ def make_bases(
         Build volume, if it limits the bases.
     gap
         XY distance (mm) between supports and parts.
+    beside
+        Plan of the supports of other passes of planning.
     """
     if rules.base == "direct":
         return [None] * len(supports)
@@ -51,6 +55,7 @@ def make_bases(
         footprints.shadow(as_manifold(*each.mesh.arrays), height) for each in parts if _is_low(each, height)
     ]
     shadows = [None if each is None else footprints.shadow(each, height) for each in supports]
+    taken += [] if beside is None else [beside]
     zones = _zones(space, rules.base_height_mm)
     found: list[Manifold | None] = []
     for group, support in enumerate(supports):
@@ -64,6 +69,31 @@ def make_bases(
         taken.append(plan)
         found.append(None if plan.is_empty() else plan.extrude(rules.base_height_mm))
     return found
+
+
+def plan_of_others(
+    earlier: Sequence[SupportBody], later: Sequence[SupportLayout], rules: BaseRules
+) -> "CrossSection | None":
+    """Return the plan of the supports of other passes near the plate; None where there are no bases or no others.
+
+    Parameters
+    ----------
+    earlier
+        Finished supports.
+    later
+        Layouts of supports that are not finished.
+    rules
+        Shape of the bases.
+    """
+    if rules.base == "direct" or not (earlier or later):
+        return None
+    height = rules.base_height_mm + LEAST_GAP
+    plans = [footprints.shadow(as_manifold(*each.mesh.arrays), height) for each in earlier if not each.surface]
+    for layout in later:
+        low = layout.edges[layout.edges.plane * layout.grid.step <= height + layout.grid.step].voxels
+        lo = layout.grid.origin + np.unique(low[:, ::-1], axis=0) * layout.grid.size
+        plans += [footprints.box(corner, corner + layout.grid.size) for corner in lo]
+    return footprints.union_of(plans)
 
 
 def _plan(

@@ -1,6 +1,6 @@
 """Build the support bodies of a layout: cells for its edges, connectors up to the parts, bases, all united."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +12,7 @@ from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop,
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
-from amprep.supports.solids.bases import make_bases
+from amprep.supports.solids.bases import make_bases, plan_of_others
 from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
 from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
@@ -61,6 +61,8 @@ def build_supports(
     emit: Emit,
     rules: SolidRules,
     *,
+    earlier: Sequence[SupportBody] = (),
+    later: Sequence[SupportLayout] = (),
     stop: Stop,
     progress: Progress,
 ) -> tuple[SupportBody, ...]:
@@ -79,6 +81,10 @@ def build_supports(
         Calls the chosen lattice cell.
     rules
         Connectors, bases, distances, and the kinds of bodies that the target reads.
+    earlier
+        Bodies of earlier passes of planning; connectors and bases keep out of them.
+    later
+        Layouts of later passes; bases keep clear of the squares on the plate that they stand on.
     stop
         Checked between groups; groups that are not finished by then are left out.
     progress
@@ -112,7 +118,7 @@ def build_supports(
         _require_no_feet(layout, rules.base)
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
-    obstacles = PartObstacles(parts, clearance)
+    obstacles = PartObstacles(parts, clearance, earlier)
     surfaces = find_column_surfaces(layout)
     builder = _SupportBuilder(
         SupportContext(layout, surfaces, obstacles, rules.connector, depth), parts, instances, as_beams, rules
@@ -124,7 +130,8 @@ def build_supports(
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
         solids.append(builder.drained_solid(group))
-    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap)
+    beside = plan_of_others(earlier, later, rules.base)
+    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside)
     bodies: list[SupportBody] = []
     for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
         bodies += builder.bodies(group, name, solid, own_base)

@@ -1,6 +1,6 @@
 """Keep supports out of parts and away from their walls, and drop the pieces that float then."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from amprep.geometry.meshes.shells import label_shells
 from amprep.geometry.meshes.topology import drop_unused_vertices
 from amprep.geometry.supports.contact_area import contact_corners
 from amprep.geometry.supports.walls import occupancy_of, spaces_beside, walls_of
-from amprep.model import CONTACT_TOLERANCE, PlacedPart
+from amprep.model import CONTACT_TOLERANCE, Mesh, PlacedPart, SupportBody
 from amprep.supports.layout import SupportLayout
 
 if TYPE_CHECKING:
@@ -48,9 +48,16 @@ class WallClearance:
 
 
 class PartObstacles:
-    """The solid parts of a build as obstacles to supports; their solids are made when first needed."""
+    """The solid parts of a build, and supports that are finished, as obstacles; their solids are made when needed."""
 
-    def __init__(self, parts: Sequence[PlacedPart], clearance: WallClearance | None = None) -> None:
+    def __init__(
+        self,
+        parts: Sequence[PlacedPart],
+        clearance: WallClearance | None = None,
+        finished: Sequence[SupportBody] = (),
+    ) -> None:
+        self._finished = [each.mesh for each in finished if not each.surface]
+        self._finished_solid = cache(lambda index: as_manifold(*self._finished[index].arrays))
         self._meshes = {index: placed.mesh for index, placed in enumerate(parts) if placed.part.is_solid}
         self._clearance = clearance
         self._solid = cache(lambda index: as_manifold(*self._meshes[index].arrays))
@@ -58,7 +65,7 @@ class PartObstacles:
     def subtract_from(
         self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False
     ) -> "Manifold":
-        """Subtract the parts from connectors, down to the permitted depth in those that they hold.
+        """Subtract finished supports, and the parts down to the permitted depth in those that connectors hold.
 
         Depth is measured vertically: a point is too deep when the point `overlap` below it (above it for feet) is in
         the part too. Subtracting the part shifted by the overlap removes exactly the points that are too deep.
@@ -74,11 +81,13 @@ class PartObstacles:
         down
             True for feet, which enter parts from above.
         """
-        for index in self._meeting(connectors):
+        for index in _meeting(connectors, self._meshes):
             depth = overlap if index in held else 0.0
             # half the contact tolerance more, so that faces that should just touch do not intersect
             shift = depth + CONTACT_TOLERANCE / 2
             connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
+        for index in _meeting(connectors, dict(enumerate(self._finished))):
+            connectors -= self._finished_solid(index)
         return connectors
 
     def clip(self, solids: list["Manifold"]) -> list["Manifold"]:
@@ -92,19 +101,20 @@ class PartObstacles:
         found = [np.empty((0, 3, 3))]
         found += [
             contact_corners(connectors, self._solid(index))
-            for index in self._meeting(connectors)
+            for index in _meeting(connectors, self._meshes)
             if index in held
         ]
         return np.concatenate(found)
 
-    def _meeting(self, solid: "Manifold") -> list[int]:
-        """Return the parts whose bounding boxes meet that of a solid."""
-        lo, hi = (np.array(corner) for corner in np.split(np.array(solid.bounding_box()), 2))
-        return [
-            index
-            for index, mesh in self._meshes.items()
-            if (lo <= mesh.bounds[1]).all() and (hi >= mesh.bounds[0]).all()
-        ]
+
+def _meeting(solid: "Manifold", meshes: Mapping[int, Mesh]) -> list[int]:
+    """Return the numbers of the meshes whose bounding boxes meet that of a solid."""
+    lo, hi = (np.array(corner) for corner in np.split(np.array(solid.bounding_box()), 2))
+    return [
+        index
+        for index, mesh in meshes.items()
+        if (lo <= mesh.bounds[1]).all() and (hi >= mesh.bounds[0]).all()
+    ]
 
 
 def drop_floating(

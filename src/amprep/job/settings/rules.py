@@ -1,0 +1,77 @@
+"""Settings of single overhang regions in a job."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from amprep.job.settings.cells import CellSettings
+from amprep.job.settings.supports import SupportSettings
+from amprep.model.contacts import ConnectorKind, ConnectorRules
+from amprep.overhangs.conditions import RegionConditions
+from amprep.validation import require
+
+_CONDITIONS = tuple(each.name for each in fields(RegionConditions))
+_CONNECTOR = tuple(each.name for each in fields(ConnectorRules))
+
+
+@dataclass(frozen=True)
+class RuleSettings(RegionConditions):
+    """Settings in a ``[[rule]]`` entry, for the overhang regions that meet its conditions.
+
+    None keeps the setting of the job.
+
+    Attributes
+    ----------
+    support
+        False: the regions get no supports; they are listed, but are no fault.
+    cell, params
+        Name of the lattice cell or path of a file that declares it, and its parameters.
+    pitch_mm
+        Horizontal voxel size of the support grid.
+    contact_spacing_mm
+        Largest distance between neighbouring contacts.
+    """
+
+    support: bool = True
+    cell: str | None = None
+    params: Mapping[str, Any] = field(default_factory=dict)
+    pitch_mm: float | None = None
+    contact_spacing_mm: float | None = None
+    connector: ConnectorKind | None = None
+    tooth_pitch_mm: float | None = None
+    tooth_width_mm: float | None = None
+    tooth_height_mm: float | None = None
+    point_pitch_mm: float | None = None
+    point_mm: float | None = None
+    point_height_mm: float | None = None
+    neck_mm: float | None = None
+    neck_height_mm: float | None = None
+    perforation_mm: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        given = [each.name for each in fields(self) if self._sets(each.name)]
+        require(
+            self.support or given == ["support"],
+            "a [[rule]] entry with support = false must have no other settings",
+            ", ".join(name for name in given if name != "support"),
+        )
+        require(bool(given), "a [[rule]] entry must have a setting beside its conditions", "none")
+
+    def cells(self, job: CellSettings) -> CellSettings:
+        """Return the cell settings of the job with those of the rule; another cell starts from its own parameters."""
+        given = {name: value for name in _CONNECTOR if (value := getattr(self, name)) is not None}
+        cell = job.strategy if self.cell is None else self.cell
+        params = {**(job.params if cell == job.strategy else {}), **self.params}
+        return replace(job, strategy=cell, params=params, **given)
+
+    def supports(self, job: SupportSettings) -> SupportSettings:
+        """Return the support settings of the job with those of the rule."""
+        names = ("pitch_mm", "contact_spacing_mm")
+        given = {name: value for name in names if (value := getattr(self, name)) is not None}
+        return replace(job, **given)
+
+    def _sets(self, name: str) -> bool:
+        """Tell whether the rule gives a setting that differs from that of the job."""
+        value = getattr(self, name)
+        return name not in _CONDITIONS and value is not None and value is not True and value != {}

@@ -1,0 +1,1 @@
+"""What a printer takes for a build, and what its recoater blade meets."""

@@ -1,0 +1,106 @@
+"""Divide the overhangs of a build among passes of planning: regions with equal settings are supported together."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Ints
+from amprep.model import PlacedPart
+from amprep.overhangs.of_part import PartOverhangs, overhangs_of
+from amprep.overhangs.paint import paint_of, split_by_paint
+from amprep.overhangs.selection import select_regions
+from amprep.pipeline.resolve import ResolvedJob
+
+
+class TakenRegions(NamedTuple):
+    """The overhangs of a build, and the rules that take their regions.
+
+    Attributes
+    ----------
+    overhangs
+        The overhangs of each placed part.
+    rules
+        For each placed part ``(r,)``: number of the ``[[rule]]`` entry, from 1, that takes each region; 0 where no
+        entry does.
+    """
+
+    overhangs: tuple[PartOverhangs, ...]
+    rules: tuple[Ints, ...]
+
+    def chosen(self, numbers: Sequence[int], excepted: Sequence[int]) -> tuple[PartOverhangs, ...]:
+        """Return the overhangs of the regions that rules take; contacts may not extend to `excepted` ones."""
+        return tuple(
+            select_regions(own, np.isin(taken, numbers), ~np.isin(taken, excepted))
+            for own, taken in zip(self.overhangs, self.rules, strict=True)
+        )
+
+    @property
+    def used(self) -> set[int]:
+        """The numbers of the rules that take a region."""
+        return {number for taken in self.rules for number in taken.tolist()}
+
+
+class RegionPass(NamedTuple):
+    """Regions with equal settings.
+
+    Attributes
+    ----------
+    rules
+        Numbers of the ``[[rule]]`` entries with these settings; 0 for the settings of the job.
+    resolved
+        The job with these settings.
+    """
+
+    rules: tuple[int, ...]
+    resolved: ResolvedJob
+
+
+def take_regions(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> TakenRegions:
+    """Find the overhangs of the parts, and for each region the first rule whose conditions it meets.
+
+    Faces that are painted in a colour that a rule names are regions of their own.
+    """
+    job = resolved.job
+    colours = {rule.paint or rule.colour for rule in job.rules if rule.colour is not None}
+    overhangs, rules = [], []
+    for placed in parts:
+        own = split_by_paint(placed, overhangs_of(placed, job.supports), colours)
+        paint = paint_of(placed, own, colours)
+        overhangs.append(own)
+        rules.append(
+            np.array(
+                [
+                    next(
+                        (
+                            number
+                            for number, rule in enumerate(job.rules, 1)
+                            if rule.are_met(region, placed.part, painted)
+                        ),
+                        0,
+                    )
+                    for region, painted in zip(own.overhangs.regions, paint, strict=True)
+                ],
+                np.int32,
+            )
+        )
+    return TakenRegions(tuple(overhangs), tuple(rules))
+
+
+def passes_of(resolved: ResolvedJob, taken: TakenRegions) -> tuple[tuple[RegionPass, ...], tuple[int, ...]]:
+    """Return the passes of a build, the first with the settings of the job, and the rules that allow no supports.
+
+    Rules that take no region make no pass.
+    """
+    job = resolved.job
+    excepted = tuple(number for number, rule in enumerate(job.rules, 1) if not rule.support)
+    passes = [RegionPass((0,), resolved)]
+    for number in sorted(taken.used - {0, *excepted}):
+        own = resolved.for_rule(number)
+        for index, each in enumerate(passes):
+            if (each.resolved.job.cells, each.resolved.job.supports) == (own.job.cells, own.job.supports):
+                passes[index] = each._replace(rules=(*each.rules, number))
+                break
+        else:
+            passes.append(RegionPass((number,), own))
+    return tuple(passes), excepted

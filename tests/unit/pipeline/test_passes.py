@@ -1,0 +1,134 @@
+"""Regions are supported in passes by the first rule that fits; bodies of passes never overlap, whatever their cells."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold
+from tests.shared.examples import examples
+from tests.shared.optional import present
+from tests.shared.solids import mesh_of
+
+import amprep
+from amprep.geometry.meshes.manifold import as_manifold
+from amprep.host import Host
+from amprep.model import Part
+from amprep.model.supports import EXCEPTED
+
+CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
+THESIS = {"supports.rules": "thesis", "supports.pitch_mm": 2.0, "printer": "EOS M290"}
+
+
+def tree():
+    """A post with a slab on it and an arm that leads out of it at half height, 40 mm from the corner of the plate."""
+    post, slab = Manifold.cube([6, 20, 20]), Manifold.cube([30, 20, 3]).translate([-12, 0, 17])
+    arm = Manifold.cube([14, 6, 3]).translate([-14, 7, 8])
+    solid = (post + slab + arm).translate([40, 40, 0])
+    return Part("tree", mesh_of(solid), solid.volume())
+
+
+SLAB, ARM = {"area": [100]}, {"area": [1, 100]}
+
+
+def supported(*rules, part=None, **settings):
+    loaded = amprep.load(part or tree(), settings={**THESIS, "rule": list(rules), **settings})
+    return amprep.emit_cells(amprep.plan_supports(loaded))
+
+
+def common(build):
+    """The greatest volume that two bodies have in common."""
+    solids = [as_manifold(*each.mesh.arrays) for each in build.supports if not each.surface]
+    return max([(a ^ b).volume() for a, b in itertools.combinations(solids, 2)], default=0.0)
+
+
+def violations(found, folder):
+    return amprep.verify(amprep.write(found, folder / "tree.3mf")).violations
+
+
+def test_without_rules_and_with_a_rule_that_changes_nothing_there_is_one_pass():
+    plain, same = supported(), supported({**SLAB, "pitch_mm": 2.0}, {"height": [900], "cell": "prism"})
+    assert [len(each.layouts) for each in (plain, same)] == [1, 1]
+    for one, other in zip(plain.build.supports, same.build.supports, strict=True):
+        np.testing.assert_array_equal(one.mesh.vertices, other.mesh.vertices)
+
+
+def test_the_first_rule_that_fits_takes_a_region():
+    planned = amprep.plan_supports(
+        amprep.load(
+            tree(),
+            settings={
+                **THESIS,
+                "rule": [
+                    {**ARM, "cell": "prism"},
+                    {"kind": "face", "cell": "strut"},
+                    {**ARM, "support": False},
+                ],
+            },
+        )
+    )
+    areas = [region.measure for region in present(planned.taken).overhangs[0].overhangs.regions]
+    assert present(planned.taken).rules[0].tolist() == [1 if area < 100 else 2 for area in areas]
+    assert [each.rules for each in planned.passes] == [(0,), (1,), (2,)]
+    assert [len(layout.red.square) > 0 for layout in planned.layouts] == [False, True, True]
+
+
+@pytest.mark.parametrize("cell", CELLS)
+def test_bodies_of_passes_do_not_overlap_and_keep_all_promises_with_every_cell(cell, tmp_path):
+    rule = {**ARM, "cell": cell, "pitch_mm": 1.3, "connector": "teeth"}
+    found = supported(rule, **{"cells.base": "flange", "target": "generic"})
+    assert len({body.name for body in found.build.supports}) >= 2
+    assert common(found.build) < 1e-4
+    assert [each for each in found.build.unsupported if not each.minor] == []
+    assert violations(found, tmp_path) == ()
+
+
+@given(first=st.floats(0.8, 2.2), second=st.floats(0.8, 2.2), connector=st.sampled_from(["teeth", "point"]))
+@examples(3)
+def test_bodies_of_passes_do_not_overlap_at_any_pitch(first, second, connector):
+    rule = {**SLAB, "pitch_mm": second, "connector": connector, "cell": "prism"}
+    found = supported(rule, **{"supports.pitch_mm": first, "cells.strategy": "prism"})
+    assert len(found.build.supports) == 2
+    assert common(found.build) < 1e-4
+    assert [each for each in found.build.unsupported if not each.minor] == []
+
+
+def test_an_excepted_region_is_listed_with_its_rule_and_is_no_fault(tmp_path):
+    found = supported({**ARM, "support": False})
+    (listed,) = found.build.unsupported
+    assert (listed.reason, listed.minor, listed.is_small) == (EXCEPTED, True, False)
+    assert listed.measure == pytest.approx(14.0 * 6.0, rel=0.1), "the arm from the post to its end"
+    assert (listed.points[:, 2] == 8.0).all()
+    assert violations(found, tmp_path) == ()
+
+
+def test_verify_finds_an_excepted_region_that_is_not_listed(tmp_path):
+    from dataclasses import replace
+
+    found = supported({**ARM, "support": False})
+    silent = replace(found, build=replace(found.build, unsupported=()))
+    assert [each.promise for each in violations(silent, tmp_path)] == ["coverage"]
+
+
+def test_the_report_adds_the_figures_of_all_passes(tmp_path):
+    from amprep.stl import write_stl
+
+    write_stl(tree().mesh, tmp_path / "tree.stl")
+    rules = [{**ARM, "pitch_mm": 1.0}, {**SLAB, "cell": "prism"}]
+    record = amprep.support(
+        tmp_path / "tree.stl", output=tmp_path, settings={**THESIS, "rule": rules}, dry_run=True
+    )
+    (build,) = record.builds
+    assert record.faults == 0
+    assert build.demand_squares == sum(each.demand_squares for each in build.overhangs)
+    assert [each.connected_squares == each.demand_squares > 0 for each in build.overhangs] == [True] * 3
+    excepted = amprep.support(
+        tmp_path / "tree.stl",
+        output=tmp_path,
+        settings={**THESIS, "rule": [{**ARM, "support": False}]},
+        dry_run=True,
+    )
+    assert excepted.faults == 0
+    states = [each.supported for each in excepted.builds[0].overhangs if each.reasons == (EXCEPTED,)]
+    assert states in (["not"], ["partly"]), "its rim may be on a support of the slab"
