@@ -1,16 +1,10 @@
-"""Say in words what the part carries of an overhang region, and sort regions by what the user has to do."""
+"""Say in words what the part carries of an overhang region."""
 
 from typing import Literal
 
 from amprep.geometry.overhangs.regions import OverhangRegion
 
-Triage = Literal["must fix", "worth a check", "self-supporting", "supported"]
-"""What a user has to do about a region."""
-
 Support = Literal["fully", "partly", "not"]
-
-_NEAR = 0.8
-"""Fraction of a limit from which on a region that the part carries is worth a check."""
 
 
 def verdict_words(region: OverhangRegion, supported: Support | None = None) -> str:
@@ -40,18 +34,6 @@ def verdict_words(region: OverhangRegion, supported: Support | None = None) -> s
         "not": "not supported",
     }
     return f"{words}: {ending[supported]}"
-
-
-def triage_of(region: OverhangRegion, supported: Support | None = None) -> Triage:
-    """Return what a user has to do about a region.
-
-    Regions that need support and are not held completely must be fixed. A region that the part carries is worth a check
-    if its faces are noncritical, or its size is at least 80 % of the limit.
-    """
-    if not region.is_self_supporting:
-        return "supported" if supported == "fully" else "must fix"
-    is_near = region.limit_mm > 0 and region.size_mm >= _NEAR * region.limit_mm
-    return "worth a check" if region.is_noncritical or is_near else "self-supporting"
 
 
 def _shape(region: OverhangRegion) -> str:

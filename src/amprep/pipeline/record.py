@@ -30,7 +30,7 @@ from amprep.report.record import (
     UnplacedRecord,
 )
 from amprep.report.triage.classes import triage_of
-from amprep.report.triage.words import region_words, verdict_words
+from amprep.report.triage.words import region_words
 from amprep.supports.plan import SupportLayout
 
 
@@ -159,29 +159,25 @@ def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
             own = layout.red.part == part
             squares += np.bincount(layout.red.region[own], minlength=len(found.regions))
             connected += np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
-        own_angle = placed.part.overrides.overhang_angle_deg
-        angle = build.settings.rules.overhang_angle_deg if own_angle is None else own_angle
         for number, region in enumerate(found.regions):
             left = unsupported.get(region_name(number, placed.label), ())
-            entry = _overhang(region_name(number, placed.label), placed.label, region, left, angle)
+            entry = _overhang(region_name(number, placed.label), placed.label, region, left)
             records.append(
                 replace(entry, demand_squares=int(squares[number]), connected_squares=int(connected[number]))
             )
     return tuple(records)
 
 
-def _overhang(
-    name: str, part: str, region: OverhangRegion, left: Sequence[Unsupported], angle_deg: float
-) -> OverhangRecord:
+def _overhang(name: str, part: str, region: OverhangRegion, left: Sequence[Unsupported]) -> OverhangRecord:
     """Return the record of a region without its demand squares; `left` is what of it has no support."""
-    found = triage_of(region, left, angle_deg)
+    found = triage_of(region, left)
     x, y, z = region.centre.tolist()
     return OverhangRecord(
         name=name,
         part=part,
         region=region,
         position_mm=(x, y, z),
-        verdict=region_words(verdict_words(region), found),
+        verdict=region_words(region, found),
         triage=found.triage,
         supported=found.outcome,
         reasons=tuple(sorted({each.reason for each in left})),

@@ -21,8 +21,6 @@ Outcome = Literal["fully", "partly", "not", "not needed"]
 NEAR_LIMIT = 0.9
 """Fraction of its limit from which the size of a self-supporting region is a reason for a check."""
 
-ANGLE_TOLERANCE_DEG = 0.01
-
 
 class RegionTriage(NamedTuple):
     """What must be done about a region.
@@ -34,7 +32,7 @@ class RegionTriage(NamedTuple):
     outcome
         Extent to which it is supported; minor remainders count as supported.
     why
-        Why it is not in order, in words; empty if it is.
+        The reason for its class, where the verdict does not say it.
     """
 
     triage: Triage
@@ -42,30 +40,22 @@ class RegionTriage(NamedTuple):
     why: str = ""
 
 
-def triage_of(region: OverhangRegion, left: Sequence[Unsupported], angle_deg: float) -> RegionTriage:
-    """Return the class of a region of overhangs.
-
-    Parameters
-    ----------
-    region
-        The region with its verdict.
-    left
-        What of it has no support.
-    angle_deg
-        Overhang angle of its part. A self-supporting region that is steeper is not critical.
-    """
+def triage_of(region: OverhangRegion, left: Sequence[Unsupported]) -> RegionTriage:
+    """Return the class of a region of overhangs; `left` is what of it has no support."""
     faults = [each for each in left if not each.minor]
     if faults:
-        outcome = _outcome(region, left)
-        return RegionTriage(MUST_FIX, outcome, f"{_not_supported(outcome)}: {_reasons(faults)}")
+        return RegionTriage(MUST_FIX, _outcome(region, left), _reasons(faults))
     if any(each.reason == EXCEPTED for each in left):
-        return RegionTriage(CHECK, _outcome(region, left), "no supports by a rule of the job")
+        return RegionTriage(CHECK, _outcome(region, left), "a rule of the job leaves it without supports")
     if left:
         return RegionTriage(CHECK, "fully", f"a small patch has no support: {_reasons(left)}")
-    if not region.is_self_supporting:
-        return RegionTriage(SUPPORTED, "fully")
-    if region.kind not in ("edge", "tip") and region.angle_deg >= angle_deg - ANGLE_TOLERANCE_DEG > 0.0:
-        return RegionTriage(CHECK, "not needed", f"{region.angle_deg:.1f} degrees to the plate, not critical")
+    return _carried(region) if region.is_self_supporting else RegionTriage(SUPPORTED, "fully")
+
+
+def _carried(region: OverhangRegion) -> RegionTriage:
+    """Return the class of a region that the part itself carries."""
+    if region.is_noncritical:
+        return RegionTriage(CHECK, "not needed", "steeper than the overhang angle, not critical")
     if 0.0 < NEAR_LIMIT * region.limit_mm <= region.size_mm:
         return RegionTriage(CHECK, "not needed", f"near the limit of {region.limit_mm:g} mm")
     return RegionTriage(SELF_SUPPORTING, "not needed")
@@ -73,10 +63,6 @@ def triage_of(region: OverhangRegion, left: Sequence[Unsupported], angle_deg: fl
 
 def _outcome(region: OverhangRegion, left: Sequence[Unsupported]) -> Outcome:
     return "partly" if sum(each.measure for each in left) < (1.0 - 1e-6) * region.measure else "not"
-
-
-def _not_supported(outcome: Outcome) -> str:
-    return "only partly supported" if outcome == "partly" else "not supported"
 
 
 def _reasons(left: Sequence[Unsupported]) -> str:

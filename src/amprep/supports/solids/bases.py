@@ -88,7 +88,9 @@ def plan_of_others(
     if rules.base == "direct" or not (earlier or later):
         return None
     height = rules.base_height_mm + LEAST_GAP
-    plans = [footprints.shadow(as_manifold(*each.mesh.arrays), height) for each in earlier if not each.surface]
+    plans = [
+        footprints.shadow(as_manifold(*each.mesh.arrays), height) for each in earlier if not each.surface
+    ]
     for layout in later:
         low = layout.edges[layout.edges.plane * layout.grid.step <= height + layout.grid.step].voxels
         lo = layout.grid.origin + np.unique(low[:, ::-1], axis=0) * layout.grid.size

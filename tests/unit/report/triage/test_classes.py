@@ -5,12 +5,12 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from amprep.geometry.overhangs.regions import NOT_FACES, Kind, OverhangRegion
+from amprep.geometry.overhangs.regions import Kind, OverhangRegion
 from amprep.model import Unsupported
+from amprep.model.supports import EXCEPTED
 from amprep.report.triage.classes import NEAR_LIMIT, TRIAGES, triage_of
 
 KINDS = get_args(Kind)
-FACES = [kind for kind in KINDS if kind not in NOT_FACES]
 
 
 def region(kind="ledge", **fields) -> OverhangRegion:
@@ -23,29 +23,27 @@ def left(measure=10.0, *, minor=False, reason="enclosed") -> Unsupported:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_region_without_support_must_be_fixed_whatever_its_kind(kind):
-    found = triage_of(
-        region(kind, starts_in_air=kind != "bore"), [left(0.0 if kind == "tip" else 10.0)], 45.0
-    )
-    assert found == ("must fix", "not", "not supported: enclosed")
+    found = triage_of(region(kind, starts_in_air=kind != "bore"), [left(0.0 if kind == "tip" else 10.0)])
+    assert found == ("must fix", "not", "enclosed")
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_region_that_supports_carry_is_supported(kind):
-    assert triage_of(region(kind, size_mm=6.0, limit_mm=1.0), [], 45.0) == ("supported", "fully", "")
+    assert triage_of(region(kind, size_mm=6.0, limit_mm=1.0), []) == ("supported", "fully", "")
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_region_that_the_part_carries_is_self_supporting(kind):
-    assert triage_of(region(kind, is_self_supporting=True), [], 45.0) == ("self-supporting", "not needed", "")
+    assert triage_of(region(kind, is_self_supporting=True), []) == ("self-supporting", "not needed", "")
 
 
 def test_a_region_with_one_fault_and_one_minor_patch_must_be_fixed_for_the_reason_of_the_fault():
-    found = triage_of(region(), [left(4.0), left(1.0, minor=True, reason="capacity")], 45.0)
-    assert found == ("must fix", "partly", "only partly supported: enclosed")
+    found = triage_of(region(), [left(4.0), left(1.0, minor=True, reason="capacity")])
+    assert found == ("must fix", "partly", "enclosed")
 
 
 def test_minor_patches_alone_are_worth_a_check():
-    found = triage_of(region(), [left(0.2, minor=True)], 45.0)
+    found = triage_of(region(), [left(0.2, minor=True)])
     assert (found.triage, found.outcome) == ("worth a check", "fully")
 
 
@@ -54,24 +52,22 @@ def test_minor_patches_alone_are_worth_a_check():
 )
 def test_a_self_supporting_region_near_its_limit_is_worth_a_check(size, expected):
     assert NEAR_LIMIT == 0.9
-    found = triage_of(region("bore", is_self_supporting=True, size_mm=8.0 * size, limit_mm=8.0), [], 45.0)
+    found = triage_of(region("bore", is_self_supporting=True, size_mm=8.0 * size, limit_mm=8.0), [])
     assert found.triage == expected
 
 
 def test_a_region_above_its_limit_that_is_supported_needs_no_check():
-    assert triage_of(region(size_mm=1.01, limit_mm=1.0), [], 45.0).triage == "supported"
+    assert triage_of(region(size_mm=1.01, limit_mm=1.0), []).triage == "supported"
 
 
-@pytest.mark.parametrize("kind", FACES)
-def test_self_supporting_faces_steeper_than_the_overhang_angle_are_worth_a_check(kind):
-    steep = region(kind, is_self_supporting=True, angle_deg=47.0)
-    assert triage_of(steep, [], 45.0).triage == "worth a check"
-    assert triage_of(steep, [], 50.0).triage == "self-supporting"
+def test_faces_that_are_not_critical_are_worth_a_check():
+    steep = region("face", is_self_supporting=True, is_noncritical=True, angle_deg=47.0)
+    assert triage_of(steep, []).triage == "worth a check"
 
 
-@pytest.mark.parametrize("kind", NOT_FACES)
-def test_edges_and_tips_have_no_angle_that_is_worth_a_check(kind):
-    assert triage_of(region(kind, is_self_supporting=True), [], 0.0).triage == "self-supporting"
+def test_a_region_that_a_rule_leaves_without_supports_is_worth_a_check():
+    found = triage_of(region("bore"), [left(minor=True, reason=EXCEPTED)])
+    assert found == ("worth a check", "not", "a rule of the job leaves it without supports")
 
 
 def test_the_classes_are_listed_from_the_most_urgent_to_the_least():

@@ -1,26 +1,37 @@
 """Findings in words have their name, what was found, and their place."""
 
+import numpy as np
 import pytest
 from tests.shared.findings import overhang, run_of
 
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.report.triage.classes import RegionTriage
 from amprep.report.triage.findings import Finding, findings_of
 from amprep.report.triage.words import finding_words, position_words, region_words
 
+LEDGE = OverhangRegion("ledge", 9.0, np.zeros(3), 6.0, 1.0)
+BORE = OverhangRegion("bore", 9.0, np.zeros(3), 3.9, 4.0, is_self_supporting=True)
+
 
 @pytest.mark.parametrize(
-    ("found", "words"),
+    ("region", "found", "words"),
     [
-        (RegionTriage("supported", "fully"), "ledge 6.0 mm over 1.0: supported"),
-        (RegionTriage("self-supporting", "not needed"), "ledge 6.0 mm over 1.0"),
+        (LEDGE, RegionTriage("supported", "fully"), "ledge 6.0 mm over 1.0: supported"),
         (
-            RegionTriage("must fix", "not", "not supported: enclosed"),
-            "ledge 6.0 mm over 1.0; not supported: enclosed",
+            LEDGE,
+            RegionTriage("must fix", "not", "enclosed"),
+            "ledge 6.0 mm over 1.0: not supported, enclosed",
+        ),
+        (BORE, RegionTriage("self-supporting", "not needed"), "self-supporting: bore 3.9 mm"),
+        (
+            BORE,
+            RegionTriage("worth a check", "not needed", "near the limit of 4 mm"),
+            "self-supporting: bore 3.9 mm, near the limit of 4 mm",
         ),
     ],
 )
-def test_a_verdict_is_followed_by_what_was_done_about_the_region(found, words):
-    assert region_words("ledge 6.0 mm over 1.0", found) == words
+def test_a_verdict_says_what_carries_the_region_and_why_it_is_not_in_order(region, found, words):
+    assert region_words(region, found) == words
 
 
 def test_a_region_is_named_and_has_its_position():
