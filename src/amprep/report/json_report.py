@@ -11,6 +11,7 @@ from amprep.model import PlacedPart, Unsupported
 from amprep.model.packing import PackingStep
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
+from amprep.report.printing import printing_json
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import removal_order_json
 from amprep.report.triage.findings import findings_of
@@ -92,6 +93,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "build_volume_shape": build.settings.space.shape,
         "density": entry.density,
         "height_mm": entry.height_mm,
+        "printing": printing_json(entry.printing),
         "parts": [_part(placed, fill) for placed in build.parts],
         "supports": _supports(entry),
         "height_profile": _profile(entry.profile),

@@ -1,6 +1,5 @@
 """The summary of a run for the terminal."""
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,11 +14,12 @@ from amprep.report.objective import (
     status_words,
     step_words,
 )
+from amprep.report.printing import printing_words
 from amprep.report.record import BuildRecord, RunRecord, StageTime
 from amprep.report.removal_order import hindrances_of, waiting_parts
 from amprep.report.triage.classes import CHECK, MUST_FIX
 from amprep.report.triage.findings import Finding, findings_of
-from amprep.report.triage.groups import count_by_triage, counts_in_words, grouped
+from amprep.report.triage.groups import FindingGroup, count_by_triage, counts_in_words, grouped
 from amprep.report.triage.rules import rules_of
 from amprep.report.triage.words import finding_words
 
@@ -40,8 +40,8 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     from rich.text import Text
 
     findings = findings_of(record)
-    blocks: list[RenderableType] = [_builds(record, findings), Text(_totals(record))]
-    blocks += [Text(printable(line), style="dim") for line in rules_of(record)]
+    blocks: list[RenderableType] = [_builds(record), Text(_totals(record))]
+    blocks += [Text(printable(line), style="dim") for line in (*_printing(record), *rules_of(record))]
     if record.steps:
         blocks.append(Text(printable(step_words(record)), style="dim"))
     if pieces := excess_words(record):
@@ -60,7 +60,7 @@ def summary(record: RunRecord, folder: Path = Path()) -> "RenderableType":
     return Group(*blocks)
 
 
-def _builds(record: RunRecord, findings: Sequence[Finding]) -> "Table":
+def _builds(record: RunRecord) -> "Table":
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -68,9 +68,8 @@ def _builds(record: RunRecord, findings: Sequence[Finding]) -> "Table":
     table = Table(
         box=box.SIMPLE_HEAD, title=Text(printable(f"{record.job} on {record.printer}")), title_justify="left"
     )
-    must_fix = Counter(each.build for each in findings if each.triage == MUST_FIX)
     table.add_column("build")
-    for heading in ("parts", "density", "height", "supports", "unsupported", "must fix", "verified"):
+    for heading in ("parts", "density", "height", "supports", "unsupported", "verified"):
         table.add_column(heading, justify="right", no_wrap=True)
     for number, entry in enumerate(record.builds, start=1):
         table.add_row(
@@ -80,7 +79,6 @@ def _builds(record: RunRecord, findings: Sequence[Finding]) -> "Table":
             f"{entry.height_mm:.1f} mm",
             f"{entry.support_volume_mm3 / 1000:.2f} cm³",
             f"{entry.unsupported_mm2:.1f} mm²",
-            str(must_fix[number]),
             _verified(entry),
         )
     return table
@@ -120,6 +118,11 @@ def _waiting(record: RunRecord) -> list[str]:
     return [f"build {number}: {line}" for number, entry in numbered for line in waiting_parts(entry)]
 
 
+def _printing(record: RunRecord) -> list[str]:
+    """Return a line with what the builds take, if there are builds."""
+    return list(filter(None, [printing_words([entry.printing for entry in record.builds])]))
+
+
 def _issues(record: RunRecord) -> list[str]:
     """Return one line for each warning, for unplaced copies of a fill job, and for parts whose removal is unknown."""
     lines = list(record.warnings)
@@ -141,12 +144,18 @@ def _triage(findings: Sequence[Finding]) -> list[tuple[str, str]]:
     groups = grouped(findings)
     urgent = [each for group in groups for each in group.findings if each.triage == MUST_FIX]
     must_fix = [f"must fix: {_in_build(each)}{finding_words(each)}" for each in urgent]
-    checks = [f"worth a check: {each.part}: {each.words}" for each in groups if each.triage == CHECK]
+    checks = [f"worth a check: {_group_words(each)}" for each in groups if each.triage == CHECK]
     return [
         (counts_in_words(counts), "red" if urgent else "yellow" if checks else "green"),
         *((line, "red") for line in _listed(must_fix, "in the report", MOST_FINDINGS)),
         *((line, "yellow") for line in _listed(checks, "in the report", MOST_FINDINGS)),
     ]
+
+
+def _group_words(group: FindingGroup) -> str:
+    """Return a group in one line; what was found if it is a single finding."""
+    (first, *more) = group.findings
+    return f"{group.part}: {group.words}" if more else f"{_in_build(first)}{finding_words(first)}"
 
 
 def _in_build(finding: Finding) -> str:

@@ -16,6 +16,7 @@ from amprep.report.page.findings import MOST_ROWS, chips, finding_sections
 from amprep.report.page.packing import objective_figures, packing_section, values_section
 from amprep.report.page.profile_chart import profile_chart
 from amprep.report.picture.colours import part_colours
+from amprep.report.printing import hours_words, mass_words, total_mass_g
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
 from amprep.report.triage.findings import findings_of
@@ -69,8 +70,9 @@ def body_sections(record: RunRecord) -> str:
     )
     footer = (
         f"Made by amprep {escape(record.version)}. Lengths are in mm; the build plate is at z = 0. Density is the "
-        "volume of the parts / (area of the plate × height of the build). A demand square is a square of the support "
-        "grid below an overhang."
+        "volume of the parts / (area of the plate × height of the build). The printing time is an estimate for "
+        "recoating and scanning by the speeds of the material profile, without warming up and cooling down. A demand "
+        "square is a square of the support grid below an overhang."
     )
     return f"{body}<footer>{footer}</footer>\n"
 
@@ -85,12 +87,19 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
     violations = str(broken) if broken else ("none" if verified else "not verified")
     volume = sum(entry.support_volume_mm3 for entry in builds) / 1000
     density = sum(entry.density for entry in builds) / max(len(builds), 1)
+    printing = [entry.printing for entry in builds]
+    use = sum(each.plate_use for each in printing) / max(len(builds), 1)
+    mass, unit = mass_words(total_mass_g(printing))
+    number, hours_unit = hours_words(sum(each.hours for each in printing)).split()
     return [
         *([("Builds", str(len(builds)), False)] if record.objective == "builds" else []),
         *objective_figures(record),
         ("Parts placed", str(placed), False),
         ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
+        ("Plate use" if len(builds) == 1 else "Mean plate use", f"{100 * use:.1f} <small>%</small>", False),
+        ("Mass", " ".join((mass, f"<small>{unit}</small>")), False),
+        ("Printing time", f"{number} <small>{hours_unit}</small>", False),
         ("Build height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
         ("Support volume", f"{volume:.2f} <small>cm³</small>", False),
         ("Unsupported area", f"{area:.1f} <small>mm²</small>", area > 0.0),
@@ -106,8 +115,11 @@ def _builds(record: RunRecord) -> str:
         "Parts|",
         "Density|",
         "Height mm|",
+        "Plate use|",
+        "Mass|",
+        "Layers|",
+        "Printing time|",
         "Support volume cm³|",
-        "Demand squares|",
         "Unsupported area mm²|",
     )
     rows = (
@@ -117,8 +129,11 @@ def _builds(record: RunRecord) -> str:
             len(entry.build.parts),
             ("number", f"{100 * entry.density:.1f} %"),
             ("number", f"{entry.height_mm:.2f}"),
+            ("number", f"{100 * entry.printing.plate_use:.1f} %"),
+            ("number", " ".join(mass_words(entry.printing.mass_g)).strip()),
+            entry.printing.layers,
+            ("number", hours_words(entry.printing.hours)),
             ("number", f"{entry.support_volume_mm3 / 1000:.3f}"),
-            entry.demand_squares,
             ("number", f"{entry.unsupported_mm2:.2f}"),
         )
         for entry in record.builds

@@ -12,7 +12,14 @@ from amprep.model import Build, Mesh
 from amprep.report.picture.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.picture.labels import draw_labels
 from amprep.report.picture.render import render
-from amprep.report.picture.scene import PART_KIND, ColouredMesh, build_meshes, finding_marks, plate_mesh
+from amprep.report.picture.scene import (
+    PART_KIND,
+    ColouredMesh,
+    build_meshes,
+    finding_marks,
+    plate_mesh,
+    seen_through,
+)
 from amprep.report.record import BuildRecord
 from amprep.report.triage.findings import Finding, build_findings
 from amprep.report.triage.groups import count_by_triage
@@ -33,8 +40,9 @@ def write_picture(
 ) -> None:
     """Write a picture of a build as PNG.
 
-    It shows the build plate with lines every 10 and 50 mm, parts in different colours, and supports. What must be
-    fixed is marked red, and what is worth a check orange.
+    It shows the build plate with lines every 10 and 50 mm, parts in different colours, and supports. These are faintly
+    visible through parts, so that legs and braces inside and behind them are seen. What must be fixed is marked red,
+    and what is worth a check orange.
 
     Parameters
     ----------
@@ -57,6 +65,7 @@ def build_picture(build: Build, findings: Sequence[Finding], size: tuple[int, in
     space = build.settings.space
     camera = _camera(meshes, space.size, size)
     marks = finding_marks(findings, min_radius=5.0 / camera.pixels_per_mm)
+    marks += seen_through(build, VIEW[2])
     plate = plate_mesh(np.zeros(3), space.size)
     pixels = render([plate, *meshes], marks, camera, size, space)
     return draw_labels(Image.fromarray(pixels), build, count_by_triage(findings), camera)

@@ -14,6 +14,10 @@ from amprep.report.triage.findings import Finding
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
 """The kinds of `amprep.kernels.picture.shade`, repeated here because importing that module takes time."""
 PLATE_COLOUR = "#ccd2da"
+SEEN_THROUGH = "#e8edf4"
+"""Colour of supports behind parts."""
+FAR_MM = 1e4
+"""A distance beyond all builds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +79,21 @@ def finding_marks(findings: Iterable[Finding], min_radius: float) -> list[Colour
                 ColouredMesh(balls(np.concatenate(points), np.concatenate(radii)), colour, PART_KIND)
             )
     return marks
+
+
+def seen_through(build: Build, view: Floats) -> list[ColouredMesh]:
+    """Return the supports of a build, moved far behind everything, so that they are faintly visible through parts.
+
+    Parameters
+    ----------
+    build
+        The build.
+    view
+        ``(3,)`` direction in which the viewer looks.
+    """
+    behind = np.eye(4)
+    behind[:3, 3] = FAR_MM * view
+    return [ColouredMesh(body.mesh.moved(behind), SEEN_THROUGH, SUPPORT_KIND) for body in build.supports]
 
 
 def assemble(meshes: list[ColouredMesh]) -> TriangleScene:

@@ -57,7 +57,8 @@ def _carried(region: OverhangRegion) -> RegionTriage:
     if region.is_noncritical:
         return RegionTriage(CHECK, "not needed", "steeper than the overhang angle, not critical")
     if 0.0 < NEAR_LIMIT * region.limit_mm <= region.size_mm:
-        return RegionTriage(CHECK, "not needed", f"near the limit of {region.limit_mm:g} mm")
+        side = "above" if region.size_mm > region.limit_mm else "near"
+        return RegionTriage(CHECK, "not needed", f"{side} the limit of {region.limit_mm:g} mm")
     return RegionTriage(SELF_SUPPORTING, "not needed")
 
 

@@ -1,5 +1,6 @@
 """List what a run found about its builds as one kind of record, so that all of it is grouped and shown alike."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -10,6 +11,9 @@ from amprep.model import Unsupported
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
 from amprep.report.removal_order import hindrances_of
 from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
+
+_PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)")
+"""How messages of judges state a point in build coordinates, mm."""
 
 Position = tuple[float, float, float]
 
@@ -94,7 +98,11 @@ def _unplaced(record: RunRecord) -> Iterator[Finding]:
 def _violations(entry: BuildRecord, number: int, names: Mapping[str, str]) -> Iterator[Finding]:
     for found in entry.verification or ():
         part, words = names.get(found.subject, found.subject), f"{found.promise}: {found.message}"
-        yield Finding(MUST_FIX, number, part, "violation", found.subject, words)
+        place = _PLACE.search(found.message)
+        x, y, z = map(float, place.groups()) if place else (0.0, 0.0, 0.0)
+        at = (x, y, z) if place else None
+        points = np.array([at] if at else []).reshape(-1, 3)
+        yield Finding(MUST_FIX, number, part, "violation", found.subject, words, at, points=points)
 
 
 def _regions(entry: BuildRecord, number: int, names: Mapping[str, str]) -> Iterator[Finding]:

@@ -21,7 +21,11 @@ def finding_words(finding: Finding) -> str:
     """Return a finding with its name and position in one line."""
     kind = f"{finding.kind}: " if finding.kind not in REGION_KINDS else ""
     words = f"{kind}{finding.name}: {finding.words}"
-    return words if finding.position_mm is None else f"{words}, at ({position_words(finding)}) mm"
+    return (
+        words
+        if finding.position_mm is None or finding.kind == "violation"
+        else f"{words}, at ({position_words(finding)}) mm"
+    )
 
 
 def position_words(finding: Finding, digits: int = 1) -> str:

@@ -176,6 +176,20 @@ def test_a_support_below_changes_the_picture_and_an_empty_build_shows_the_plate(
     assert np.ptp(empty[120, :, 0]) > 5  # the plate against the background
 
 
+def test_a_support_inside_a_part_is_faintly_visible_through_it():
+    block, post = box((20, 20, 0), (60, 60, 40)), box((45, 45, 0), (8, 8, 30))
+    plain, through = pixels(build_of(block)), pixels(build_of(block, supports=[post]))
+    lighter = (through.sum(axis=2) > plain.sum(axis=2) + 30) & (plain.sum(axis=2) > 0)
+    assert 50 < lighter.sum() < 0.1 * SIZE[0] * SIZE[1]
+
+
+def test_a_mark_is_before_a_support_that_is_seen_through_a_part():
+    block, post = box((20, 20, 0), (60, 60, 40)), box((45, 45, 0), (8, 8, 30))
+    region = Unsupported(0, "face", "face", "enclosed", 4.0, [[49.0, 49.0, 41.0]], 3.0)
+    open_, behind = (build_of(block, supports=supports, unsupported=(region,)) for supports in ((), (post,)))
+    assert reddish(pixels(open_)) == reddish(pixels(behind)) > 10
+
+
 def test_a_round_plate_has_no_corners():
     square = pixels(build_of(space=BuildVolume((100, 100, 50))))
     disc = pixels(build_of(space=BuildVolume((100, 100, 50), "cylinder")))

@@ -65,6 +65,18 @@ def test_violations_must_be_fixed_and_powder_is_worth_a_check(entry):
     assert kinds.count(("worth a check", "powder pocket", "bar")) == 1
 
 
+def test_a_violation_has_the_place_that_its_message_states(entry):
+    message = "a face has 11 sample points over 3 mm from any contact, first at (128.55, -3, 14.5) mm"
+    placed, without = (
+        build_findings(replace(entry, verification=(Violation("coverage", "bar", words),)))[0]
+        for words in (message, "the files differ")
+    )
+    assert placed.position_mm == (128.55, -3.0, 14.5)
+    np.testing.assert_array_equal(placed.points, [placed.position_mm])
+    assert without.position_mm is None
+    assert len(without.points) == 0
+
+
 @pytest.mark.parametrize(("rule", "expected"), [("forbid", "must fix"), ("warn", "worth a check")])
 def test_locked_parts_must_be_fixed_only_if_the_job_forbids_them(entry, rule, expected):
     locked = replace(entry, removal_order=RemovalOrder(locked=((0, 1),)))
