@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, cells, plugins, printers, run, support, verify
+from amprep.cli import bench, cells, materials, plugins, printers, run, support, verify
 from amprep.cli import infill as lattice
 from amprep.cli import inspect as inspection
 
@@ -25,6 +25,7 @@ app.command("inspect")(inspection.inspect)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")
+app.add_typer(materials.app, name="materials")
 app.add_typer(bench.app, name="bench")
 
 

@@ -59,7 +59,12 @@ def find_material(
     JobError
         If there is no such profile (with the most similar name), or it is invalid.
     """
-    return _catalogue(folder, env).find(name).profile
+    return material_called(name, folder, env).profile
+
+
+def material_called(name: str, folder: Path | None = None, env: Mapping[str, str] = os.environ) -> Material:
+    """Return the material called `name` with its origin; see `find_material`."""
+    return _catalogue(folder, env).find(name)
 
 
 def list_materials(
