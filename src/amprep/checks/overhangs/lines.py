@@ -8,7 +8,11 @@ height differs by no more than the overhang angle allows over the distance. The 
 (a) if the nearest anchor is visible and at most `ledge_mm` away, or so is an end of a line that is an anchor;
 (b) if both ends of a line are anchors and it is at most `bridge_mm` long;
 (c) if both ends are anchors, the region rises between them by at least half as much as a circular arc that is flatter
-    than the overhang angle, and the diameter is at most `bore_mm`.
+    than the overhang angle, and the diameter is at most `bore_mm`. Between parallel anchors their distance counts,
+    since lines along the oblique end of a bore are longer.
+
+At the open end of a bridge or bore no straight line may lead from anchor to anchor, because the rim is bent or frayed.
+Points that are at most `_RIM` from points that (b) or (c) carry are carried, too.
 
 Pairs of points and edges of a region are listed in chunks, and only pairs that cross are computed further: a part with
 10,000 points takes about a second.
@@ -28,6 +32,15 @@ CHUNK = 1_000_000
 _LINES = (12, 72, 360)
 """Numbers of lines through a point: the first ones, then those for points that none of the former carries."""
 
+_RIM = 0.25
+"""Width (mm) of the strip along open borders of a bridge or bore that its neighbourhood carries."""
+
+_OBLIQUE = 2.0
+"""Greatest length of a line across an arch, in diameters."""
+
+_PARALLEL = 0.985
+"""Cosine of the greatest angle between anchors that count as parallel."""
+
 _SLACK = 0.05
 """Error (mm) of the height at which a line leaves a region."""
 
@@ -41,12 +54,15 @@ class Reaches(NamedTuple):
         mm.
     angle
         radians.
+    arch
+        Least rise of an arch, as a fraction of that of a circular arc.
     """
 
     ledge: float
     bridge: float
     bore: float
     angle: float
+    arch: float = 0.5
 
 
 class _Group(NamedTuple):
@@ -57,10 +73,11 @@ class _Group(NamedTuple):
 
 
 class _Ends(NamedTuple):
-    """Where a line through each point leaves the region: distance, height, and whether at an anchor; ``(n,)`` each."""
+    """Where lines leave the region: distance from their points, height, edge, whether at an anchor; ``(n,)`` each."""
 
     distance: Floats
     height: Floats
+    edge: Int64s
     at_anchor: Bools
 
 
@@ -81,12 +98,33 @@ def carried(
         Whether points that no line carries are tried with more lines.
     """
     found = _sees_anchor(points, region, edges, reaches)
-    longest = max(reaches.ledge, reaches.bridge, reaches.bore)
+    longest = max(reaches.ledge, reaches.bridge, _OBLIQUE * reaches.bore)
     anchored = np.unique(edges.region[edges.is_anchor])
     for count in _LINES if thorough else _LINES[:1]:
         left = np.flatnonzero(~found & np.isin(region, anchored))
         found[left] = _carried_by_lines(points[left], region[left], edges, reaches, longest, count)
+    left = np.flatnonzero(~found & np.isin(region, anchored))
+    if thorough and len(left):
+        inner = _away_from_rims(points[left], region[left], edges)
+        both_sides = reaches._replace(ledge=-1.0)
+        found[left] = _carried_by_lines(inner, region[left], edges, both_sides, longest, _LINES[1])
     return found
+
+
+def _away_from_rims(points: Floats, region: Int64s, edges: RegionEdges) -> Floats:
+    """Move points that are near a border without anchor to `_RIM` from it."""
+    moved, least = points.copy(), np.full(len(points), _RIM)
+    rims = np.flatnonzero(edges.is_border & ~edges.is_anchor)
+    for i, j in _pairs(_groups(points, region, edges, rims, _RIM)):
+        foot, distance = _nearest(points[i], edges.start[j], edges.end[j])
+        order = np.lexsort((distance, i))
+        own, first = np.unique(i[order], return_index=True)
+        row = order[first]
+        near = (distance[row] < least[own]) & (distance[row] > 1e-9)
+        own, row = own[near], row[near]
+        way = (points[own] - foot[row])[:, :2] / distance[row][:, None]
+        moved[own, :2] = foot[row][:, :2] + _RIM * way
+    return moved
 
 
 def _groups(points: Floats, region: Int64s, edges: RegionEdges, rows: Int64s, reach: float) -> list[_Group]:
@@ -191,11 +229,12 @@ def _carried_by_lines(
         both = ahead.at_anchor & back.at_anchor
         span = ahead.distance + back.distance
         found |= both & (span <= reaches.bridge)
-        arches = np.flatnonzero(both & ~found & (span <= reaches.bore))
+        arches = np.flatnonzero(both & ~found & (span <= _OBLIQUE * reaches.bore))
         if len(arches):
             top = _top(points, arches, region, edges, direction, (ahead, back), reaches)
             rise = top - np.maximum(ahead.height, back.height)[arches]
-            found[arches] = _is_arch(span[arches], rise, reaches)
+            across = span[arches] * _straightness(edges, ahead.edge[arches], back.edge[arches], direction)
+            found[arches] = _is_arch(across, rise, reaches)
     return found
 
 
@@ -211,7 +250,12 @@ def _ends(
     side = points[:, :2] @ normal
     side_start, side_end = edges.start[:, :2] @ normal, edges.end[:, :2] @ normal
     ends = [
-        _Ends(np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points), np.bool_))
+        _Ends(
+            np.full(len(points), np.inf),
+            np.zeros(len(points)),
+            np.zeros(len(points), np.int64),
+            np.zeros(len(points), np.bool_),
+        )
         for _ in range(2)
     ]
     for i, j in pairs:
@@ -227,7 +271,7 @@ def _ends(
             own, first = np.unique(p[order], return_index=True)
             hit = order[first]
             end.distance[own], end.height[own] = np.abs(at[hit]), place[hit, 2]
-            end.at_anchor[own] = edges.is_anchor[e[hit]]
+            end.edge[own], end.at_anchor[own] = e[hit], edges.is_anchor[e[hit]]
     return ends[0], ends[1]
 
 
@@ -246,7 +290,7 @@ def _top(
     own = points[rows]
     top = own[:, 2].copy()
     ahead, back = (each.distance[rows] for each in ends)
-    groups = _groups(own, region[rows], edges, np.arange(len(edges.region)), reaches.bore)
+    groups = _groups(own, region[rows], edges, np.arange(len(edges.region)), _OBLIQUE * reaches.bore)
     for i, j in _pairs(groups):
         a, b = edges.start[j] - own[i], edges.end[j] - own[i]
         side_a, side_b = a[:, :2] @ normal, b[:, :2] @ normal
@@ -259,9 +303,18 @@ def _top(
     return top
 
 
+def _straightness(edges: RegionEdges, ahead: Int64s, back: Int64s, direction: Floats) -> Floats:
+    """Return the sine of the angle between lines and the anchors at their ends; 1 if these are not parallel."""
+    one, other = ((edges.end - edges.start)[each, :2] for each in (ahead, back))
+    one, other = (each / np.maximum(np.linalg.norm(each, axis=1), 1e-12)[:, None] for each in (one, other))
+    parallel = np.abs((one * other).sum(axis=1)) >= _PARALLEL
+    sine = np.abs(one[:, 0] * direction[1] - one[:, 1] * direction[0])
+    return np.where(parallel, sine, 1.0)
+
+
 def _is_arch(span: Floats, rise: Floats, reaches: Reaches) -> Bools:
     """Tell which lines are arches of at most the largest diameter; of two ways to measure it the smaller counts."""
     arc = (1.0 - np.cos(reaches.angle)) / (2.0 * np.sin(reaches.angle))
     high = np.maximum(rise, 1e-9)
     diameter = np.minimum(span / np.sin(reaches.angle), (span**2 / 4.0 + high**2) / high)
-    return np.asarray((rise >= 0.45 * arc * span) & (diameter <= reaches.bore))
+    return np.asarray((rise >= reaches.arch * arc * span) & (diameter <= reaches.bore))

@@ -64,7 +64,8 @@ def _reaches(rules: OverhangRules, angle: float, sign: float) -> Reaches:
     def granted(limit: float) -> float:
         return max(limit * (1.0 + sign * _GRANT_PART) + sign * GRANT_MM, 0.0)
 
-    return Reaches(granted(rules.ledge_mm), granted(rules.bridge_mm), granted(rules.bore_mm), angle)
+    ledge, bridge, bore = (granted(limit) for limit in (rules.ledge_mm, rules.bridge_mm, rules.bore_mm))
+    return Reaches(ledge, bridge, bore, angle, 0.5 - 0.05 * sign)
 
 
 def _carried_faces(
