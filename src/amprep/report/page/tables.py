@@ -95,7 +95,11 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         *([("Builds", str(len(builds)), False)] if record.objective == "builds" else []),
         *objective_figures(record),
         ("Parts placed", str(placed), False),
-        ("Unplaced copies", str(len(record.unplaced)), bool(record.unplaced) and record.objective != "fill"),
+        *(
+            [("Unplaced copies", str(len(record.unplaced)), record.objective != "fill")]
+            if record.unplaced
+            else []
+        ),
         ("Density" if len(builds) == 1 else "Mean density", f"{100 * density:.1f} <small>%</small>", False),
         ("Plate use" if len(builds) == 1 else "Mean plate use", f"{100 * use:.1f} <small>%</small>", False),
         ("Mass", " ".join((mass, f"<small>{unit}</small>")), False),

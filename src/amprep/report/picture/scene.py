@@ -18,6 +18,8 @@ SEEN_THROUGH = "#e8edf4"
 """Colour of supports behind parts."""
 FAR_MM = 1e4
 """A distance beyond all builds."""
+ABOVE_LIFT_MM = 0.5
+"""Height above the lift from which supports are visible through parts; connectors to lifted parts end below it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +86,8 @@ def finding_marks(findings: Iterable[Finding], min_radius: float) -> list[Colour
 def seen_through(build: Build, view: Floats) -> list[ColouredMesh]:
     """Return the supports of a build, moved far behind everything, so that they are faintly visible through parts.
 
+    Supports below lifted parts are left out: they are seen from the side, and would cover the parts above them.
+
     Parameters
     ----------
     build
@@ -91,9 +95,13 @@ def seen_through(build: Build, view: Floats) -> list[ColouredMesh]:
     view
         ``(3,)`` direction in which the viewer looks.
     """
-    behind = np.eye(4)
-    behind[:3, 3] = FAR_MM * view
-    return [ColouredMesh(body.mesh.moved(behind), SEEN_THROUGH, SUPPORT_KIND) for body in build.supports]
+    found = []
+    for body in build.supports:
+        corners = body.mesh.vertices[body.mesh.triangles, 2]
+        high = body.mesh.triangles[corners.mean(axis=1) > build.settings.lift + ABOVE_LIFT_MM]
+        moved = Mesh(body.mesh.vertices + FAR_MM * view, high)
+        found.append(ColouredMesh(moved, SEEN_THROUGH, SUPPORT_KIND))
+    return found
 
 
 def assemble(meshes: list[ColouredMesh]) -> TriangleScene:

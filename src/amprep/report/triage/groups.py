@@ -44,6 +44,8 @@ class FindingGroup:
         count = counted(
             len(self.findings), SINGULARS.get(self.kind, self.kind), PLURALS.get(self.kind, f"{self.kind}s")
         )
+        if self.kind == "violation":
+            return f"{count}: {', '.join(dict.fromkeys(each.words.split(':')[0] for each in self.findings))}"
         volume = sum(each.volume_mm3 for each in self.findings)
         powder = f"{volume:.1f} mm³ in total" if volume else ""
         return ", ".join(filter(None, (f"{count} {self._sizes()}".rstrip(), self._limit(), powder)))

@@ -12,6 +12,7 @@ from amprep.report.picture import build_picture, draw_mesh, write_picture
 from amprep.report.picture.camera import box_corners, fitted, view_axes
 from amprep.report.picture.colours import MARK_COLOURS, PALETTE, part_colours, rgb
 from amprep.report.picture.marks import balls
+from amprep.report.picture.scene import seen_through
 from amprep.report.record import BuildRecord
 from amprep.report.triage.findings import Finding, build_findings
 
@@ -181,6 +182,19 @@ def test_a_support_inside_a_part_is_faintly_visible_through_it():
     plain, through = pixels(build_of(block)), pixels(build_of(block, supports=[post]))
     lighter = (through.sum(axis=2) > plain.sum(axis=2) + 30) & (plain.sum(axis=2) > 0)
     assert 50 < lighter.sum() < 0.1 * SIZE[0] * SIZE[1]
+
+
+def test_supports_below_lifted_parts_do_not_cover_the_parts():
+    block, mat, leg = (
+        box((20, 20, 3), (60, 60, 20)),
+        box((20, 20, 0), (60, 60, 3)),
+        box((45, 45, 0), (8, 8, 20)),
+    )
+    build = build_of(block, supports=[mat])
+    lifted = replace(build, settings=replace(build.settings, lift=3.0))
+    assert len(seen_through(lifted, np.array([0.0, 1.0, 0.0]))[0].mesh.triangles) == 0
+    tall = replace(lifted, supports=build_of(block, supports=[leg]).supports)
+    assert len(seen_through(tall, np.array([0.0, 1.0, 0.0]))[0].mesh.triangles) > 4
 
 
 def test_a_mark_is_before_a_support_that_is_seen_through_a_part():

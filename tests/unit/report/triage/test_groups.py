@@ -78,6 +78,12 @@ def test_tips_and_other_findings_have_no_size():
     assert [group.words for group in grouped([lost, lost])] == ["2 unplaced copies"]
 
 
+def test_violations_name_the_promises_that_are_broken():
+    words = ("coverage: one face", "clearance: expected 0.5 mm", "coverage: another face")
+    broken = [Finding("must fix", 1, "bar", "violation", "bar", each) for each in words]
+    assert [group.words for group in grouped(broken)] == ["3 violations: coverage, clearance"]
+
+
 def test_pockets_of_powder_are_counted_with_their_volume():
     pockets = [Finding("worth a check", 1, "bar", "powder pocket", "s", "", volume_mm3=v) for v in (1.0, 2.5)]
     (group,) = grouped(pockets)
