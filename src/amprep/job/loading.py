@@ -20,6 +20,7 @@ from amprep.typed import convert, make
 from amprep.validation import read_table
 
 T = TypeVar("T")
+TERRITORY_DEFAULTS = {"territory": "own", "drift_ratio": 1 / 3, "drift_mm": 15.0}
 KEYS = (
     "printer",
     "material",
@@ -113,12 +114,13 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
             raise JobError(f"{source}: unknown key {key!r}{_hint(key)}")
     printer = _printer(table.get("printer", DEFAULT_PRINTER), folder, source)
     material = _material(table, printer, folder, source)
+    packing = _section(PackingSettings, table, "packing", source, **printer.packing_defaults)
     parts = tuple(
         make(PartSettings, _is_table(entry, f"{source}: [[part]] {number}"), f"{source}: [[part]] {number}")
         for number, entry in enumerate(convert(table.get("part", []), tuple[Any, ...], f"{source}: part"), 1)
     )
     supports = _section(
-        SupportSettings, table, "supports", source, **_support_defaults(table, printer, material)
+        SupportSettings, table, "supports", source, **_support_defaults(table, printer, material, packing)
     )
     cells = _cells(table, folder, source)
     return Job(
@@ -130,7 +132,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         seed=_seed(table, source),
         target=convert(table.get("target", "generic"), Target, f"{source}: target"),
         reading=_section(ReadingSettings, table, "reading", source),
-        packing=_section(PackingSettings, table, "packing", source, **printer.packing_defaults),
+        packing=packing,
         supports=supports,
         cells=cells,
         parts=parts,
@@ -205,13 +207,19 @@ def _is_table(value: Any, where: str) -> Mapping[str, Any]:
 
 
 def _support_defaults(
-    table: Mapping[str, Any], printer: Printer, material: MaterialProfile
+    table: Mapping[str, Any], printer: Printer, material: MaterialProfile, packing: PackingSettings
 ) -> dict[str, Any]:
-    """Return the defaults that depend on the printer, on the material, and on the overhang angle."""
+    """Return the defaults that depend on the printer, on the material, on the clearance, and on the overhang angle."""
     section, defaults = table.get("supports", {}), material.support_defaults
     angle = section.get("overhang_angle_deg") if isinstance(section, Mapping) else None
     number = float(angle) if isinstance(angle, int | float) else material.overhang_angle_deg
-    return {**defaults, "enabled": printer.needs_supports, "strut_angle_deg": min(max(number, 10.0), 80.0)}
+    return {
+        **TERRITORY_DEFAULTS,
+        "territory_margin_mm": packing.clearance_mm / 2,
+        **defaults,
+        "enabled": printer.needs_supports,
+        "strut_angle_deg": min(max(number, 10.0), 80.0),
+    }
 
 
 def _material(

@@ -59,6 +59,8 @@ class Overrides:
     ----------
     volumes
         Names of the volume makers, each of which works on the result of the one before.
+    territory_margin_mm
+        Margin around the shadow of the part in which its supports may be, mm.
     """
 
     overhang_angle_deg: float | None = None
@@ -66,6 +68,7 @@ class Overrides:
     clearance_mm: float | None = None
     supports: bool | None = None
     volumes: tuple[str, ...] | None = None
+    territory_margin_mm: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,14 @@ from collections.abc import Iterator
 
 from amprep.job import Job
 from amprep.model import Build
-from amprep.model.supports import CAPACITY, CONNECTOR_BLOCKED, ENCLOSED, NO_FREE_VOXEL_BELOW, OUT_OF_TIME
+from amprep.model.supports import (
+    CAPACITY,
+    CONNECTOR_BLOCKED,
+    ENCLOSED,
+    NO_FREE_VOXEL_BELOW,
+    OUT_OF_TIME,
+    TERRITORY,
+)
 from amprep.supports.grid.sizing import estimated_megabytes, usual_pitch
 
 
@@ -38,6 +45,12 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
         yield (
             f"{_have(counts[ENCLOSED])} no path to the build plate; supports may stand on the part below: "
             "--set supports.grounding=anywhere"
+        )
+    if counts[TERRITORY]:
+        yield (
+            f"{_have(counts[TERRITORY])} a path only outside the territory of the part; allow it with "
+            "--set supports.territory=shared, or give more room by a larger packing.clearance_mm or "
+            "supports.territory_margin_mm"
         )
     if counts[CAPACITY]:
         yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"

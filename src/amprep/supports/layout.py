@@ -10,6 +10,7 @@ from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.supports.grid.red_squares import RedSquares
+from amprep.supports.grid.territory import PartTerritory
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,8 @@ class SupportLayout:
         One sentence for each group of more than one part.
     feet
         ``(k, 5)`` int32: columns that end on a part; see `amprep.supports.routes.on_part.Grounded`.
+    territories
+        Where the supports of each part may be; none where parts share all space.
     """
 
     grid: Grid
@@ -57,6 +60,7 @@ class SupportLayout:
     notes: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
     feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
+    territories: tuple[PartTerritory, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "red", RedSquares(*(frozen(each, np.int32) for each in self.red)))

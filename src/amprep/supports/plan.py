@@ -16,6 +16,7 @@ from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
 from amprep.supports.grid.taken import close_taken, taken_by
+from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.routes.bracing import add_cross_bracing
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
@@ -86,12 +87,14 @@ def plan_supports(
     close = partial(close_taken, taken=taken_by(earlier)) if earlier else None
     laid = make_grid(parts, overhangs, space, rules, choose, close)
     progress(0.15, "grid laid")
-    network = SupportNetwork(laid, rules, material, route, stop)
+    territories = find_territories(parts, laid, rules)
+    network = SupportNetwork(laid, rules, material, route, stop, territories)
     routed = _route(network, rules, progress)
     notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
-    supports = _brace(laid, _ground(laid, routed, rules), rules)
+    supports = _brace(laid, _ground(laid, territories, routed, rules), rules)
     supports = supports._replace(notes=(*notes, *supports.notes))
-    return _layout(parts, overhangs, laid, supports, routed.reasons)
+    layout = _layout(parts, overhangs, laid, supports, routed.reasons)
+    return replace(layout, territories=territories)
 
 
 def _route(network: SupportNetwork, rules: PlanningRules, progress: Progress) -> Routed:
@@ -103,11 +106,13 @@ def _route(network: SupportNetwork, rules: PlanningRules, progress: Progress) ->
     return route_together(network, routing)
 
 
-def _ground(laid: SupportGrid, routed: Routed, rules: PlanningRules) -> _Supports:
+def _ground(
+    laid: SupportGrid, territories: Sequence[PartTerritory], routed: Routed, rules: PlanningRules
+) -> _Supports:
     """Let red squares without a path to the plate stand on their own part, if the rules allow it."""
     connected = np.array([reason == "" for reason in routed.reasons], np.bool_)
     left = ~connected & (rules.grounding == "anywhere")
-    grounded = stand_on_parts(laid, left, routed.edges)
+    grounded = stand_on_parts(laid, left, routed.edges, territories)
     edges = SupportEdges.concatenate([routed.edges, grounded.edges]).merged()
     notes = (f"{counted(len(grounded.feet), 'column')} on parts, as supports.grounding allows",)
     return _Supports(

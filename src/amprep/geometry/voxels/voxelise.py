@@ -14,7 +14,9 @@ _CONTACT = 1e-3
 """Largest penetration (mm) that counts as contact."""
 
 
-def met_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, *, solid: bool = True) -> Bools:
+def met_voxels(
+    block: VoxelBlock, vertices: Floats, triangles: Int32s | Int64s, *, solid: bool = True
+) -> Bools:
     """Tell in which voxels of a block a mesh meets the open interior.
 
     A penetration of up to 0.001 mm is contact and does not count: a face on a plane of the grid meets neither
@@ -29,15 +31,35 @@ def met_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, *, solid:
     solid
         Whether the interior (winding number above 0) counts in addition to the surface.
     """
+    marks = _marked(block, vertices, triangles, grow=-_CONTACT, holds=False)
+    if solid:
+        _mark_centred(block, vertices, triangles, marks)
+    return np.asarray(marks != UNMARKED)
+
+
+def centred_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s | Int64s) -> Bools:
+    """Tell which voxels of a block have their centre inside a mesh (winding number above 0).
+
+    Parameters
+    ----------
+    block
+        The block of voxels; the result has its shape.
+    vertices, triangles
+        ``(n, 3)`` mm, ``(m, 3)``.
+    """
+    marks = np.full(block.shape, UNMARKED, np.int32)
+    _mark_centred(block, vertices, triangles, marks)
+    return np.asarray(marks != UNMARKED)
+
+
+def _mark_centred(block: VoxelBlock, vertices: Floats, triangles: Int32s | Int64s, marks: Int32s) -> None:
     from amprep.kernels.voxels.voxelise import count_crossings, mark_interior
 
-    marks = _marked(block, vertices, triangles, grow=-_CONTACT, holds=False)
-    if solid and marks.size:
+    if marks.size:
         change = np.zeros(block.shape, np.int16)
         pitch, step = float(block.grid.pitch), float(block.grid.step)
         count_crossings(block.relative(vertices), _indices(triangles), pitch, step, change)
         mark_interior(change, marks)
-    return np.asarray(marks != UNMARKED)
 
 
 def near_voxels(block: VoxelBlock, vertices: Floats, triangles: Int32s, gap: float) -> Bools:
@@ -85,7 +107,7 @@ def _indices(triangles: NDArray[np.integer]) -> Int64s:
 def _marked(
     block: VoxelBlock,
     vertices: Floats,
-    elements: Int32s,
+    elements: Int32s | Int64s,
     *,
     grow: float,
     holds: bool,

@@ -23,6 +23,7 @@ CAPACITY = "capacity"
 CONNECTOR_BLOCKED = "connector blocked"
 OUT_OF_TIME = "time limit"
 EXCEPTED = "rule"
+TERRITORY = "territory"
 
 REASONS = {
     NO_FREE_VOXEL_BELOW: "the voxels directly below contain material of a part or are outside the grid",
@@ -31,6 +32,7 @@ REASONS = {
     CONNECTOR_BLOCKED: "a support stands below, but other material of the part is between",
     OUT_OF_TIME: "there is a path, but the routing ended before it was found",
     EXCEPTED: "a `[[rule]]` entry of the job with `support = false` takes the region; it is no fault",
+    TERRITORY: "there is a path, but it leaves the territory of the part or drifts too far",
 }
 """All reasons why an overhang is unsupported, with their explanations; routers use three of them."""
 

@@ -31,8 +31,17 @@ class Routed(NamedTuple):
 
 
 def route_together(network: SupportNetwork, progress: Progress) -> Routed:
-    """Route all parts as one network, as in the thesis: supports of different parts may merge."""
+    """Route all parts as one network, as in the thesis: supports of different parts may merge.
+
+    Parts with territories are routed one after the other, and their supports may merge where territories overlap.
+    """
     red_squares = _above_plate(network.red)
+    if network.territories:
+        edges = SupportEdges.from_rows([])
+        for own in network.groups(red_squares):
+            edges = _route_left(network, edges, own)
+        network.explain_territories()
+        return Routed(edges, tuple(network.reasons))
     edges = network.connect(red_squares, NO_VOXELS, network.stop, progress)
     return Routed(_with_parts(edges, network.red, red_squares), tuple(network.reasons))
 
@@ -59,6 +68,7 @@ def route_apart(network: SupportNetwork, progress: Progress) -> Routed:
         blocks.append(replace(edges, part=np.full(len(edges), part)))
         progress((done + 1) / (len(parts) + 1), "routing part by part")
     edges = route_shared(network, SupportEdges.concatenate(blocks))
+    network.explain_territories()
     return Routed(edges, tuple(network.reasons))
 
 
@@ -83,7 +93,17 @@ def route_shared(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     -------
     All edges, those of `edges` included.
     """
-    left = network.unconnected()
+    for left in network.groups(network.unconnected()):
+        if left.size:
+            edges = _route_left(network, edges, left)
+    return edges
+
+
+def _route_left(network: SupportNetwork, edges: SupportEdges, left: Ints) -> SupportEdges:
+    """Connect red squares beside the flow of `edges`; those of one part where parts have territories."""
+    blocked = network.are_blocked(left, NO_VOXELS)
+    network.explain(left[blocked], ENCLOSED)
+    left = left[~blocked]
     if not left.size:
         return edges
     posed = network.pose(left, NO_VOXELS)
@@ -93,9 +113,22 @@ def route_shared(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
     edges = SupportEdges.concatenate([edges, _route_within_capacity(network, edges, left)]).merged()
     if network.stop():
         network.explain(left[np.isin(left, network.unconnected())], OUT_OF_TIME)
-    elif network.unconnected(CAPACITY).size:
-        edges = _complete(network, edges)
-    return edges
+        return edges
+    left = left[np.isin(left, network.unconnected(CAPACITY))]
+    if not left.size:
+        return edges
+    return _raise_capacities(network, edges, left) if network.territories else _complete(network, edges)
+
+
+def _raise_capacities(network: SupportNetwork, edges: SupportEdges, left: Ints) -> SupportEdges:
+    """Connect red squares of one part with capacities of their own beside the flow of `edges`, if that is allowed.
+
+    The flow of other parts has to stay in their territories, so that one maximum flow for all parts is not possible.
+    """
+    if network.rules.escalation == "none":
+        return edges
+    more = network.connect(left, NO_VOXELS, network.stop, silent)
+    return SupportEdges.concatenate([edges, _with_parts(more, network.red, left)]).merged()
 
 
 def _route_within_capacity(network: SupportNetwork, edges: SupportEdges, left: Ints) -> SupportEdges:

@@ -1,19 +1,31 @@
 """Pose support problems on the grid of a build, call the router, and keep the reasons and notes of its plans."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Int64s, Ints, frozen
+from amprep.arrays import Bools, Int64s, Ints, frozen
 from amprep.checks.supports.plan import check_plan
 from amprep.errors import PluginError
+from amprep.flows.reachability import find_reachable
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.control import Progress, Stop
-from amprep.model.supports import ENCLOSED, OUT_OF_TIME, SupportPlan, SupportProblem, Voxel
+from amprep.model.supports import (
+    ENCLOSED,
+    OUT_OF_TIME,
+    TERRITORY,
+    SupportPlan,
+    SupportProblem,
+    Unconnected,
+    Voxel,
+)
 from amprep.model.supports.edges import SupportEdges, square_keys
 from amprep.supports.grid.red_squares import SupportGrid
+from amprep.supports.grid.territory import PartTerritory
+from amprep.supports.routes.drifting import reroute_drifting
+from amprep.supports.routes.straightening import straighten
 from amprep.supports.rules import PlanningRules
 
 Route = Callable[[SupportProblem, Stop, Progress], SupportPlan]
@@ -46,6 +58,8 @@ class SupportNetwork:
     ----------
     red
         All red squares of the build.
+    territories
+        Where the supports of each part may be; none where parts share all space.
     reasons
         For each red square, why it is unconnected; ``""`` when it is connected.
     notes
@@ -53,9 +67,15 @@ class SupportNetwork:
     """
 
     def __init__(
-        self, laid: SupportGrid, rules: PlanningRules, material: tuple[float, float], route: Route, stop: Stop
+        self,
+        laid: SupportGrid,
+        rules: PlanningRules,
+        material: tuple[float, float],
+        route: Route,
+        stop: Stop,
+        territories: Sequence[PartTerritory] = (),
     ) -> None:
-        self.laid, self.red = laid, laid.red
+        self.laid, self.red, self.territories = laid, laid.red, territories
         self.rules, self.material, self.route, self.stop = rules, material, route, stop
         self.reasons = [""] * len(self.red.part)
         self.notes: list[tuple[int | None, str]] = []
@@ -66,7 +86,7 @@ class SupportNetwork:
         Parameters
         ----------
         red_squares
-            ``(n,)`` numbers of the red squares to connect.
+            ``(n,)`` numbers of the red squares to connect; of one part where parts have territories.
         closed
             ``(k, 3)`` k, y, x of the voxels that are closed in this problem only.
         stop
@@ -79,7 +99,7 @@ class SupportNetwork:
         PluginError
             If the router returns a plan that `check_plan` rejects.
         """
-        blocked = np.isin(square_keys(voxels_below(self.red.square[red_squares])), square_keys(closed))
+        blocked = self.are_blocked(red_squares, closed)
         self.explain(red_squares[blocked], ENCLOSED)
         red_squares = red_squares[~blocked]
         if len(red_squares) and stop():
@@ -93,12 +113,15 @@ class SupportNetwork:
         if violations:
             first = violations[0]
             raise PluginError(f"the support router broke its promise: {first.subject} {first.message}")
+        if self.territories:
+            plan = self._straightened(plan, posed, red_squares)
         return self.read(plan, posed, red_squares)
 
-    def pose(self, red_squares: Ints, closed: Ints) -> PosedProblem:
+    def pose(self, red_squares: Ints, closed: Ints, *, anywhere: bool = False) -> PosedProblem:
         """Return the problem of connecting one or more red squares.
 
-        A path from plane p moves sideways by at most p squares, which bounds the block of voxels.
+        A path from plane p moves sideways by at most p squares, which bounds the block of voxels; so does the territory
+        of the part, unless paths may lead `anywhere`.
         """
         keys = square_keys(self.red.square[red_squares])
         _, first, number = np.unique(keys, return_index=True, return_inverse=True)
@@ -106,8 +129,15 @@ class SupportNetwork:
         top = int(square[:, 0].max())
         _, ny, nx = self.laid.grid.shape
         y, x = _range_around(square[:, 1], top, ny), _range_around(square[:, 2], top, nx)
+        territory = None if anywhere else self._territory_of(red_squares)
+        if territory is not None:
+            y, x = (_common(*each) for each in zip((y, x), territory.slices, strict=True))
         voxels = self.laid.voxels[: top + 1, y, x].copy()
         corner = np.array([0, y.start, x.start], np.int32)
+        if territory is not None:
+            _, first_y, first_x = corner - (0, *territory.first)
+            opened = territory.opened[: top + 1, first_y:, first_x:][:, : voxels.shape[1], : voxels.shape[2]]
+            voxels[~opened & (voxels == Voxel.FREE)] = Voxel.CLOSED
         inner = closed - corner
         inner = inner[((inner >= 0) & (inner < voxels.shape)).all(axis=1)]
         voxels[tuple(inner.T)] = Voxel.CLOSED
@@ -152,6 +182,45 @@ class SupportNetwork:
         chosen = [each in reasons if reasons else each != "" for each in self.reasons]
         return np.flatnonzero(chosen).astype(np.int32)
 
+    def _straightened(self, plan: SupportPlan, posed: PosedProblem, red_squares: Ints) -> SupportPlan:
+        """Return a plan without detours and without paths that drift too far."""
+        problem, limits = posed.problem, self.territories[self.red.part[red_squares[0]]].limits
+        edges = straighten(problem, plan.edges)
+        left = np.array([each.red for each in plan.unconnected], np.int64)
+        connected = np.setdiff1d(np.arange(len(problem.red)), left)
+        edges, lost = reroute_drifting(problem, edges, connected, limits)
+        unconnected = plan.unconnected + tuple(Unconnected(red, ENCLOSED) for red in lost.tolist())
+        return replace(plan, edges=edges, unconnected=unconnected)
+
+    def explain_territories(self) -> None:
+        """Note which of the enclosed red squares have a path that is outside the territory of their part."""
+        left = self.unconnected(ENCLOSED)
+        if self.territories and left.size:
+            posed = self.pose(left, NO_VOXELS, anywhere=True)
+            self.explain(left[find_reachable(posed.problem)[posed.number]], TERRITORY)
+
+    def groups(self, red_squares: Ints) -> Iterator[Ints]:
+        """Yield red squares that may share paths: all of them, or part by part where parts have territories."""
+        if not self.territories:
+            yield red_squares
+            return
+        part = self.red.part[red_squares]
+        yield from (red_squares[part == each] for each in np.unique(part))
+
+    def _territory_of(self, red_squares: Ints) -> PartTerritory | None:
+        return self.territories[self.red.part[red_squares[0]]] if self.territories else None
+
+    def are_blocked(self, red_squares: Ints, closed: Ints) -> Bools:
+        """Tell which red squares have a closed voxel below them, or no path in the territory of their part."""
+        below = voxels_below(self.red.square[red_squares])
+        blocked = np.isin(square_keys(below), square_keys(closed))
+        if not self.territories or not len(red_squares):
+            return blocked
+        part = int(self.red.part[red_squares[0]])
+        territory = self.territories[part]
+        number = red_squares - int(np.searchsorted(self.red.part, part))
+        return blocked | ~territory.allows(below) | ~territory.reachable[number]
+
     def _note(self, sentences: Sequence[str], red_squares: Ints) -> None:
         """Keep sentences about the parts of red squares, each once."""
         parts = np.unique(self.red.part[red_squares])
@@ -167,3 +236,8 @@ def voxels_below(square: Ints) -> Ints:
 def _range_around(values: Ints, margin: int, limit: int) -> slice:
     """Return the range of indices from the smallest to the largest value, widened by `margin`, within the grid."""
     return slice(max(int(values.min()) - margin, 0), min(int(values.max()) + margin + 1, limit))
+
+
+def _common(one: slice, other: slice) -> slice:
+    """Return the indices that are in both ranges."""
+    return slice(max(one.start, other.start), min(one.stop, other.stop))

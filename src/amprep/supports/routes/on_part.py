@@ -1,5 +1,6 @@
 """Ground supports on parts: straight columns that stand on the part they support."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from amprep.arrays import Bools, Ints
 from amprep.model.supports import Voxel
 from amprep.model.supports.edges import SupportEdges
 from amprep.supports.grid.red_squares import SupportGrid
+from amprep.supports.grid.territory import PartTerritory
 
 LARGEST_DEPTH = 2
 """Number of voxels below the lowest square of a column through which its foot may reach the surface."""
@@ -34,11 +36,13 @@ class Grounded(NamedTuple):
     connected: Bools
 
 
-def stand_on_parts(laid: SupportGrid, left: Bools, edges: SupportEdges) -> Grounded:
+def stand_on_parts(
+    laid: SupportGrid, left: Bools, edges: SupportEdges, territories: Sequence[PartTerritory] = ()
+) -> Grounded:
     """Connect red squares by straight columns down to the first occupied voxel.
 
     The voxel must be occupied by the part that the red square belongs to, and by no other part. The voxels above
-    it must be free and not used by the supports of other parts.
+    it must be free, in the territory of the part, and not used by the supports of other parts.
 
     Parameters
     ----------
@@ -48,6 +52,8 @@ def stand_on_parts(laid: SupportGrid, left: Bools, edges: SupportEdges) -> Groun
         ``(m,)`` bool, the red squares to connect.
     edges
         The edges routed so far.
+    territories
+        Where the supports of each part may be; none where parts share all space.
     """
     users = edges.voxel_parts()
     rows: list[list[int]] = []
@@ -61,6 +67,9 @@ def stand_on_parts(laid: SupportGrid, left: Bools, edges: SupportEdges) -> Groun
         ):
             below -= 1
         if below < 0 or below == plane - 1 or not _is_bearing(laid, part, (below, y, x)):
+            continue
+        column = np.array([[k, y, x] for k in range(below + 1, plane)])
+        if territories and not territories[part].allows(column).all():
             continue
         connected[number] = True
         for k in range(below + 1, plane):

@@ -25,6 +25,7 @@ def make_bases(
     space: BuildVolume | None,
     gap: float,
     beside: "CrossSection | None" = None,
+    regions: Sequence["CrossSection | None"] = (),
 ) -> list["Manifold | None"]:
     """Return the base of each support, None where it has none.
 
@@ -46,6 +47,8 @@ def make_bases(
         XY distance (mm) between supports and parts.
     beside
         Plan of the supports of other passes of planning.
+    regions
+        Territory of each support group, which limits its base; None where it has none.
     """
     if rules.base == "direct":
         return [None] * len(supports)
@@ -58,14 +61,14 @@ def make_bases(
     taken += [] if beside is None else [beside]
     zones = _zones(space, rules.base_height_mm)
     found: list[Manifold | None] = []
-    for group, support in enumerate(supports):
+    for group, (support, region) in enumerate(zip(supports, regions or [None] * len(supports), strict=True)):
         if support is None:
             found.append(None)
             continue
         others = [each for number, each in enumerate(shadows) if number != group and each is not None]
         obstacles = footprints.grown(footprints.union_of(taken + others), gap)
         closed = footprints.union_of([obstacles, *zones])
-        plan = _plan(footprints.feet_of(support), closed, rules, space)
+        plan = _plan(footprints.feet_of(support), closed, rules, space, region)
         taken.append(plan)
         found.append(None if plan.is_empty() else plan.extrude(rules.base_height_mm))
     return found
@@ -99,13 +102,19 @@ def plan_of_others(
 
 
 def _plan(
-    feet: "CrossSection", closed: "CrossSection", rules: BaseRules, space: BuildVolume | None
+    feet: "CrossSection",
+    closed: "CrossSection",
+    rules: BaseRules,
+    space: BuildVolume | None,
+    region: "CrossSection | None",
 ) -> "CrossSection":
     """Return the shape of one base in plan."""
     make = footprints.raft if rules.base == "raft" else footprints.grown
     plan = make(feet, rules.base_margin_mm)
     if space is not None:
         plan ^= footprints.plate(space.size, disc=space.shape == "cylinder")
+    if region is not None:
+        plan ^= region
     plan = footprints.below_feet(plan - closed, feet)
     has_holes = rules.base == "raft" and rules.raft_hole_mm
     return footprints.perforated(plan, feet, rules.raft_hole_mm) if has_holes else plan

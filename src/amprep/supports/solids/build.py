@@ -18,6 +18,7 @@ from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
 from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.request import make_request
+from amprep.supports.solids.territory import territory_section
 from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
 
 if TYPE_CHECKING:
@@ -131,7 +132,8 @@ def build_supports(
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
         solids.append(builder.drained_solid(group))
     beside = plan_of_others(earlier, later, rules.base)
-    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside)
+    regions = [territory_section(layout, group) for group in range(len(solids))]
+    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside, regions)
     bodies: list[SupportBody] = []
     for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
         bodies += builder.bodies(group, name, solid, own_base)

@@ -18,6 +18,7 @@ from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
 from amprep.supports.solids.extended_cells import extended_cells, on_red
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
+from amprep.supports.solids.territory import clip_to_territory
 from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def solid_of(
     cells = [*(as_manifold(*mesh) for mesh in below), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
     solids = context.obstacles.clip(cells + connectors)
-    return union(solids) if solids else None
+    return clip_to_territory(layout, group, union(solids), instances) if solids else None
 
 
 def stored_solid(

@@ -55,7 +55,7 @@ _LATER_RULE_NUMBERS = (
 )
 _LATER_RULE_CHOICES = {"rules": get_args(OverhangJudgement), "territory": get_args(Territory)}
 _RULE_NAMES = (*_RULE_NUMBERS, *_LATER_RULE_NUMBERS, *_LATER_RULE_CHOICES, "grounding")
-_OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm")
+_OVERRIDE_NUMBERS = ("overhang_angle_deg", "lift_mm", "clearance_mm", "territory_margin_mm")
 
 
 def settings_record(settings: BuildSettings) -> JsonObject:
