@@ -28,6 +28,10 @@ from amprep.geometry.overhangs.regions import (
 # mesh grows only where a limit divides a region.
 
 
+_NARROW = 0.01
+"""Width (mm) of regions that are no overhangs where nothing carries them and nothing starts in the air."""
+
+
 class LimitedOverhangs(NamedTuple):
     """Overhangs, and the mesh ``(n, 3)``, ``(m, 3)`` that their indices refer to."""
 
@@ -125,7 +129,7 @@ def _judge_faces(found: Candidates, carrier: Carrier) -> _JudgedFaces:
     corners = surface.triangles[own.face]
     hanging = np.zeros(int(own.label.max(initial=-1)) + 1, np.bool_)
     hanging[own.label[(found.minimum[corners] >= 0).any(axis=1)]] = True
-    pieces = subdivide_at_limits(carrier, surface.points, corners, ~hanging[own.label])
+    pieces = subdivide_at_limits(carrier, surface.points, corners, ~(hanging | _slivers(carrier))[own.label])
     mixed = _mixed(pieces, own.label, len(hanging))
     needed = hanging[own.label]
     needed[pieces.face[pieces.needed]] = True
@@ -138,6 +142,22 @@ def _judge_faces(found: Candidates, carrier: Carrier) -> _JudgedFaces:
     judged = of_surface[stitched.parent]
     judged[stitched.piece >= 0] = pieces.needed[kept]
     return _JudgedFaces(pieces.points, stitched, judged)
+
+
+def _slivers(carrier: Carrier) -> Bools:
+    """Tell which natural regions no border carries, but are narrower than `_NARROW`: noise of the mesh.
+
+    The width is that of a strip with the same area and perimeter.
+    """
+    own = carrier.regions
+    count = len(carrier.diameters)
+    sides = np.roll(own.corners, -1, axis=1) - own.corners
+    border = np.where(own.beyond < 0, np.linalg.norm(sides, axis=2), 0.0).sum(axis=1)
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
+    width = (
+        2 * np.bincount(own.label, area, count) / np.maximum(np.bincount(own.label, border, count), 1e-300)
+    )
+    return np.asarray((width <= _NARROW) & ~np.isin(np.arange(count), own.anchor_label))
 
 
 def _mixed(pieces: Pieces, label: Int64s, count: int) -> Bools:

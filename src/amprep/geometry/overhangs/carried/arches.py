@@ -11,6 +11,9 @@ _FLAT = 1e-4
 _NEAR = 0.01
 """Largest distance of vertices from the surface fitted to them, as a fraction of its radius, and in mm."""
 
+ANY_CHORD = 1e9
+"""Limit (mm) of chords in regions whose diameter is known and within its limit."""
+
 _FEWEST_LINES, _FEWEST_POINTS = 4, 8
 """Fewest lines of vertices that define a cylinder, and fewest vertices that define a sphere."""
 
@@ -96,5 +99,5 @@ def arch_limits(diameters: Floats, label: Int64s, bore: float, angle_deg: float)
         Overhang angle: a bore is flatter than it over the width ``diameter * sin(angle)``.
     """
     width = bore * float(np.sin(np.radians(angle_deg)))
-    limit = np.where(np.isnan(diameters), width, np.where(diameters <= bore, np.inf, 0.0))
+    limit = np.where(np.isnan(diameters), width, np.where(diameters <= bore, ANY_CHORD, 0.0))
     return np.asarray(limit[label], np.float64)

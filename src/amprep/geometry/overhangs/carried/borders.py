@@ -147,10 +147,16 @@ def _solid_angle(surface: Surface, normals: Floats, halves: _Halves, one: Int64s
 
 
 def _goes_down(surface: Surface, normals: Floats, halves: _Halves, one: Int64s, other: Int64s) -> Bools:
-    """Tell where the face of the other half-edge goes down from the edge and the solid lies beyond it."""
+    """Tell where the face of the other half-edge goes down from the edge and the solid lies beyond it.
+
+    The solid lies beyond it at an angle of 180 degrees or more, and above faces that point down. At such an angle
+    faces that point up are below the region, even if they are level or rise.
+    """
     ray = halves.ray[other]
     down = ray[:, 2] < -_DOWN * np.linalg.norm(ray, axis=1)
-    return np.asarray(down & (_solid_angle(surface, normals, halves, one, other) >= _STRAIGHT))
+    beyond = _solid_angle(surface, normals, halves, one, other) >= _STRAIGHT
+    facing = normals[surface.half_face[other], 2]
+    return np.asarray((down & (beyond | (facing < -_DOWN))) | (beyond & (facing > _DOWN)))
 
 
 def _plate_contact(corners: Floats, label: Int64s, plate: float) -> tuple[Floats, Int64s]:

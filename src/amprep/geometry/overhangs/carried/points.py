@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.overhangs.carried.arches import arch_limits, fitted_diameters
+from amprep.geometry.overhangs.carried.arches import ANY_CHORD, arch_limits, fitted_diameters
 from amprep.geometry.overhangs.carried.borders import RegionFaces
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ class Carrier(NamedTuple):
     def farthest(self, face: Int64s) -> Floats:
         """Return the greatest distance (mm) from the nearest anchor at which a point of each face may be carried."""
         chord = np.maximum(
-            self.limits.bridge, np.where(np.isinf(self.arch[face]), self._width(face), self.arch[face])
+            self.limits.bridge, np.where(self.arch[face] < ANY_CHORD, self.arch[face], self._width(face))
         )
         return np.asarray(np.maximum(self.limits.ledge, chord / 2) + TOLERANCE)
 
@@ -145,7 +145,7 @@ class Carrier(NamedTuple):
 
     def _longest(self) -> float:
         """Return a length (mm) that lines which carry points do not exceed, but for oblique lines across bores."""
-        chords = self.arch[np.isfinite(self.arch)]
+        chords = self.arch[self.arch < ANY_CHORD]
         bores = self.diameters[self.diameters <= self.limits.bore + TOLERANCE]
         return float(max(self.limits.bridge, chords.max(initial=0.0), 2 * bores.max(initial=0.0)) + TOLERANCE)
 

@@ -83,8 +83,9 @@ def region_sizes(
         best[worst.region] = worst.ledge
         radius = np.linalg.norm((corners - middle[:, None])[:, :, :2], axis=2).max(axis=1)
         bound = found.ledge + radius
-        open_ = bound > best[region] + np.maximum(_PRECISION, _RELATIVE * best[region])
-        rows = np.flatnonzero(open_ & (best[region] < _UNSEEN))
+        step = np.maximum(_PRECISION, _RELATIVE * (best % _UNSEEN))
+        open_ = bound > best[region] + step[region]
+        rows = np.flatnonzero(open_ & (best[region] < 2 * _UNSEEN))
         if not len(rows):
             break
         rows = _first_of_each(region[rows], bound[rows], rows)
@@ -158,7 +159,7 @@ def _size(limits: Limits, kind: Kind, lengths: tuple[float, float, float], holds
     """
     ledge, bridge, bore = lengths
     if ledge >= 2 * _UNSEEN:
-        return RegionSize("flat", 0.0, 0.0)
+        return RegionSize("ledge", 0.0, limits.ledge) if holds else RegionSize("flat", 0.0, 0.0)
     if ledge >= _UNSEEN:
         return RegionSize("ledge", ledge - _UNSEEN, limits.ledge)
     sizes: dict[Kind, tuple[float, float]] = {

@@ -7,8 +7,9 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.overhangs.candidates import Candidates
 from amprep.geometry.overhangs.carried.points import TOLERANCE, Limits
+from amprep.geometry.overhangs.faces import ANGLE_TOLERANCE_DEG
 from amprep.geometry.overhangs.regions import OverhangRegion, components_of_edges, numbered_by_first
-from amprep.geometry.overhangs.surface import LEVEL, Surface, cross_products
+from amprep.geometry.overhangs.surface import LEVEL, Surface
 
 _MOST_ANCHORS = 64
 """Largest number of anchors of a connected edge from which distances are found one by one."""
@@ -31,8 +32,8 @@ class CarriedEdges(NamedTuple):
     carried: Bools
 
 
-def carried_edges(surface: Surface, normals: Floats, edges: Int64s, limits: Limits) -> CarriedEdges:
-    """Find how the part carries knife edges ``(e, 2)``."""
+def carried_edges(surface: Surface, minimum: Int64s, edges: Int64s, limits: Limits) -> CarriedEdges:
+    """Find how the part carries knife edges ``(e, 2)``; `minimum` are the plateaus of local minima, else -1."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components, dijkstra
 
@@ -43,7 +44,7 @@ def carried_edges(surface: Surface, normals: Floats, edges: Int64s, limits: Limi
         weights = np.maximum(length, 1e-12)
         graph = coo_array((weights, tuple(edges.T)), shape=(count, count)).tocsr()
         _, label = connected_components(graph, directed=False)
-        anchors = np.flatnonzero(_anchored(surface, normals, edges, limits))
+        anchors = np.flatnonzero(_anchored(surface, minimum, edges, limits))
         for group in np.split(anchors[np.argsort(label[anchors], kind="stable")], _breaks(label[anchors])):
             if len(group):
                 own = np.flatnonzero(label[edges[:, 0]] == label[group[0]])
@@ -72,36 +73,25 @@ def _spans(a: Floats, b: Floats, length: Floats) -> Floats:
     return shortest
 
 
-def _anchored(surface: Surface, normals: Floats, edges: Int64s, limits: Limits) -> Bools:
-    """Tell from which points of knife edges the part goes further down more steeply than the overhang angle."""
+def _anchored(surface: Surface, minimum: Int64s, edges: Int64s, limits: Limits) -> Bools:
+    """Tell from which points of knife edges the part goes further down.
+
+    It does so more steeply than the overhang angle, or anyhow at a point from which no knife edge goes down; if that
+    is a local minimum, the part starts in the air there.
+    """
     on_edges = np.zeros(len(surface.points), np.bool_)
     on_edges[edges.ravel()] = True
     anchored = on_edges & (surface.points[:, 2] <= limits.plate)
-    steep = np.sin(np.radians(limits.angle_deg))
+    steep = np.sin(np.radians(max(limits.angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
+    has_lower = np.zeros(len(surface.points), np.bool_)
+    for one, other in (edges.T, edges.T[::-1]):
+        has_lower[one[surface.points[other, 2] < surface.points[one, 2] - LEVEL]] = True
     for one, other in (surface.edges.T, surface.edges.T[::-1]):
         fall = surface.points[one, 2] - surface.points[other, 2]
         length = np.linalg.norm(surface.points[one] - surface.points[other], axis=1)
-        anchored[one[on_edges[one] & (fall > LEVEL) & (fall >= steep * length)]] = True
-    anchored[_descending_corners(surface, normals, on_edges)] = True
+        anchored[one[(fall > LEVEL) & (fall >= steep * length)]] = True
+    anchored |= ~has_lower & (minimum < 0)
     return anchored & on_edges
-
-
-def _descending_corners(surface: Surface, normals: Floats, on_edges: Bools) -> Int64s:
-    """Return the points from which a face goes down between its two sides."""
-    found = []
-    down = np.column_stack(
-        [normals[:, 2] * normals[:, 0], normals[:, 2] * normals[:, 1], normals[:, 2] ** 2 - 1]
-    )
-    up = cross_products(surface.points, surface.triangles)
-    for i in range(3):
-        point = surface.triangles[:, i]
-        own = np.flatnonzero(on_edges[point])
-        one = surface.points[surface.triangles[own, (i + 1) % 3]] - surface.points[point[own]]
-        other = surface.points[surface.triangles[own, (i + 2) % 3]] - surface.points[point[own]]
-        left = np.einsum("ij,ij->i", np.cross(one, down[own]), up[own]) > 0
-        right = np.einsum("ij,ij->i", np.cross(down[own], other), up[own]) > 0
-        found.append(point[own[left & right & (down[own, 2] < -LEVEL)]])
-    return np.concatenate(found)
 
 
 def edge_regions(found: Candidates, limits: Limits) -> tuple[Int64s, Int64s, list[OverhangRegion]]:
@@ -109,7 +99,7 @@ def edge_regions(found: Candidates, limits: Limits) -> tuple[Int64s, Int64s, lis
     surface, sharp = found.surface, found.sharp
     number = numbered_by_first(components_of_edges(sharp, len(surface.points)))
     count = int(number.max(initial=-1)) + 1
-    how = carried_edges(surface, found.normals, sharp, limits)
+    how = carried_edges(surface, found.minimum, sharp, limits)
     starts = np.zeros(count, np.bool_)
     starts[number[(found.minimum[sharp] >= 0).any(axis=1)]] = True
     needed = ~how.carried | starts[number]
