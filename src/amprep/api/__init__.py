@@ -6,7 +6,7 @@ new ones.
 """
 
 from amprep.api.build_file import Verification, verify, write
-from amprep.api.inspection import inspect
+from amprep.api.inspection import explain_regions, inspect
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
@@ -17,6 +17,7 @@ from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
 from amprep.report.infill import InfillRecord
 from amprep.report.inspection.record import InspectionRecord
 from amprep.report.record import RunRecord
+from amprep.report.regions import RegionsRecord
 
 __all__ = [
     "InfillRecord",
@@ -26,11 +27,13 @@ __all__ = [
     "PackedBuild",
     "PackedParts",
     "PlannedBuild",
+    "RegionsRecord",
     "RunRecord",
     "SupportedBuild",
     "Verification",
     "Violation",
     "emit_cells",
+    "explain_regions",
     "fill_parts",
     "inspect",
     "load",

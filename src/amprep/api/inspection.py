@@ -9,9 +9,11 @@ from amprep.host import Host
 from amprep.job import Job
 from amprep.model import Progress, Stop, silent
 from amprep.pipeline.inspecting import InspectOptions, inspect_job
+from amprep.pipeline.inspecting import regions as region_stage
 from amprep.pipeline.resolve import resolve
 from amprep.pipeline.stages import ProgressWatcher, Watcher
 from amprep.report.inspection.record import InspectionRecord
+from amprep.report.regions import RegionsRecord
 
 
 def inspect(
@@ -74,3 +76,50 @@ def inspect(
     )
     resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))
     return inspect_job(resolved, options, watcher=watcher or ProgressWatcher(progress), stop=stop or Stop())
+
+
+def explain_regions(
+    *inputs: str | Path | Job,
+    part: str = "*",
+    printer: str | Path | Mapping[str, Any] | None = None,
+    settings: Mapping[str, Any] | None = None,
+    allow_surface: bool = False,
+    plugins: Host | Sequence[str] = (),
+    progress: Progress = silent,
+    watcher: Watcher | None = None,
+) -> RegionsRecord:
+    """List the overhang regions of parts with their verdicts and the rule that takes each; no supports are planned.
+
+    Parameters
+    ----------
+    inputs
+        Mesh files, 3MF files and folders, or one job file (.toml).
+    part
+        Name of the part or of its file; ``*`` and ``?`` stand for any letters and any one letter.
+    printer
+        Printer by name, path of a printer profile, or a table like one; default: the job's, else the EOS M290.
+    settings
+        Settings of the job by dotted keys, for example ``{"rule": [{"kind": "bore", "support": False}]}``.
+    allow_surface
+        Whether meshes that are not solids are accepted as surfaces.
+    plugins
+        Plugin modules to load beside the installed plugins, by name or path.
+    progress
+        Called with the fraction of a stage that is done, and a message that begins with the name of the stage.
+    watcher
+        Shows the stages; takes the place of `progress`.
+
+    Raises
+    ------
+    AmprepError
+        For wrong input or settings, or when no part has that name.
+
+    Examples
+    --------
+    >>> record = amprep.explain_regions("job.toml", part="bracket")
+    >>> [(region.verdict, region.rule) for region in record.regions]
+    [('self-supporting: bore 3.9 mm', 'self-supporting'), ('ledge 6.0 mm over 1.0: needs support', '[[rule]] 2')]
+    """
+    resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))
+    shown = watcher or ProgressWatcher(progress)
+    return region_stage.explain_regions(resolved, part, allow_surface=allow_surface, watcher=shown)

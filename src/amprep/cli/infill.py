@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.job import call_api, finish
+from amprep.cli.job import call_api, finish, output_options
 from amprep.cli.options import JobOptions, with_options
 
 
@@ -80,6 +80,7 @@ def lattice(
         inputs,
         options,
         {},
+        **output_options(inputs, options),
         region_files=region or (),
         regions=region_name or (),
         shell_mm=shell,

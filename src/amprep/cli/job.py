@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from amprep.report.infill import InfillRecord
     from amprep.report.inspection.record import InspectionRecord
     from amprep.report.record import RunRecord
+    from amprep.report.regions import RegionsRecord
 
 
 def call_api(
@@ -56,8 +57,7 @@ def call_api(
             host = Host.load(modules=options.plugins or [], plugins_enabled=not options.no_plugins)
         for warning in host.warnings:
             console.print(f"warning: {warning}", markup=False)
-        shared = {"dry_run": options.dry_run, "stl": options.stl, "plugins": host, "watcher": bars}
-        return getattr(api, function)(job, output=folder_of(inputs, options), **shared, **own)
+        return getattr(api, function)(job, plugins=host, watcher=bars, **own)
 
 
 def build_and_report(
@@ -65,6 +65,7 @@ def build_and_report(
 ) -> NoReturn:
     """Make build jobs by a function of the public API, as `call_api` does, print the record and exit."""
     own |= {"allow_surface": options.allow_surface, "time_limit_s": options.time_limit}
+    own |= output_options(inputs, options)
     record = call_api(function, inputs, options, changes, **own)
 
     from amprep.report.json_report import to_json
@@ -72,6 +73,20 @@ def build_and_report(
 
     folder = _shown(folder_of(inputs, options))
     finish(record, to_json, lambda shown: summary(shown, folder), options)
+
+
+def explain_and_report(inputs: list[str], part: str, options: BuildOptions) -> NoReturn:
+    """Print the overhang regions of a part and exit."""
+    record = call_api("explain_regions", inputs, options, {}, part=part, allow_surface=options.allow_surface)
+
+    from amprep.report.regions import summary, to_json
+
+    finish(record, to_json, summary, options)
+
+
+def output_options(inputs: list[str], options: JobOptions) -> dict[str, Any]:
+    """Return the arguments of functions that write files: folder, whether nothing is written, and STL files."""
+    return {"output": folder_of(inputs, options), "dry_run": options.dry_run, "stl": options.stl}
 
 
 def folder_of(inputs: list[str], options: JobOptions) -> Path:
@@ -88,7 +103,7 @@ def _shown(folder: Path) -> Path:
 
 
 def finish(
-    record: "RunRecord | InfillRecord | InspectionRecord",
+    record: "RunRecord | InfillRecord | InspectionRecord | RegionsRecord",
     to_json: Callable[[Any], Any],
     summary: "Callable[[Any], RenderableType]",
     options: "JobOptions | InspectionOptions",

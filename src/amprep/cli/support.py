@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.job import build_and_report
+from amprep.cli.job import build_and_report, explain_and_report
 from amprep.cli.options import BuildOptions, with_options
 
 
@@ -29,6 +29,14 @@ def support(
             rich_help_panel="Settings of the job",
         ),
     ] = None,
+    explain: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PART",
+            help="List the overhang regions of a part (* and ? as in file names) with their verdicts and the "
+            "[[rule]] of the job that takes each; plan and write nothing.",
+        ),
+    ] = None,
     *,
     options: BuildOptions,
 ) -> None:
@@ -44,4 +52,6 @@ def support(
     Exit codes: 0 if done, 1 if something is unsupported or fails verification,
     2 for wrong input (nothing written), 130 if interrupted (nothing written).
     """
+    if explain is not None:
+        explain_and_report(inputs, explain, options)
     build_and_report("support", inputs, options, {"supports.grounding": grounding}, center=center)

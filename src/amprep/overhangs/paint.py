@@ -13,6 +13,7 @@ from amprep.geometry.meshes.containment import inside
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import PlacedPart
 from amprep.overhangs.of_part import PartOverhangs
+from amprep.overhangs.selection import slopes_of
 
 _FLAT = 1e-4
 """Distance (mm) from the plane of a painted triangle within which a point is on it."""
@@ -92,11 +93,10 @@ def _piece(own: PartOverhangs, region: OverhangRegion, faces: Ints) -> OverhangR
     corners = own.mesh.vertices[own.mesh.triangles[faces]]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     double = np.linalg.norm(cross, axis=1)
-    slope = np.arccos(np.clip(-cross[:, 2] / np.maximum(double, 1e-300), -1.0, 1.0))
     return region._replace(
         measure=float(double.sum() / 2.0),
         centre=np.average(corners.mean(axis=1), axis=0, weights=np.maximum(double, 1e-300)),
-        angle_deg=float(np.degrees(slope.min())),
+        angle_deg=float(np.degrees(slopes_of(corners).min())),
         lowest_mm=float(corners[:, :, 2].min()),
     )
 

@@ -9,7 +9,7 @@ from amprep.arrays import Ints
 from amprep.model import PlacedPart
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.overhangs.paint import paint_of, split_by_paint
-from amprep.overhangs.selection import select_regions
+from amprep.overhangs.selection import measure_regions, select_regions
 from amprep.pipeline.resolve import ResolvedJob
 
 
@@ -65,7 +65,8 @@ def take_regions(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> TakenReg
     colours = {rule.paint or rule.colour for rule in job.rules if rule.colour is not None}
     overhangs, rules = [], []
     for placed in parts:
-        own = split_by_paint(placed, overhangs_of(placed, job.supports), colours)
+        own = overhangs_of(placed, job.supports)
+        own = split_by_paint(placed, own if job.supports.has_limits else measure_regions(own), colours)
         paint = paint_of(placed, own, colours)
         overhangs.append(own)
         rules.append(
