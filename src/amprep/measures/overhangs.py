@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Int32s
+from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
 from amprep.model.supports.rules import SupportRules
@@ -34,6 +35,8 @@ class OverhangFigures:
         Area of the faces on the plate.
     enforced_mm2, blocked_mm2
         Area of the faces that enforcers add, and that blockers take away.
+    regions
+        All regions of overhangs, also those that the part itself carries.
     """
 
     angle_deg: float
@@ -48,6 +51,7 @@ class OverhangFigures:
     on_plate_mm2: float
     enforced_mm2: float
     blocked_mm2: float
+    regions: tuple[OverhangRegion, ...] = ()
 
 
 def measure_overhangs(placed: PlacedPart, rules: SupportRules) -> OverhangFigures:
@@ -83,6 +87,7 @@ def measure_overhangs(placed: PlacedPart, rules: SupportRules) -> OverhangFigure
         on_plate_mm2=on_plate,
         enforced_mm2=max(0.0, enforced - without),
         blocked_mm2=max(0.0, enforced - faces),
+        regions=regions,
     )
 
 

@@ -1,12 +1,15 @@
 """The report of an inspection for programs, described in docs/inspect.md."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+from amprep.measures.overhangs import OverhangFigures
 from amprep.model import Boxes, Part, TurnedVolume
+from amprep.overhangs.verdicts import verdict_words
 from amprep.report.inspection.record import InspectedPart, InspectedVolume, InspectionRecord
 from amprep.report.json_values import plain, stages_json, violations_json, write_json_file
+from amprep.report.triage.json_form import region_json
 
 FORMAT = 1
 """Version of the layout; it increases when a key changes its meaning or is removed."""
@@ -43,11 +46,16 @@ def _part(each: InspectedPart) -> dict[str, Any]:
         "mesh": None if each.contents is None else asdict(each.contents),
         "problems": list(each.problems),
         "findings": list(each.findings),
-        "overhangs": None if each.overhangs is None else asdict(each.overhangs),
+        "overhangs": None if each.overhangs is None else _overhangs(each.overhangs),
         "thin_walls": [asdict(wall) for wall in each.walls],
         "printers": [asdict(fit) for fit in each.printers],
         "volumes": [_volume(volume) for volume in each.volumes],
     }
+
+
+def _overhangs(found: OverhangFigures) -> dict[str, Any]:
+    regions = [{"verdict": verdict_words(region), **region_json(region)} for region in found.regions]
+    return asdict(replace(found, regions=())) | {"regions": regions}
 
 
 def _settings(part: Part) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from amprep.measures.thin_walls import ThinWall
 from amprep.model import Part
 from amprep.model.counting import counted
 from amprep.report.inspection.record import InspectedFile, InspectedPart, InspectedVolume
+from amprep.report.triage.region_words import kinds_in_words
 
 
 def file_words(file: InspectedFile) -> str:
@@ -61,12 +62,20 @@ def overhang_words(found: OverhangFigures) -> Iterator[tuple[str, str]]:
             ]
         ),
     )
+    needed = [region for region in found.regions if not region.is_self_supporting]
+    if needed:
+        yield "needing support by kind", kinds_in_words(needed)
     if found.carried_regions:
         carried = counted(found.carried_regions, "region")
         yield (
             "self-supporting",
             f"{carried}, {found.carried_mm2:.1f} mm² of faces that the part itself carries",
         )
+        own = [region for region in found.regions if region.is_self_supporting and not region.is_noncritical]
+        yield "self-supporting by kind", kinds_in_words(own)
+    noncritical = [region for region in found.regions if region.is_noncritical]
+    if noncritical:
+        yield "worth a check", f"{kinds_in_words(noncritical)}, steeper than the overhang angle, not critical"
     yield "steep enough", f"{found.steep_mm2:.1f} mm² of downward faces"
     yield "on the plate", f"{found.on_plate_mm2:.1f} mm²"
     if found.enforced_mm2:

@@ -12,7 +12,7 @@ from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
 from amprep.report.removal_order import hindrances_of
 from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
 
-_PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)")
+_PLACE = re.compile(r"at [(\[](-?[\d.]+), (-?[\d.]+), (-?[\d.]+)[)\]]")
 """How messages of judges state a point in build coordinates, mm."""
 
 Position = tuple[float, float, float]

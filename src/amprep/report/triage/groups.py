@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from amprep.model.counting import counted
 from amprep.report.triage.classes import TRIAGES, Triage
 from amprep.report.triage.findings import Finding
+from amprep.report.triage.region_words import regions_in_words
 
 PLURALS = {
     "unplaced copy": "unplaced copies",
     "locked parts": "groups of locked parts",
     "powder pocket": "pockets of powder that cannot leave",
-    "edge": "knife edges",
-    "long edge": "long edges parallel to the recoater",
 }
 """Kind -> plural, where it is not the kind with an s."""
 SINGULARS = {
-    "edge": "knife edge",
     "locked parts": "group of locked parts",
     "powder pocket": "pocket of powder that cannot leave",
 }
@@ -41,29 +39,16 @@ class FindingGroup:
     @property
     def words(self) -> str:
         """What the group consists of, for example ``12 bores 3.0 to 4.2 mm, limit 8 mm``."""
+        regions = [each.overhang.region for each in self.findings if each.overhang is not None]
+        if len(regions) == len(self.findings):
+            return regions_in_words(regions)
         count = counted(
             len(self.findings), SINGULARS.get(self.kind, self.kind), PLURALS.get(self.kind, f"{self.kind}s")
         )
         if self.kind == "violation":
             return f"{count}: {', '.join(dict.fromkeys(each.words.split(':')[0] for each in self.findings))}"
         volume = sum(each.volume_mm3 for each in self.findings)
-        powder = f"{volume:.1f} mm³ in total" if volume else ""
-        return ", ".join(filter(None, (f"{count} {self._sizes()}".rstrip(), self._limit(), powder)))
-
-    def _sizes(self) -> str:
-        """Return the range of sizes; of the areas where the kind has no size."""
-        regions = [each.overhang.region for each in self.findings if each.overhang is not None]
-        sizes = [region.size_mm for region in regions if region.size_mm > 0.0]
-        if sizes:
-            return _range(min(sizes), max(sizes), "mm")
-        measures = [region.measure for region in regions if region.measure > 0.0]
-        if not measures:
-            return ""
-        return _range(min(measures), max(measures), "mm long" if self.kind == "edge" else "mm²")
-
-    def _limit(self) -> str:
-        limits = {each.overhang.region.limit_mm for each in self.findings if each.overhang is not None}
-        return f"limit {max(limits):g} mm" if len(limits) == 1 and max(limits) > 0.0 else ""
+        return f"{count}, {volume:.1f} mm³ in total" if volume else count
 
 
 def grouped(findings: Iterable[Finding]) -> list[FindingGroup]:
@@ -97,8 +82,3 @@ def _by_size(finding: Finding) -> tuple[bool, bool, float, float]:
         return (True, False, 0.0, finding.volume_mm3)
     region = finding.overhang.region
     return (False, region.starts_in_air, region.size_mm, region.measure)
-
-
-def _range(low: float, high: float, unit: str) -> str:
-    first, last = f"{low:.1f}", f"{high:.1f}"
-    return f"{first} {unit}" if first == last else f"{first} to {last} {unit}"

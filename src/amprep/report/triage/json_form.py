@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from amprep.geometry.overhangs.regions import NOT_FACES
+from amprep.geometry.overhangs.regions import NOT_FACES, OverhangRegion
 from amprep.report.record import OverhangRecord
 from amprep.report.triage.classes import CHECK, MUST_FIX
 from amprep.report.triage.findings import Finding
@@ -34,15 +34,25 @@ def findings_json(findings: Sequence[Finding]) -> list[dict[str, Any]]:
 
 
 def overhang_json(record: OverhangRecord) -> dict[str, Any]:
-    """Return a region of overhangs with its verdict."""
-    region = record.region
-    is_face = region.kind not in NOT_FACES
+    """Return a region of overhangs of a build with its verdict."""
     return {
         "name": record.name,
         "part": record.part,
         "triage": record.triage,
-        "kind": region.kind,
         "verdict": record.verdict,
+        **region_json(record.region),
+        "demand_squares": record.demand_squares,
+        "connected_squares": record.connected_squares,
+        "supported": record.supported,
+        "reasons": record.reasons,
+    }
+
+
+def region_json(region: OverhangRegion) -> dict[str, Any]:
+    """Return kind, sizes and position of a region of overhangs."""
+    is_face = region.kind not in NOT_FACES
+    return {
+        "kind": region.kind,
         "size_mm": region.size_mm,
         "limit_mm": region.limit_mm,
         "angle_deg": region.angle_deg if is_face else None,
@@ -50,10 +60,6 @@ def overhang_json(record: OverhangRecord) -> dict[str, Any]:
         "starts_in_air": region.starts_in_air,
         "area_mm2": region.measure if is_face else None,
         "length_mm": region.measure if region.kind == "edge" else None,
-        "height_mm": record.position_mm[2] if region.kind == "tip" else None,
-        "position_mm": record.position_mm,
-        "demand_squares": record.demand_squares,
-        "connected_squares": record.connected_squares,
-        "supported": record.supported,
-        "reasons": record.reasons,
+        "height_mm": region.centre[2] if region.kind == "tip" else None,
+        "position_mm": region.centre,
     }
