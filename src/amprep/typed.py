@@ -41,10 +41,16 @@ def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
     Raises
     ------
     JobError
-        For an unknown key, a value of the wrong type, or a value out of bounds.
+        For an unknown key, a key that `REPLACED_KEYS` of the class lists with its successor, a value of the wrong
+        type, or a value out of bounds.
     """
     wanted = field_types(cls)
+    replaced = getattr(cls, "REPLACED_KEYS", {})
     for key in table:
+        if key in replaced:
+            raise JobError(
+                f"{where}: the key {key!r} is now {replaced[key]!r}; see docs/job-file.md for its meaning"
+            )
         if key not in wanted:
             raise JobError(f"{where}: unknown key {key!r}{nearest_hint(key, wanted)}")
     values = {key: convert(value, wanted[key], f"{where}: {key}") for key, value in table.items()}

@@ -11,10 +11,10 @@ from amprep.job import Job
 from amprep.measures.bounding_volume import kind_of_volumes
 from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.height_profile import measure_profile
+from amprep.measures.legs import measure_legs
 from amprep.measures.objective import objective_reached
 from amprep.measures.printing.estimate import PrintingEstimate, PrintingSpeed, estimate_printing
 from amprep.measures.removal_order import measure_removal_order
-from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Stop, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
@@ -50,7 +50,7 @@ def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord
         printing=_printing(supported, job),
         removal_order=measure_removal_order(build, stop),
         profile=measure_profile(build),
-        slenderness=tuple(measure_slenderness(body) for body in build.supports),
+        legs=measure_legs(build, min((layout.grid.step for layout in layouts), default=1.0)),
         overhangs=_overhangs(supported),
         demand_squares=sum(len(layout.red.square) for layout in layouts),
         unconnected=tuple(each for layout in layouts for each in _unconnected(supported, layout)),

@@ -27,6 +27,7 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
+from amprep.supports.legs.cell import measure_cell
 from amprep.supports.plan import SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 
@@ -306,14 +307,15 @@ def _layout(
     job, resolved = build.resolved.job, build.resolved
     rules = replace(job.supports, pitch_mm=pitch)
     rng = np.random.default_rng([job.seed, build.number])
-    material = resolved.cell.material(pitch, pitch * float(np.tan(np.radians(rules.strut_angle_deg))))
+    step = pitch * float(np.tan(np.radians(rules.strut_angle_deg)))
     return plan_supports(
         build.parts,
         job.printer.space,
         rules,
         overhangs=overhangs,
         earlier=earlier,
-        material=material,
+        material=resolved.cell.material(pitch, step),
+        extents=measure_cell(resolved.cell.emit, pitch, step) if rules.leg_ratio else None,
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress
         ),

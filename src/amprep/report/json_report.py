@@ -6,6 +6,7 @@ from typing import Any
 
 from amprep.measures.density import part_volume
 from amprep.measures.height_profile import HeightProfile
+from amprep.measures.legs import BodyLegs
 from amprep.measures.removability import Removal, totals
 from amprep.model import PlacedPart, Unsupported
 from amprep.model.packing import PackingStep
@@ -171,21 +172,16 @@ def _body(entry: BuildRecord, index: int) -> dict[str, Any]:
         "surface": body.surface,
         "triangles": len(body.mesh.triangles),
         "volume_mm3": 0.0 if body.surface else abs(body.mesh.signed_volume),
-        **(_slenderness(entry, index) if entry.slenderness else {}),
+        **(_legs(entry.legs[index]) if entry.legs else {}),
         **(_removal(entry.removal[index]) if entry.removal else {}),
     }
 
 
-def _slenderness(entry: BuildRecord, index: int) -> dict[str, Any]:
-    found = entry.slenderness[index]
+def _legs(legs: BodyLegs) -> dict[str, Any]:
     return {
-        "components": found.pieces,
-        "most_slender": {
-            "slenderness": found.slenderness,
-            "height_mm": found.height_mm,
-            "width_mm": found.width_mm,
-            "position_mm": found.position_mm,
-        },
+        "legs": legs.total,
+        "worst_leg": None if legs.worst is None else legs.worst._asdict(),
+        "long_legs": [leg._asdict() for leg in legs.too_long],
     }
 
 

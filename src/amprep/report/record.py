@@ -10,9 +10,9 @@ from amprep.checks.violation import Violation
 from amprep.geometry.overhangs.regions import NOT_FACES, OverhangRegion
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
+from amprep.measures.legs import BodyLegs
 from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.measures.removability import Removal
-from amprep.measures.slenderness import Slenderness
 from amprep.model import BoundingVolume, Build, Unsupported
 from amprep.model.counting import counted
 from amprep.model.packing import BoundFor, Objective, PackingStep
@@ -145,7 +145,7 @@ class BuildRecord:
         Further remarks of support planning, one sentence each.
     overhangs
         All regions of overhangs, also those that the part itself carries.
-    slenderness, removal
+    legs, removal
         Figures of each support body; empty if not measured.
     advice
         Suggestions for a better build, one sentence each.
@@ -172,7 +172,7 @@ class BuildRecord:
     shared_supports: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     overhangs: tuple[OverhangRecord, ...] = ()
-    slenderness: tuple[Slenderness, ...] = ()
+    legs: tuple[BodyLegs, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
     volumes: tuple[ShownVolume, ...] = ()

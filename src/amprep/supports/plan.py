@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Ints
+from amprep.arrays import Bools, Floats, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
@@ -18,7 +18,9 @@ from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
 from amprep.supports.grid.taken import close_taken, taken_by
 from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
-from amprep.supports.routes.bracing import add_cross_bracing
+from amprep.supports.legs.cell import square_cell
+from amprep.supports.legs.room import OpenVoxels
+from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
 from amprep.supports.routes.network import Route, SupportNetwork
 from amprep.supports.routes.on_part import stand_on_parts
@@ -44,6 +46,7 @@ def plan_supports(
     route: Route,
     overhangs: Sequence[PartOverhangs] | None = None,
     material: tuple[float, float] = (1.0, 1.0),
+    extents: Floats | None = None,
     choose: Choose | None = None,
     earlier: Sequence[SupportLayout] = (),
     stop: Stop,
@@ -65,6 +68,8 @@ def plan_supports(
         The overhangs of each part that are to be supported; None for all that the rules find.
     material
         Material of a vertical and of an oblique edge in the chosen cell, mm3.
+    extents
+        Extents (mm) of one cell, see `amprep.supports.legs.cell.measure_cell`; None for a cell that fills its square.
     choose
         Chooses the red squares to connect; None chooses all.
     earlier
@@ -91,7 +96,7 @@ def plan_supports(
     network = SupportNetwork(laid, rules, material, route, stop, territories)
     routed = _route(network, rules, progress)
     notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
-    supports = _brace(laid, _ground(laid, territories, routed, rules), rules)
+    supports = _shorten_legs(laid, territories, _ground(laid, territories, routed, rules), rules, extents)
     supports = supports._replace(notes=(*notes, *supports.notes))
     layout = _layout(parts, overhangs, laid, supports, routed.reasons)
     return replace(layout, territories=territories)
@@ -120,14 +125,28 @@ def _ground(
     )
 
 
-def _brace(laid: SupportGrid, supports: _Supports, rules: PlanningRules) -> _Supports:
-    """Brace slender columns, if the rules ask for it."""
-    if not rules.cross_bracing:
+def _shorten_legs(
+    laid: SupportGrid,
+    territories: Sequence[PartTerritory],
+    supports: _Supports,
+    rules: PlanningRules,
+    extents: Floats | None,
+) -> _Supports:
+    """Brace or thicken legs that are too long for their width, if the rules limit that."""
+    if not rules.leg_ratio or not len(supports.edges):
         return supports
-    bracing = add_cross_bracing(laid.grid, laid.voxels, supports.edges, rules.slenderness_ratio)
-    note = f"struts brace {counted(bracing.braced, 'slender column')}; too far from others: {bracing.alone}"
-    edges = SupportEdges.concatenate([supports.edges, bracing.edges]).merged()
-    return supports._replace(edges=edges, notes=(*supports.notes, note))
+    cell = square_cell(laid.grid.pitch) if extents is None else extents
+    held = np.concatenate([laid.red.square[supports.connected], supports.feet[:, :3]])
+    opened = [OpenVoxels(laid.voxels, each.first, each.opened) for each in territories]
+    legs = shorten_legs(
+        laid.grid,
+        supports.edges,
+        held,
+        LegRules(rules.leg_ratio, cell),
+        opened.__getitem__ if opened else lambda _: OpenVoxels(laid.voxels),
+    )
+    edges = SupportEdges.concatenate([supports.edges, legs.edges]).merged()
+    return supports._replace(edges=edges, notes=(*supports.notes, *words_of(legs, rules.leg_ratio)))
 
 
 def _layout(

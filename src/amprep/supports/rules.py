@@ -1,7 +1,8 @@
 """The rules that supports are planned by; the job file's section `[supports]` is read into them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.supports import LARGEST_COST, Escalation
@@ -11,7 +12,7 @@ from amprep.validation import LARGEST_COUNT, require_bounds
 
 @dataclass(frozen=True)
 class PlanningRules(SupportRules):
-    """Rules for the grid, the routing and the bracing of supports.
+    """Rules for the grid and the routing of supports.
 
     Attributes
     ----------
@@ -33,11 +34,13 @@ class PlanningRules(SupportRules):
     share_between_parts
         ``avoid``: parts share supports only where a red square would otherwise stay unconnected; ``allow``: all
         parts are routed as one network.
-    cross_bracing
-        Whether slender columns are connected to other columns of the same part by struts.
-    slenderness_ratio
-        Height divided by width above which a column is slender.
     """
+
+    REPLACED_KEYS: ClassVar[Mapping[str, str]] = {
+        "cross_bracing": "leg_ratio",
+        "slenderness_ratio": "leg_ratio",
+    }
+    """Keys of earlier releases, each with the key that takes its place."""
 
     pitch_mm: float | None = None
     memory_mb: int = 2000
@@ -49,8 +52,6 @@ class PlanningRules(SupportRules):
     vertical_cost: int = 1
     oblique_cost: int = 2
     share_between_parts: Literal["avoid", "allow"] = "avoid"
-    cross_bracing: bool = False
-    slenderness_ratio: float = 8.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -59,7 +60,6 @@ class PlanningRules(SupportRules):
         require_bounds(self, "edge_capacity", "node_capacity", at_least=0, at_most=LARGEST_COUNT)
         require_bounds(self, "load_area_mm2", "load_height_mm", at_least=0)
         require_bounds(self, "vertical_cost", "oblique_cost", at_least=1, at_most=LARGEST_COST)
-        require_bounds(self, "slenderness_ratio", at_least=1)
 
     def edge_limit(self, grid: Grid, top: int) -> int:
         """Return the capacity of the edges below red squares up to plane `top`; 0 for no limit.

@@ -11,8 +11,8 @@ from amprep.checks.violation import Violation
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.geometry.powder.pockets import Pocket
 from amprep.infill.fill_region import FilledPart
+from amprep.measures.legs import BodyLegs, MeasuredLeg
 from amprep.measures.removability import Removal
-from amprep.measures.slenderness import measure_slenderness
 from amprep.model import Part
 from amprep.report import infill, json_report
 from amprep.report.infill import FilledPartRecord, InfillRecord
@@ -68,6 +68,9 @@ def described(section):
     return {span.removesuffix("[]").split(".")[-1] for span in re.findall(r"`([\w.\[\]]+)`", section)}
 
 
+LEG = MeasuredLeg(12.0, 24.0, 2.0, (1.0, 1.0, 12.0))
+
+
 @pytest.fixture
 def run(make_build) -> RunRecord:
     """Return a run that has every kind of entry."""
@@ -89,7 +92,7 @@ def run(make_build) -> RunRecord:
                 ("enclosed",),
             ),
         ),
-        slenderness=tuple(map(measure_slenderness, build.supports)),
+        legs=tuple(BodyLegs(1, LEG, (LEG,)) for _ in build.supports),
         removal=tuple(Removal(1.0, 2.0, 3.0, 4, (POCKET,), 0.1) for _ in build.supports),
     )
     return RunRecord(

@@ -4,9 +4,11 @@ import json
 from collections import Counter
 from html import escape
 from textwrap import dedent
+from typing import Any
 
 from amprep.checks.packing.pairs import PairCounts
 from amprep.measures.density import part_volume
+from amprep.measures.legs import MeasuredLeg
 from amprep.model import PlacedPart
 from amprep.model.counting import counted
 from amprep.report.json_values import plain
@@ -180,31 +182,44 @@ def _unplaced(record: RunRecord) -> str:
 
 
 def _supports(number: int, entry: BuildRecord) -> str:
-    if not entry.slenderness:
+    if not entry.legs:
         return ""
     rows = (
         (
             body.name,
             ("number", "" if body.surface else f"{abs(body.mesh.signed_volume) / 1000:.3f}"),
-            each.pieces,
-            ("number", f"{each.slenderness:.1f}"),
-            ("number", f"{each.height_mm:.1f} / {each.width_mm:.2f}"),
-            ", ".join(f"{value:.1f}" for value in each.position_mm),
+            each.total,
+            len(each.too_long),
+            *_worst_leg(each.worst),
         )
-        for body, each in zip(entry.build.supports, entry.slenderness, strict=True)
+        for body, each in zip(entry.build.supports, entry.legs, strict=True)
     )
     headings = (
         "Support body",
         "Volume cm³|",
-        "Components|",
-        "Slenderness ratio|",
-        "Height / width mm|",
-        "Most slender at, mm",
+        "Legs|",
+        "Too long|",
+        "Largest ratio|",
+        "Length / width mm|",
+        "At, mm",
     )
-    bodies = "1 support body" if len(entry.slenderness) == 1 else f"{len(entry.slenderness)} support bodies"
-    most = max(each.slenderness for each in entry.slenderness)
-    name = f"Build {number}: {bodies}, largest slenderness ratio {most:.1f}"
+    bodies = "1 support body" if len(entry.legs) == 1 else f"{len(entry.legs)} support bodies"
+    most = max((each.worst.ratio for each in entry.legs if each.worst), default=0.0)
+    too_long = sum(len(each.too_long) for each in entry.legs)
+    name = (
+        f"Build {number}: {bodies}, largest ratio of length to width of a leg {most:.1f}, {too_long} too long"
+    )
     return _details(name, table(headings, rows))
+
+
+def _worst_leg(leg: MeasuredLeg | None) -> tuple[Any, ...]:
+    if leg is None:
+        return ("", "", "")
+    return (
+        ("number", f"{leg.ratio:.1f}"),
+        ("number", f"{leg.length_mm:.1f} / {leg.width_mm:.2f}"),
+        ", ".join(f"{value:.1f}" for value in leg.position_mm),
+    )
 
 
 def _removal(number: int, entry: BuildRecord) -> str:

@@ -1,1 +1,1 @@
-"""Route the support network: routers, sharing between parts, columns on parts, cross-bracing."""
+"""Route the support network: routers, sharing between parts, columns on parts."""

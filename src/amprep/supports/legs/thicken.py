@@ -1,0 +1,122 @@
+"""Make the lower part of a leg wider by columns that touch it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from amprep.arrays import Floats
+from amprep.model.supports.edges import DIRECTIONS
+from amprep.supports.legs.find import RoutedLeg
+from amprep.supports.legs.room import Room, Square, Strut
+from amprep.supports.legs.sections import PLANES_TO_TOUCH, directions
+
+LARGEST_WIDTH = 5
+"""Largest width (squares) to which a leg is thickened."""
+
+_QUADRANTS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+
+
+def thicken(room: Room, leg: RoutedLeg, ratio: float, pitch: float, cell: Floats) -> list[Strut]:
+    """Return columns with which no stretch of a leg on the plate is too long, none if there is no room for them.
+
+    Each column is a copy of a path down the leg, shifted along x or y. Two columns, one square away along both
+    axes, make the leg two squares wide; two further ones make it three squares wide, and so on. Columns
+    begin where the width above is not enough any more.
+
+    Parameters
+    ----------
+    room
+        What is in use and what may be used.
+    leg
+        The leg.
+    ratio
+        Largest ratio of length to width.
+    pitch
+        Horizontal size (mm) of a voxel.
+    cell
+        Extents (mm) of one cell, see `amprep.supports.legs.cell.measure_cell`.
+    """
+    path = _path(room, leg)
+    if path is None or (path[0][0] > 0 and path[0][1:] != path[1][1:]):
+        return []
+    for along_y, along_x in _QUADRANTS:
+        columns = _columns(room, leg, path, (along_y, along_x), ratio, pitch, cell)
+        if columns:
+            return columns
+    return []
+
+
+def _path(room: Room, leg: RoutedLeg) -> list[Square] | None:
+    """Return squares from the lower to the upper end of a leg, one in each section, each connected to the next."""
+    for start in room.squares[leg.sections[-1]]:
+        path = [start]
+        for section in leg.sections[-2::-1]:
+            plane, y, x = path[-1]
+            below = ((plane - 1, y + dy, x + dx) for dy, dx in DIRECTIONS)
+            after = next((each for each in below if room.section.get(each) == section), None)
+            if after is None:
+                break
+            path.append(after)
+        if len(path) == len(leg.sections):
+            return path[::-1]
+    return None
+
+
+def _columns(
+    room: Room,
+    leg: RoutedLeg,
+    path: list[Square],
+    quadrant: tuple[int, int],
+    ratio: float,
+    pitch: float,
+    cell: Floats,
+) -> list[Strut]:
+    """Return the columns in one quadrant beside a leg, none if voxels are not free or the width does not suffice."""
+    part, columns = room.part[path[-1]], []
+    own = [list(room.squares[section]) for section in leg.sections]
+    own_squares = {square for squares in own for square in squares}
+    for shift in range(1, LARGEST_WIDTH):
+        begin = _lowest_enough(leg, path, ratio)
+        if begin < PLANES_TO_TOUCH or begin == len(path) - 1:
+            return []
+        for step in ((quadrant[0], 0), (0, quadrant[1])):
+            before = _shifted(path[begin + 1], step, shift - 1)
+            foot = _shifted(path[0], step, shift if path[0][0] == 0 else shift - 1)
+            column = Strut((before, *(_shifted(path[k], step, shift) for k in range(begin, 0, -1)), foot))
+            if set(column.squares[1:-1]) <= own_squares:
+                continue
+            is_in_use = any(each in room.section for each in column.squares[1:-1])
+            if is_in_use or not room.is_open(column.squares, part):
+                return []
+            columns.append(column)
+            for k in range(begin + 1):
+                own[k].append(column.squares[1 + begin - k])
+        widths = tuple(_width(squares, pitch, cell) for squares in own)
+        leg = replace(leg, widths=widths)
+        if leg.ratio() <= ratio:
+            return columns
+    return []
+
+
+def _lowest_enough(leg: RoutedLeg, path: list[Square], ratio: float) -> int:
+    """Return the lowest position down to which the leg is wide enough, and to which the path leads straight down.
+
+    The last position is returned if there is none.
+    """
+    last = len(leg.lengths)
+    lowest = last - 1
+    while lowest > PLANES_TO_TOUCH and leg.ratio(lowest - 1, last) <= ratio:
+        lowest -= 1
+    while lowest < last and path[lowest][1:] != path[lowest + 1][1:]:
+        lowest += 1
+    return lowest
+
+
+def _shifted(square: Square, step: tuple[int, int], count: int) -> Square:
+    return square[0], square[1] + count * step[0], square[2] + count * step[1]
+
+
+def _width(squares: list[Square], pitch: float, cell: Floats) -> float:
+    """Return the least width (mm) of the hull of squares of one plane."""
+    along = np.array(squares)[:, :0:-1] @ directions().T
+    return float((np.ptp(along, axis=0) * pitch + cell).min())

@@ -1,0 +1,171 @@
+"""Long legs are braced, get a column beside them, or become thicker: judged on solids by slices of manifold3d."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from manifold3d import Manifold, OpType
+from tests.shared.examples import examples
+from tests.shared.legs import sliced_legs
+
+from amprep.model import Grid, SupportEdges, Voxel
+from amprep.model.supports.edges import DIRECTIONS
+from amprep.supports.legs.cell import square_cell
+from amprep.supports.legs.room import OpenVoxels
+from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
+
+RULES = LegRules(10.0, square_cell(1.0))
+
+
+def column(y, x, top, part=0, bottom=0):
+    return [[plane, y, x, 0, 1, 1, part] for plane in range(bottom + 1, top + 1)]
+
+
+def empty_grid(*closed, shape=(60, 15, 30)):
+    voxels = np.full(shape, Voxel.FREE, np.uint8)
+    for block in closed:
+        voxels[block] = Voxel.CLOSED
+    return Grid(np.zeros(3), 1.0, 1.0, shape), voxels
+
+
+def shorten(grid, voxels, edges, held, rules=RULES, opened=None):
+    return shorten_legs(
+        grid, edges, np.array(held, np.int32), rules, opened or (lambda _: OpenVoxels(voxels))
+    )
+
+
+def prisms(edges):
+    """The union of the sheared prisms of edges on a grid of 1 mm."""
+    solids = []
+    for (plane, y, x), direction in zip(edges.upper.tolist(), edges.direction.tolist(), strict=True):
+        dy, dx = DIRECTIONS[direction]
+        square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+        corners = [(x + a, y + b, plane) for a, b in square]
+        corners += [(x + dx + a, y + dy + b, plane - 1) for a, b in square]
+        solids.append(Manifold.hull_points(np.array(corners, float)))
+    return Manifold.batch_boolean(solids, OpType.Add)
+
+
+def worst_ratio(edges, held):
+    """The largest ratio of a leg in two slices of each layer of the grid."""
+    tops = [((x, y, plane - 0.75), (x + 1, y + 1, plane)) for plane, y, x in held]
+    heights = np.arange(0.25, int(edges.plane.max()), 0.5)
+    return max(sliced_legs(prisms(edges), heights, contacts=tops), default=0.0)
+
+
+def together(edges, legs):
+    return SupportEdges.concatenate([edges, legs.edges]).merged()
+
+
+def test_two_columns_brace_each_other_by_few_struts():
+    edges = SupportEdges.from_rows(column(7, 3, 30) + column(7, 8, 30))
+    grid, voxels = empty_grid()
+    held = [(30, 7, 3), (30, 7, 8)]
+    assert worst_ratio(edges, held) > 25
+    legs = shorten(grid, voxels, edges, held)
+    assert (legs.divided > 0, legs.thickened, legs.left) == (True, 0, ())
+    assert worst_ratio(together(edges, legs), held) <= 10
+    assert len(legs.edges) <= 0.6 * len(edges)
+
+
+def test_a_lone_leg_gets_a_column_beside_it_that_stands_on_the_plate():
+    edges = SupportEdges.from_rows(column(7, 7, 17))
+    grid, voxels = empty_grid()
+    legs = shorten(grid, voxels, edges, [(17, 7, 7)])
+    assert legs.left == ()
+    assert legs.edges.plane.min() == 1
+    assert worst_ratio(together(edges, legs), [(17, 7, 7)]) <= 10
+    assert len(legs.edges) <= 12
+
+
+def test_a_lone_leg_in_a_narrow_well_becomes_thicker_towards_the_plate():
+    well = np.ones((15, 30), np.bool_)
+    well[7:9, 7:9] = False
+    grid, voxels = empty_grid((slice(None), *np.nonzero(well)))
+    edges = SupportEdges.from_rows(column(7, 7, 19))
+    legs = shorten(grid, voxels, edges, [(19, 7, 7)])
+    assert legs.thickened == 1
+    assert legs.left == ()
+    whole = together(edges, legs)
+    squares = [len(np.unique(whole.lower[whole.lower[:, 0] == plane], axis=0)) for plane in (0, 8, 12)]
+    assert squares == [3, 3, 1], "an L of three squares is two squares wide"
+    assert worst_ratio(whole, [(19, 7, 7)]) <= 10
+
+
+def test_what_cannot_be_mended_is_left_with_its_place_and_said_in_words():
+    grid, voxels = empty_grid((slice(None), [6, 8, 7, 7], [7, 7, 6, 8]))
+    edges = SupportEdges.from_rows(column(7, 7, 24))
+    legs = shorten(grid, voxels, edges, [(24, 7, 7)])
+    assert len(legs.edges) == 0
+    (left,) = legs.left
+    assert left.ratio == pytest.approx(24.0, abs=1.5)
+    assert left.position_mm == pytest.approx((7.5, 7.5, 12.0), abs=1)
+    (words,) = words_of(legs, 10.0)
+    assert "1 leg still longer than 10 widths" in words
+    assert "at 8, 8, 12 mm" in words
+
+
+def test_short_legs_and_walls_beside_each_other_stay_as_they_are():
+    grid, voxels = empty_grid()
+    short = SupportEdges.from_rows(column(7, 3, 9) + column(7, 20, 9))
+    assert len(shorten(grid, voxels, short, [(9, 7, 3), (9, 7, 20)]).edges) == 0
+    rows = [row for y in range(3, 7) for x in range(3, 7) for row in column(y, x, 36)]
+    block = SupportEdges.from_rows(rows)
+    legs = shorten(grid, voxels, block, [(36, 3, 3)])
+    assert len(legs.edges) == 0
+    assert words_of(legs, 10.0) == ()
+
+
+def test_struts_keep_to_the_open_voxels_of_their_part_and_out_of_other_supports():
+    edges = SupportEdges.from_rows(column(7, 3, 30) + column(7, 8, 30) + column(7, 5, 40, part=1))
+    grid, voxels = empty_grid()
+    opened = np.zeros((60, 3, 12), np.bool_)
+    opened[:, :, :8] = True
+
+    def territory(part):
+        return OpenVoxels(voxels, (6, 2), opened) if part == 0 else OpenVoxels(voxels)
+
+    legs = shorten(grid, voxels, edges, [(30, 7, 3), (30, 7, 8), (40, 7, 5)], opened=territory)
+    own = legs.edges.part == 0
+    used = legs.edges[own].voxels
+    assert own.any()
+    assert ((used[:, 1] >= 6) & (used[:, 1] < 9) & (used[:, 2] >= 2) & (used[:, 2] < 10)).all()
+    whole = together(edges, legs)
+    of = [{tuple(each) for each in whole[whole.part == part].voxels.tolist()} for part in (0, 1)]
+    assert not of[0] & of[1]
+
+
+FIELD = st.lists(
+    st.tuples(st.integers(1, 6), st.integers(1, 12), st.integers(4, 45)),
+    min_size=1,
+    max_size=9,
+    unique_by=lambda c: c[:2],
+)
+BLOCKED = st.lists(st.tuples(st.integers(0, 12), st.integers(0, 24), st.integers(0, 50)), max_size=40)
+
+
+@given(FIELD, BLOCKED)
+@examples(15)
+def test_random_fields_of_columns_have_no_long_leg_but_those_that_are_listed(field, blocked):
+    grid, voxels = empty_grid()
+    for y, x, k in blocked:
+        voxels[k : k + 4, y : y + 2, x : x + 2] = Voxel.CLOSED
+    columns = [(2 * y, 2 * x, top) for y, x, top in field if (voxels[:top, 2 * y, 2 * x] == Voxel.FREE).all()]
+    assume(columns)
+    edges = SupportEdges.from_rows([row for y, x, top in columns for row in column(y, x, top)])
+    held = [(top, y, x) for y, x, top in columns]
+    legs = shorten(grid, voxels, edges, held)
+    assert legs.left or worst_ratio(together(edges, legs), held) <= 10
+    assert (voxels[tuple(legs.edges.voxels.T)] == Voxel.FREE).all()
+    again = shorten(grid, voxels, edges, held)
+    np.testing.assert_array_equal(legs.edges.upper, again.edges.upper)
+
+
+def test_columns_in_open_space_can_always_be_mended():
+    grid, voxels = empty_grid()
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        spots = rng.permutation(6 * 13)[:5]
+        columns = [(2 * int(s // 13) + 1, 2 * int(s % 13) + 2, int(rng.integers(12, 50))) for s in spots]
+        edges = SupportEdges.from_rows([row for y, x, top in columns for row in column(y, x, top)])
+        assert shorten(grid, voxels, edges, [(top, y, x) for y, x, top in columns]).left == ()
