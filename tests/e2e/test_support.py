@@ -142,7 +142,7 @@ def test_a_job_blocks_part_of_a_face_by_a_mesh(amprep, tmp_path):
     outcome = amprep("run", tmp_path / "job.toml", "-o", tmp_path / "out", "--json")
     assert outcome.code == 0
     (region,) = outcome.json["builds"][0]["supports"]["overhangs"]
-    assert (region["name"], region["kind"], region["supported"]) == ("overhang 1 of slab", "face", "fully")
+    assert (region["name"], region["kind"], region["supported"]) == ("overhang 1 of slab", "flat", "fully")
     assert region["area_mm2"] == pytest.approx(400, rel=0.03)
     build = read_build(tmp_path / "out" / "job.build-1.3mf")
     part_lo, _ = build.parts[0].mesh.bounds

@@ -143,8 +143,9 @@ def _triage(findings: Sequence[Finding]) -> list[tuple[str, str]]:
         return []
     groups = grouped(findings)
     urgent = [each for group in groups for each in group.findings if each.triage == MUST_FIX]
-    must_fix = [f"must fix: {_in_build(each)}{finding_words(each)}" for each in urgent]
-    checks = [f"worth a check: {_group_words(each)}" for each in groups if each.triage == CHECK]
+    several = any(each.build > 1 for each in findings)
+    must_fix = [f"must fix: {_in_build(each, several)}{finding_words(each)}" for each in urgent]
+    checks = [f"worth a check: {_group_words(each, several)}" for each in groups if each.triage == CHECK]
     return [
         (counts_in_words(counts), "red" if urgent else "yellow" if checks else "green"),
         *((line, "red") for line in _listed(must_fix, "in the report", MOST_FINDINGS)),
@@ -152,14 +153,14 @@ def _triage(findings: Sequence[Finding]) -> list[tuple[str, str]]:
     ]
 
 
-def _group_words(group: FindingGroup) -> str:
+def _group_words(group: FindingGroup, several: bool) -> str:
     """Return a group in one line; what was found if it is a single finding."""
     (first, *more) = group.findings
-    return f"{group.part}: {group.words}" if more else f"{_in_build(first)}{finding_words(first)}"
+    return f"{group.part}: {group.words}" if more else f"{_in_build(first, several)}{finding_words(first)}"
 
 
-def _in_build(finding: Finding) -> str:
-    return f"build {finding.build}: " if finding.build else ""
+def _in_build(finding: Finding, several: bool) -> str:
+    return f"build {finding.build}: " if several and finding.build else ""
 
 
 def _stages(stages: tuple[StageTime, ...]) -> str:

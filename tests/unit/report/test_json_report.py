@@ -139,7 +139,7 @@ def test_the_summary_shows_figures_issues_durations_and_files(record):
         assert words in text
     for words in (
         "crane (copy 2): too large",
-        "must fix: build 1: overhang 1 of plate-2: enclosed, at (2.6, 3.5, 4.5) mm",
+        "must fix: overhang 1 of plate-2: enclosed, at (2.6, 3.5, 4.5) mm",
         "read 0.2",
         "job.build-1.3mf",
     ):

@@ -5,6 +5,7 @@ from html import escape
 
 from amprep.geometry.overhangs.regions import NOT_FACES
 from amprep.model.counting import counted
+from amprep.model.supports import REASONS
 from amprep.report.page.cells import Cell, table
 from amprep.report.record import OverhangRecord, RunRecord
 from amprep.report.triage.classes import CHECK, MUST_FIX, SELF_SUPPORTING, SUPPORTED, TRIAGES, Triage
@@ -71,7 +72,7 @@ def finding_sections(record: RunRecord) -> str:
 def _section(triage: Triage, count: int, groups: Sequence[FindingGroup], most: int, several: bool) -> str:
     urgent = triage in (MUST_FIX, CHECK)
     opened = urgent and count <= MOST_OPEN
-    body = f"<p>{_EXPLAINED[triage]}</p>\n" + "".join(
+    body = f"<p>{_EXPLAINED[triage]}</p>\n{_reasons(groups)}" + "".join(
         _group(each, most, several, opened) for each in groups[:MOST_GROUPS]
     )
     if len(groups) > MOST_GROUPS:
@@ -84,6 +85,23 @@ def _section(triage: Triage, count: int, groups: Sequence[FindingGroup], most: i
         f'<section class="triage {name}" id="{name}"><details><summary><h2>{title}</h2></summary>\n'
         f"{body}</details></section>\n"
     )
+
+
+def _reasons(groups: Sequence[FindingGroup]) -> str:
+    """Return the explanation of each reason for which regions have no support."""
+    found = {
+        reason
+        for group in groups
+        for each in group.findings
+        if each.overhang is not None
+        for reason in each.overhang.reasons
+    }
+    items = "".join(
+        f"<li><b>{escape(reason)}</b>: {escape(words.replace('`', ''))}</li>"
+        for reason, words in REASONS.items()
+        if reason in found
+    )
+    return f'<ul class="reasons">{items}</ul>\n' if items else ""
 
 
 def _group(group: FindingGroup, most: int, several: bool, opened: bool) -> str:

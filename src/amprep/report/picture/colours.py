@@ -1,6 +1,7 @@
 """Choose one colour for each part, the same in the picture and in the 3D view."""
 
 import re
+from colorsys import rgb_to_hsv
 
 from amprep.model import Build
 from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
@@ -20,8 +21,8 @@ VOLUME = "#d98b2b"
 def part_colours(build: Build) -> list[str]:
     """Return ``#rrggbb`` for each placed part: its own colour if it has one, else one of the palette.
 
-    Copies of a part have the same colour. The palette is also used if all parts have the same colour, which would
-    not distinguish them.
+    Copies of a part have the same colour. A colour like that of a mark is replaced by one of the palette. The palette
+    is also used if all parts have the same colour, which would not distinguish them.
     """
     names = list(dict.fromkeys(placed.part.name for placed in build.parts))
     given = [_own(placed.part.appearance.colour) for placed in build.parts]
@@ -39,8 +40,15 @@ def rgb(colour: str) -> tuple[float, float, float]:
     return (value >> 16) / 255, (value >> 8 & 255) / 255, (value & 255) / 255
 
 
+def is_like_a_mark(colour: str) -> bool:
+    """Tell whether ``#rrggbb`` is a strong red or orange, on which marks would not be seen."""
+    hue, saturation, value = rgb_to_hsv(*rgb(colour))
+    return (hue > 0.93 or hue < 0.12) and saturation > 0.6 and value > 0.6
+
+
 def _own(colour: str | None) -> str | None:
-    """Return ``#RRGGBB[AA]`` as ``#rrggbb``; None for anything else."""
-    return (
-        colour[:7].lower() if colour and re.fullmatch(r"#[0-9a-fA-F]{6}([0-9a-fA-F]{2})?", colour) else None
-    )
+    """Return ``#RRGGBB[AA]`` as ``#rrggbb``; None for anything else, and for colours like those of marks."""
+    if not colour or not re.fullmatch(r"#[0-9a-fA-F]{6}([0-9a-fA-F]{2})?", colour):
+        return None
+    own = colour[:7].lower()
+    return None if is_like_a_mark(own) else own

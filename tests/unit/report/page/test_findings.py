@@ -1,6 +1,7 @@
 """The page groups findings, most urgent first, stays small for large builds, and is readable without its script."""
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from tests.shared.examples import examples
 from tests.shared.findings import overhang, run_of, run_of_overhangs
 
+from amprep.model.supports import REASONS
 from amprep.report.page.findings import MOST_GROUPS, MOST_ROWS, ROWS_EACH, chips, finding_sections
 from amprep.report.page.html import html_text
 from amprep.report.triage.classes import TRIAGES
@@ -100,6 +102,17 @@ def test_the_whole_page_of_a_large_build_is_small_and_marks_are_limited():
     regions = [overhang(f"overhang {k}", "must fix", part=f"part {k % 100}") for k in range(10_000)]
     small, large = (len(html_text(run_of(some))) for some in (regions[:1], regions))
     assert large - small < 2_500_000
+
+
+def test_the_reasons_of_a_section_are_explained_once_and_no_others():
+    def with_reasons(name, *reasons):
+        return replace(overhang(name, "must fix"), reasons=reasons)
+
+    regions = [with_reasons("a", "enclosed", "capacity"), with_reasons("b", "enclosed")]
+    text = Parsed(finding_sections(run_of(regions))).text
+    assert text.count(f"enclosed: {REASONS['enclosed']}") == 1
+    assert "capacity: " in text
+    assert "no free voxel below" not in text
 
 
 def test_columns_without_figures_are_left_out():

@@ -10,7 +10,7 @@ from amprep.kernels.picture.rasterise import DepthBuffer, draw
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, SupportBody, Unsupported
 from amprep.report.picture import build_picture, draw_mesh, write_picture
 from amprep.report.picture.camera import box_corners, fitted, view_axes
-from amprep.report.picture.colours import MARK_COLOURS, PALETTE, part_colours, rgb
+from amprep.report.picture.colours import MARK_COLOURS, PALETTE, is_like_a_mark, part_colours, rgb
 from amprep.report.picture.marks import balls
 from amprep.report.picture.scene import seen_through
 from amprep.report.record import BuildRecord
@@ -124,9 +124,10 @@ def test_own_colours_are_used_unless_all_parts_have_the_same():
             ),
         )
 
-    assert part_colours(coloured("#FF0000FF", "#00ff0080")) == ["#ff0000", "#00ff00"]
-    assert part_colours(coloured("#FF0000FF", "#FF0000FF")) == list(PALETTE[:2])
-    assert part_colours(coloured("#FF0000FF", '"><script>')) == ["#ff0000", PALETTE[1]]
+    assert part_colours(coloured("#0000FFFF", "#00ff0080")) == ["#0000ff", "#00ff00"]
+    assert part_colours(coloured("#0000FFFF", "#0000FFFF")) == list(PALETTE[:2])
+    assert part_colours(coloured("#0000FFFF", '"><script>')) == ["#0000ff", PALETTE[1]]
+    assert part_colours(coloured("#FF0000FF", "#F58518")) == list(PALETTE[:2])
 
 
 def test_unsupported_regions_are_red_and_visible_through_parts():
@@ -166,7 +167,9 @@ def test_what_must_be_fixed_is_red_what_is_worth_a_check_orange_and_the_rest_has
 
 def test_no_part_has_a_colour_like_a_mark():
     for colour in PALETTE:
+        assert not is_like_a_mark(colour)
         for mark in MARK_COLOURS.values():
+            assert is_like_a_mark(mark)
             assert np.abs(np.subtract(rgb(colour), rgb(mark))).max() > 0.3, colour
 
 
