@@ -46,7 +46,7 @@ SECTIONS = {
 }
 BY_OTHER_KEYS = {
     *("stacking", "enabled", "strut_angle_deg", "volume_params", "territory", "territory_margin_mm"),
-    *("clearance_mm", "lift_mm", "drift_ratio", "drift_mm"),
+    *("clearance_mm", "lift_mm", "blade_angle_deg", "drift_ratio", "drift_mm"),
     *(field.name for each in (OverhangRules, SectionRules) for field in fields(each)),
 }
 

@@ -49,7 +49,7 @@ def show(
         typer.echo(json.dumps(_record(printer), indent=2))
         return
     for key, value in _record(printer).items():
-        if key != "origin":
+        if key != "origin" and value is not None:
             typer.echo(f"{key} = {json.dumps(value, ensure_ascii=False)}")
 
 
@@ -63,6 +63,8 @@ def _record(printer: "Printer") -> dict[str, Any]:
         "shape": space.shape,
         "size_mm": size,
         "zones": zones,
+        "recoater_deg": printer.recoater_deg,
+        "gas_flow_deg": printer.gas_flow_deg,
         "source": printer.source,
         "origin": printer.origin,
     }

@@ -13,12 +13,14 @@ from amprep.measures.density import build_density, build_height, support_volume
 from amprep.measures.height_profile import measure_profile
 from amprep.measures.legs import measure_legs
 from amprep.measures.objective import objective_reached
+from amprep.measures.printing.blade_edges import measure_blade_edges
 from amprep.measures.printing.estimate import PrintingEstimate, PrintingSpeed, estimate_printing
 from amprep.measures.removal_order import measure_removal_order
 from amprep.model import Stop, Unsupported
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
+from amprep.pipeline.packing.turning import blade_rules
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import SupportedBuild, part_densities
 from amprep.report.record import (
@@ -48,6 +50,7 @@ def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord
         advice=supported.advice,
         removal=supported.removal,
         printing=_printing(supported, job),
+        blade_edges=() if (rules := blade_rules(job)) is None else measure_blade_edges(build, rules),
         removal_order=measure_removal_order(build, stop),
         profile=measure_profile(build),
         legs=measure_legs(build, min((layout.grid.step for layout in layouts), default=1.0)),

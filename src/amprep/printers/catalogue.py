@@ -13,12 +13,19 @@ from amprep.errors import JobError
 from amprep.model.build_volume import BuildVolume
 from amprep.profiles import Catalogue, Origin
 from amprep.typed import make
-from amprep.validation import read_table, require
+from amprep.validation import read_table, require, require_bounds
 
 Technology = Literal["metal-powder-bed", "polymer-powder-bed", "filament"]
 
 DEFAULT_PRINTER = "EOS M290"
 SHIPPED = Path(__file__).parent / "profiles"
+
+USUAL_DIRECTIONS: dict[Technology, tuple[float | None, float | None]] = {
+    "metal-powder-bed": (0.0, 90.0),
+    "polymer-powder-bed": (0.0, None),
+    "filament": (None, None),
+}
+"""Directions (degrees) of recoater and gas where a profile states none: along x, and across it."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +38,8 @@ class PrinterProfile:
         Size of the build volume: x, y, z of a box, or diameter and height of a cylinder.
     zones
         Forbidden zones, each x0, y0, z0, x1, y1, z1 in build coordinates.
+    recoater_deg, gas_flow_deg
+        Directions in which the recoater moves and the gas flows, in degrees from x to y; None for what is usual.
     source
         Source of the sizes, e.g. the manufacturer's data sheet.
     """
@@ -40,11 +49,14 @@ class PrinterProfile:
     technology: Technology = "metal-powder-bed"
     shape: Literal["box", "cylinder"] = "box"
     zones: tuple[tuple[float, float, float, float, float, float], ...] = ()
+    recoater_deg: float | None = None
+    gas_flow_deg: float | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
         require(min(self.size_mm) > 0, "size_mm must be above 0", list(self.size_mm))
         require(max(self.size_mm) <= 10_000, "size_mm must be at most 10000", list(self.size_mm))
+        require_bounds(self, "recoater_deg", "gas_flow_deg", at_least=0, at_most=360)
         expected = "diameter and height" if self.shape == "cylinder" else "x, y and z"
         count = 2 if self.shape == "cylinder" else 3
         require(
@@ -63,6 +75,8 @@ class Printer:
 
     Attributes
     ----------
+    recoater_deg, gas_flow_deg
+        Directions in which the recoater moves and the gas flows, in degrees from x to y; None without one.
     source
         Source of its sizes.
     origin
@@ -72,6 +86,8 @@ class Printer:
     name: str
     technology: Technology
     space: BuildVolume
+    recoater_deg: float | None = None
+    gas_flow_deg: float | None = None
     source: str = ""
     origin: Origin = "built-in"
 
@@ -82,8 +98,9 @@ class Printer:
         Loose powder of polymers holds parts above one another. Parts of metal are cut off the plate, which takes some
         height, and they are farther from each other because of spatter and of supports beside them.
         """
-        distances = {"clearance_mm": 5.0, "lift_mm": 3.0} if self.technology == "metal-powder-bed" else {}
-        return {"clearance_mm": 2.0, "lift_mm": 0.0, "stacking": self.stacks, **distances}
+        metal = {"clearance_mm": 5.0, "lift_mm": 3.0, "blade_angle_deg": 5.0}
+        others = {"clearance_mm": 2.0, "lift_mm": 0.0, "blade_angle_deg": 0.0}
+        return {"stacking": self.stacks, **(metal if self.technology == "metal-powder-bed" else others)}
 
     @property
     def stacks(self) -> bool:
@@ -163,7 +180,12 @@ def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: 
     size = profile.size_mm if len(profile.size_mm) == 3 else (profile.size_mm[0], *profile.size_mm)
     zones = np.array(profile.zones).reshape(-1, 6)
     space = BuildVolume(np.array(size), profile.shape, zones[:, :3], zones[:, 3:])
-    return Printer(profile.name or name, profile.technology, space, profile.source, origin)
+    usual = USUAL_DIRECTIONS[profile.technology]
+    recoater, gas = (
+        usual[0] if profile.recoater_deg is None else profile.recoater_deg,
+        usual[1] if profile.gas_flow_deg is None else profile.gas_flow_deg,
+    )
+    return Printer(profile.name or name, profile.technology, space, recoater, gas, profile.source, origin)
 
 
 def _catalogue(folder: Path | None, env: Mapping[str, str]) -> Catalogue[Printer]:

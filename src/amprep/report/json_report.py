@@ -7,8 +7,9 @@ from typing import Any
 from amprep.measures.density import part_volume
 from amprep.measures.height_profile import HeightProfile
 from amprep.measures.legs import BodyLegs
+from amprep.measures.printing.blade_edges import BladeEdge
 from amprep.measures.removability import Removal, totals
-from amprep.model import PlacedPart, Unsupported
+from amprep.model import Build, PlacedPart, Unsupported
 from amprep.model.packing import PackingStep
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
@@ -95,6 +96,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "density": entry.density,
         "height_mm": entry.height_mm,
         "printing": printing_json(entry.printing),
+        "blade_edges": [_blade_edge(edge, build) for edge in entry.blade_edges],
         "parts": [_part(placed, fill) for placed in build.parts],
         "supports": _supports(entry),
         "height_profile": _profile(entry.profile),
@@ -103,6 +105,10 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "pairs_judged": asdict(entry.pairs),
         "violations": violations_json(entry.verification or ()),
     }
+
+
+def _blade_edge(edge: BladeEdge, build: Build) -> dict[str, Any]:
+    return {**asdict(edge), "part": build.parts[edge.part].label}
 
 
 def _profile(profile: HeightProfile) -> dict[str, Any]:

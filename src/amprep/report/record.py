@@ -11,6 +11,7 @@ from amprep.geometry.overhangs.regions import NOT_FACES, OverhangRegion
 from amprep.geometry.removal.order import RemovalOrder
 from amprep.measures.height_profile import NO_PROFILE, HeightProfile
 from amprep.measures.legs import BodyLegs
+from amprep.measures.printing.blade_edges import BladeEdge
 from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.measures.removability import Removal
 from amprep.model import BoundingVolume, Build, Unsupported
@@ -157,6 +158,8 @@ class BuildRecord:
         Area of the cross-section of the parts at each height.
     printing
         Mass, use of the plate, layers and hours, for the head of the report.
+    blade_edges
+        Of each part that has some, the longest edge that the recoater blade meets at once.
     """
 
     build: Build
@@ -180,6 +183,7 @@ class BuildRecord:
     profile: HeightProfile = NO_PROFILE
     pairs: PairCounts = field(default_factory=PairCounts)
     printing: PrintingEstimate = field(default_factory=PrintingEstimate)
+    blade_edges: tuple[BladeEdge, ...] = ()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

@@ -22,6 +22,11 @@ class PackingSettings:
     volumes
         Name of a volume maker, or names of several, each of which works on the result of the one before; None leaves
         the choice to the packer.
+    blade_angle_deg
+        Least angle between long straight edges of a part and the recoater blade, if the part may be turned; 0 allows
+        every angle.
+    blade_edge_mm
+        Length from which edges count for it.
     effort
         How long the packer works; `params` take precedence over the budgets of the level.
     params
@@ -38,6 +43,8 @@ class PackingSettings:
     stacking: bool = False
     interlocking: Interlocking = "allow"
     even_layers: bool = False
+    blade_angle_deg: float = 0.0
+    blade_edge_mm: float = 10.0
     effort: Effort = "normal"
     time_limit_s: float | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
@@ -45,7 +52,8 @@ class PackingSettings:
 
     def __post_init__(self) -> None:
         require_bounds(self, "clearance_mm", "lift_mm", at_least=0)
-        require_bounds(self, "time_limit_s", above=0)
+        require_bounds(self, "blade_angle_deg", at_least=0, at_most=45)
+        require_bounds(self, "time_limit_s", "blade_edge_mm", above=0)
         require(
             self.stacking or not self.even_layers,
             "even_layers = true must come with stacking = true",

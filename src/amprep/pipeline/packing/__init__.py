@@ -26,6 +26,7 @@ from amprep.model.summary import Summarised
 from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.packing.parts import bound_for_parts
+from amprep.pipeline.packing.turning import turned_off_blade
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
@@ -104,11 +105,12 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
     AmprepError
         When nothing fits the build volume.
     """
-    resolved, job, parts = loaded.resolved, loaded.resolved.job, loaded.parts
+    resolved, job = loaded.resolved, loaded.resolved.job
+    accepts = resolved.packer.listed.offer.accepts
     with clock.stage("bound") as progress:
-        volumes = bound_parts(loaded, stop, progress)
+        loaded, turned = turned_off_blade(loaded, accepts)
+        volumes, parts = bound_parts(loaded, stop, progress), loaded.parts
     with clock.stage("pack") as progress:
-        accepts = resolved.packer.listed.offer.accepts
         problem = packing_problem(parts, volumes, job.printer.space, job.packing, accepts)
         resolved.host.refuse_mismatch(resolved.packer.listed, problem)
         packing: Packing = resolved.packer.call(
@@ -123,7 +125,7 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
         PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
-    return PackedParts(problem, packing, tuple(builds), notes, known)
+    return PackedParts(problem, packing, tuple(builds), (*turned, *notes), known)
 
 
 def packing_stop(stop: Stop, job: Job) -> Stop:

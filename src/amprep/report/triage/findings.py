@@ -31,7 +31,8 @@ class Finding:
     part
         Name of the part in the job, the same for all copies.
     kind
-        Kind of a region, such as ``ledge``; or ``violation``, ``powder pocket``, ``locked parts``, ``unplaced copy``.
+        Kind of a region, such as ``ledge``; or ``violation``, ``powder pocket``, ``locked parts``, ``unplaced copy``,
+        ``blade edge``.
     name
         What it is about, for example ``overhang 7 of bracket-2``.
     words
@@ -86,6 +87,7 @@ def build_findings(entry: BuildRecord, number: int = 1, *, locks_are_faults: boo
         *_regions(entry, number, names),
         *_pockets(entry, number),
         *_locks(entry, number, MUST_FIX if locks_are_faults else CHECK),
+        *_blade_edges(entry, number),
     ]
 
 
@@ -177,3 +179,25 @@ def _locks(entry: BuildRecord, number: int, triage: Triage) -> Iterator[Finding]
     for group, words in zip(groups, hindrances_of(entry), strict=False):
         names = [entry.build.parts[part].part.name for part in group]
         yield Finding(triage, number, names[0], "locked parts", ", ".join(dict.fromkeys(names)), words)
+
+
+def _blade_edges(entry: BuildRecord, number: int) -> Iterator[Finding]:
+    """Yield for each part the longest edge that the recoater blade meets at once."""
+    for edge in entry.blade_edges:
+        placed = entry.build.parts[edge.part]
+        others = f"; {edge.faces} faces have such edges" if edge.faces > 1 else ""
+        words = (
+            f"a straight edge of {edge.length_mm:.1f} mm is {edge.off_deg:.1f} degrees off the recoater blade, in "
+            f"layers from {edge.low_mm:.1f} to {edge.high_mm:.1f} mm{others}"
+        )
+        points = np.array([edge.position_mm])
+        yield Finding(
+            CHECK,
+            number,
+            placed.part.name,
+            "blade edge",
+            placed.label,
+            words,
+            edge.position_mm,
+            points=points,
+        )

@@ -137,7 +137,8 @@ def test_wrong_names_and_parameters_are_refused_before_any_work(host, sets, mess
 
 def test_a_part_is_placed_in_the_orientation_that_its_volume_maker_chose(host):
     allowed = Orientations("about-z")
-    given = loaded(host, [bar(orientations=allowed, quantity=3)], "packing.volumes=straight")
+    sets = ("packing.volumes=straight", "packing.blade_angle_deg=0")
+    given = loaded(host, [bar(orientations=allowed, quantity=3)], *sets)
     packed = pack_parts(given, Clock(ProgressWatcher()), Stop())
     for placed in packed.builds[0].parts:
         assert motion_fault(placed.matrix[:3, :3], allowed) == ""
