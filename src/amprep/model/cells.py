@@ -45,6 +45,8 @@ class CellRequest:
         Whether the target can read walls without thickness.
     beams
         True: struts become beams if the cell supports them; False: no beams; None: the parameters of the cell decide.
+    least_wall
+        Least thickness of supports, mm, for the default sizes of cells; sizes that the user chooses take precedence.
 
     Raises
     ------
@@ -60,6 +62,7 @@ class CellRequest:
     overlap: float = 0.1
     allow_surface: bool = True
     beams: bool | None = None
+    least_wall: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "role", frozen(self.role, np.uint8))

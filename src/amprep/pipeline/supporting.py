@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from amprep.geometry.connectors.least_width import LeastSection
 from amprep.job import Job
 from amprep.materials.catalogue import densities_of
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
@@ -236,6 +237,7 @@ def _bodies(
             beams=job.beams,
             gap=job.supports.gap_mm,
             space=job.printer.space,
+            least=least_section(job),
         ),
         earlier=earlier,
         later=planned.layouts[number + 1 :],
@@ -263,6 +265,13 @@ def _unsupported(
         parts, taken.chosen(excepted, ()), bodies, settings[0], lambda _, points: [EXCEPTED] * len(points)
     )
     return (*found, *(replace(each, minor=True) for each in left))
+
+
+def least_section(job: Job) -> LeastSection | None:
+    """Return the least section of connectors of a job, None where it has none."""
+    rules = job.supports
+    has_least = rules.least_wall_mm > 0.0 or rules.least_contact_mm2 > 0.0
+    return LeastSection(rules.least_wall_mm, rules.least_contact_mm2) if has_least else None
 
 
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:

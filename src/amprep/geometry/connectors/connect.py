@@ -72,7 +72,7 @@ def connect(
     covered = np.diff(obstructing.of_column) > 0
     free = supported.chosen(~covered[supported.owner[:, 0]])
     meshes = []
-    surface_of = _label_surfaces(free)
+    surface_of = label_surfaces(free)
     for label in range(int(surface_of.max(initial=-1)) + 1):
         connected = free.chosen(surface_of == label)
         meshes.append(split_nonmanifold_edges(*prisms_below(connected, base[connected.owner[:, 0]], overlap)))
@@ -89,18 +89,19 @@ def connect(
     return meshes
 
 
-def _label_surfaces(patches: Patches) -> Int64s:
-    """Number the connected surfaces of patches that share whole edges, ``(n,)``."""
+def label_surfaces(patches: Patches, kind: Int64s | None = None) -> Int64s:
+    """Number the connected surfaces of patches that share whole edges, and have one kind ``(n,)``, if given."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     count = len(patches.owner)
     corner, _ = label_equal_rows(round_as_stored(patches.points).view(np.int64))
+    of_patch = np.zeros(count, np.int64) if kind is None else kind
     patch = np.repeat(np.arange(count), np.diff(patches.start))
     here = np.arange(len(corner))
     after = np.where(here + 1 == patches.start[1:][patch], patches.start[:-1][patch], here + 1)
     ends = np.sort(np.column_stack([corner, corner[after]]), axis=1)
-    edge, edges = label_equal_rows(np.column_stack([ends, np.zeros(len(ends), np.int64)]))
+    edge, edges = label_equal_rows(np.column_stack([ends, of_patch[patch]]))
     graph = coo_array((np.ones(len(edge), np.int8), (patch, count + edge)), shape=(count + edges,) * 2)
     label = connected_components(graph, directed=False)[1][:count]
     return np.asarray(np.unique(label, return_inverse=True)[1], np.int64)

@@ -29,7 +29,9 @@ REASONS = {
     NO_FREE_VOXEL_BELOW: "the voxels directly below contain material of a part or are outside the grid",
     ENCLOSED: "there is a free voxel below, but no path from there to the build plate",
     CAPACITY: "there is a path, but `edge_capacity` or `node_capacity` is used up on it",
-    CONNECTOR_BLOCKED: "a support stands below, but other material of the part is between",
+    CONNECTOR_BLOCKED: (
+        "a support stands below, but other material of the part is between, or contact would be too small"
+    ),
     OUT_OF_TIME: "there is a path, but the routing ended before it was found",
     EXCEPTED: "a `[[rule]]` entry of the job with `support = false` takes the region; it is no fault",
     TERRITORY: "there is a path, but it leaves the territory of the part or drifts too far",

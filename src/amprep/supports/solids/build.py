@@ -8,6 +8,7 @@ from amprep.arrays import CONTACT_TOLERANCE
 from amprep.cells.answers import Emit, checked
 from amprep.cells.instances import CellInstances, classify
 from amprep.errors import JobError
+from amprep.geometry.connectors.least_width import LeastSection
 from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop, SupportBody
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
@@ -17,6 +18,7 @@ from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of,
 from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
 from amprep.supports.solids.keep_out import PartObstacles, WallClearance
+from amprep.supports.solids.least_section import without_narrow
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.territory import territory_section
 from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
@@ -45,6 +47,8 @@ class SolidRules:
         XY distance (mm) between supports and walls of parts; walls without thickness only stay in free voxels.
     space
         Build volume, which clips beams and bases; without it struts become meshes.
+    least
+        Least section of connectors; None for none.
     """
 
     connector: ConnectorRules = field(default_factory=ConnectorRules)
@@ -54,6 +58,12 @@ class SolidRules:
     beams: bool | None = None
     gap: float = 0.0
     space: BuildVolume | None = None
+    least: LeastSection | None = None
+
+
+def least_wall_of(rules: SolidRules) -> float:
+    """Return the least wall, mm; 0 where there is none."""
+    return 0.0 if rules.least is None else rules.least.width
 
 
 def build_supports(
@@ -102,6 +112,11 @@ def build_supports(
         return ()
     progress(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
+    surfaces, posts = find_column_surfaces(layout), None
+    if rules.least is not None:
+        layout, surfaces, posts = without_narrow(layout, surfaces, rules.least)
+        if not layout.connected.any():
+            return ()
 
     def ask(*, extend: bool, beams: bool | None) -> CellInstances:
         request = make_request(
@@ -111,6 +126,7 @@ def build_supports(
             allow_surface=rules.allow_surface,
             extend=extend,
             beams=beams,
+            least_wall=least_wall_of(rules),
         )
         return classify(request, checked(request, emit(request)))
 
@@ -120,10 +136,8 @@ def build_supports(
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
     obstacles = PartObstacles(parts, clearance, earlier)
-    surfaces = find_column_surfaces(layout)
-    builder = _SupportBuilder(
-        SupportContext(layout, surfaces, obstacles, rules.connector, depth), parts, instances, as_beams, rules
-    )
+    context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts)
+    builder = _SupportBuilder(context, parts, instances, as_beams, rules)
     solids, names = [], []
     for group, held in enumerate(layout.group_parts):
         if stop.cancelled.is_set():
@@ -201,7 +215,9 @@ class _SupportBuilder(NamedTuple):
         if solid is None or diameter == 0.0:
             return solid
         held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
-        return cut_drain_holes(solid, held, diameter, self.context.foot_boxes(group))
+        return cut_drain_holes(
+            solid, held, diameter, self.context.foot_boxes(group), least_wall_of(self.rules)
+        )
 
     def bodies(
         self, group: int, name: str, solid: "Manifold | None", base: "Manifold | None"

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from amprep.arrays import Floats
 from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.powder.drain_holes import find_drain_holes
@@ -15,12 +17,19 @@ if TYPE_CHECKING:
 _ROUNDS = 4
 """Largest number of rounds; a drain hole may end in another pocket, which the next round opens."""
 
+_BESIDE = 0.01
+"""Distance (mm) of a piece from a hole that cut it off."""
+
 _CRUMB = 1e-3
 """Largest volume (mm3) of support that may lose its connection to the plate by a drain hole."""
 
 
 def cut_drain_holes(
-    solid: "Manifold", parts: Sequence[Mesh], diameter: float, boxes: tuple[Floats, Floats]
+    solid: "Manifold",
+    parts: Sequence[Mesh],
+    diameter: float,
+    boxes: tuple[Floats, Floats],
+    least_wall: float = 0.0,
 ) -> "Manifold":
     """Return a support with drain holes for a ball, wherever short straight holes exist.
 
@@ -34,6 +43,8 @@ def cut_drain_holes(
         Diameter (mm) of the ball that must be able to escape.
     boxes
         Least and greatest corners ``(k, 3)`` of the boxes in which feet on parts end.
+    least_wall
+        Least thickness of supports, mm; what is left thinner beside a hole is cut away with it.
     """
     from manifold3d import Manifold, OpType
 
@@ -45,9 +56,32 @@ def cut_drain_holes(
             break
         cuts = [Manifold.cube((hi - lo).tolist()).translate(lo.tolist()) for lo, hi in holes]
         opened = evaluated(solid - Manifold.batch_boolean(cuts, OpType.Add))
+        if least_wall > 0.0 and (rests := _thin_rests(opened, holes, least_wall)):
+            opened = evaluated(opened - Manifold.batch_boolean(rests, OpType.Add))
         rest = Mesh(*drop_floating(*arrays_of(opened), boxes))
         # as much must stand as stood before, apart from the holes
         if rest.signed_volume - grounded.signed_volume < opened.volume() - solid.volume() - _CRUMB:
             break
         solid, grounded = opened, rest
     return solid
+
+
+def _thin_rests(
+    opened: "Manifold", holes: Sequence[tuple[Floats, Floats]], least_wall: float
+) -> list["Manifold"]:
+    """Return solids around the pieces that holes leave beside them and in which no disc of the least wall fits.
+
+    Pieces are looked for in the horizontal section through the middle of each hole.
+    """
+    found = []
+    for middle in sorted({round(float(lo[2] + hi[2]) / 2.0, 4) for lo, hi in holes}):
+        own = [each for each in holes if each[0][2] < middle < each[1][2]]
+        low, high = (np.array([each[end] for each in own]) for end in (0, 1))
+        for piece in opened.slice(middle).decompose():
+            left, front, right, back = piece.bounds()
+            beside = (low[:, :2] <= (right + _BESIDE, back + _BESIDE)).all(axis=1)
+            beside &= (high[:, :2] >= (left - _BESIDE, front - _BESIDE)).all(axis=1)
+            if beside.any() and piece.offset(_BESIDE - least_wall / 2.0).is_empty():
+                height = high[beside, 2].max() - (bottom := float(low[beside, 2].min()))
+                found.append(piece.offset(_BESIDE).extrude(height).translate((0.0, 0.0, bottom)))
+    return found

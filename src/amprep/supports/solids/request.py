@@ -14,6 +14,7 @@ def make_request(
     allow_surface: bool,
     extend: bool,
     beams: bool | None = None,
+    least_wall: float = 0.0,
 ) -> CellRequest:
     """Return a request for every edge of the layout, and with `extend` for the voxels above red squares.
 
@@ -32,6 +33,7 @@ def make_request(
         overlap=overlap,
         allow_surface=allow_surface,
         beams=beams,
+        least_wall=least_wall,
     )
 
 

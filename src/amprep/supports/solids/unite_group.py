@@ -8,6 +8,7 @@ from amprep.arrays import Bools, Floats, Ints
 from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
+from amprep.geometry.connectors.least_width import Posts
 from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
 from amprep.geometry.merging.union import FILE_STEP, finish, union
 from amprep.geometry.meshes.manifold import as_manifold
@@ -18,6 +19,7 @@ from amprep.supports.layout import SupportLayout
 from amprep.supports.solids.connectors import ColumnSurfaces, foot_boxes, make_feet
 from amprep.supports.solids.extended_cells import extended_cells, on_red
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
+from amprep.supports.solids.least_section import post_solids
 from amprep.supports.solids.territory import clip_to_territory
 from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
 
@@ -43,6 +45,8 @@ class SupportContext(NamedTuple):
         Shape of the connectors.
     overlap
         Depth (mm) to which supports enter the parts that they hold, at least `CONTACT_TOLERANCE`.
+    posts
+        Posts below surfaces that are too narrow for connectors of their own outline; None for none.
     """
 
     layout: SupportLayout
@@ -50,6 +54,7 @@ class SupportContext(NamedTuple):
     obstacles: PartObstacles
     connector: ConnectorRules
     overlap: float
+    posts: Posts | None = None
 
     def foot_boxes(self, group: int) -> tuple[Floats, Floats]:
         """Return the boxes in which the feet of a group on parts end."""
@@ -92,6 +97,7 @@ def solid_of(
         cells_above = extended_cells(instances, mine & instances.connector, seat, layout)
         cells = [as_manifold(*mesh) for mesh in cells_above]
         connectors = [union(connectors) ^ union(cells)] if connectors and cells else []
+    connectors += _posts(context, red, np.maximum(seat / 2, sink))
     notch = union([])
     if connectors:
         shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink)
@@ -135,6 +141,14 @@ def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> lis
         supported, surfaces.surface, base=base, top=top, overlap=context.overlap, own=surfaces.own
     )
     return [as_manifold(*mesh).simplify(FILE_STEP) for mesh in meshes]  # removes nine tenths of the triangles
+
+
+def _posts(context: SupportContext, red: Bools, depth: Floats) -> list["Manifold"]:
+    """Return the posts in the columns `red` ``(m,)``; they begin `depth` ``(m,)`` mm below their squares."""
+    posts, surfaces = context.posts, context.surfaces
+    if posts is None or not red[posts.column].any():
+        return []
+    return [post_solids(posts, surfaces, red, surfaces.columns.lo[:, 2] - depth, context.overlap)]
 
 
 def _subtract_and_shape(

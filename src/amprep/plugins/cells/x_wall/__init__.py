@@ -21,14 +21,17 @@ triangles that are folded onto each other.
 _DEFAULT_SIZE = 0.3
 """Default thickness of walls and width of gaps (mm): two fine scan tracks, and wide enough for powder."""
 
+_THICKEST = 0.375
+"""Largest default thickness of walls, as a fraction of the pitch."""
+
 _HOLE = 0.2
 """Diameter (mm) of the smallest hole through which powder escapes."""
 
 _NEAR_ARMS, _NEAR_CENTRE = 0.7, 0.1
 """Distance of a window to the centre of the cell: in widths of an arm, but at least this fraction of the pitch."""
 
-_POST, _SMALLEST_WINDOW = 0.15, 0.3
-"""Remaining wall beside a window, and the smallest window width (mm)."""
+_SMALLEST_WINDOW = 0.3
+"""Smallest width of a window (mm); beside it, the wall is as wide as it is thick."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +41,8 @@ class XWallParams:
     Attributes
     ----------
     wall_mm
-        Thickness of the walls; 0 makes sheets, which only some targets can read. The default is 0.3 mm, but at most a
-        quarter of the pitch.
+        Thickness of the walls; 0 makes sheets, which only some targets can read. The default is 0.3 mm, or the least
+        wall of the job if that is more, but at most 3/8 of the pitch.
     join_every
         Neighbours meet in every n-th layer from the plate; 1 joins them in all layers.
     gap_mm
@@ -83,7 +86,7 @@ def emit_x_walls(request: CellRequest, *, params: XWallParams, stop: Stop, progr
     shorter, and slopes connect both lengths. A layer between two joined layers has a waist. Unless all layers are
     joined, arms have windows where cells cross, through which powder escapes from between their walls.
     """
-    lengths = _lengths(request.grid.pitch, params)
+    lengths = _lengths(request.grid.pitch, params, request.least_wall)
     if params.wall_mm == 0.0 and not request.allow_surface:
         raise JobError(
             "x-wall: wall_mm = 0 makes walls without thickness, which this target cannot read; set wall_mm above 0"
@@ -153,11 +156,11 @@ def _is_joined(plane: np.ndarray, every: int) -> np.ndarray:
     return np.asarray((plane % every == every - 1) | ((plane % every == 0) & (plane > 0)))
 
 
-def _lengths(pitch: float, params: XWallParams) -> _Lengths:
+def _lengths(pitch: float, params: XWallParams, least_wall: float = 0.0) -> _Lengths:
     """Convert millimetres to fractions of the pitch."""
-    default = min(_DEFAULT_SIZE, pitch / 4.0)
+    default = min(max(_DEFAULT_SIZE, least_wall), _THICKEST * pitch)
     wall = default if params.wall_mm is None else params.wall_mm
-    gap = default if params.gap_mm is None else params.gap_mm
+    gap = min(_DEFAULT_SIZE, pitch / 4.0) if params.gap_mm is None else params.gap_mm
     lengths = _Lengths(wall / np.sqrt(2.0) / pitch, 0.5 * gap / pitch)
     if lengths.arm + lengths.inset >= 0.45:
         needed = (wall * np.sqrt(2.0) + gap) / 0.9
@@ -165,11 +168,11 @@ def _lengths(pitch: float, params: XWallParams) -> _Lengths:
             f"x-wall: walls of {wall:g} mm with gaps of {gap:g} mm need a pitch of more than {needed:.3g} mm, "
             f"the grid has {pitch:.4g}; reduce wall_mm or gap_mm or increase pitch_mm"
         )
-    return replace(lengths, window=_window(pitch, lengths)) if params.join_every > 1 else lengths
+    return replace(lengths, window=_window(pitch, wall, lengths)) if params.join_every > 1 else lengths
 
 
-def _window(pitch: float, lengths: _Lengths) -> ArmWindow | None:
+def _window(pitch: float, wall: float, lengths: _Lengths) -> ArmWindow | None:
     """Return the windows of the arms, or None if there is no room for a window through which powder escapes."""
-    window = ArmWindow(max(_NEAR_ARMS * lengths.arm, _NEAR_CENTRE), _POST / np.sqrt(2.0) / pitch)
+    window = ArmWindow(max(_NEAR_ARMS * lengths.arm, _NEAR_CENTRE), wall / np.sqrt(2.0) / pitch)
     width = 0.5 - lengths.inset - lengths.arm / 2 - window.post - window.near
     return window if width * np.sqrt(2.0) * pitch >= _SMALLEST_WINDOW else None
