@@ -31,8 +31,8 @@ class Finding:
     part
         Name of the part in the job, the same for all copies.
     kind
-        Kind of a region, such as ``ledge``; or ``violation``, ``powder pocket``, ``locked parts``, ``unplaced copy``,
-        ``blade edge``.
+        Kind of a region, such as ``ledge``; or ``violation``, ``long leg``, ``powder pocket``, ``locked parts``,
+        ``unplaced copy``, ``blade edge``.
     name
         What it is about, for example ``overhang 7 of bracket-2``.
     words
@@ -85,6 +85,7 @@ def build_findings(entry: BuildRecord, number: int = 1, *, locks_are_faults: boo
     return [
         *_violations(entry, number, names),
         *_regions(entry, number, names),
+        *_legs(entry, number),
         *_pockets(entry, number),
         *_locks(entry, number, MUST_FIX if locks_are_faults else CHECK),
         *_blade_edges(entry, number),
@@ -153,6 +154,18 @@ def _marks(patches: Sequence[Unsupported], triage: Triage) -> tuple[Floats, floa
     """Return the points of the patches that put a region into its class, and their radius."""
     chosen = [each for each in patches if triage != MUST_FIX or not each.minor] or list(patches)
     return np.concatenate([each.points for each in chosen]), max(each.radius for each in chosen)
+
+
+def _legs(entry: BuildRecord, number: int) -> Iterator[Finding]:
+    """Yield the legs that are longer for their width than the rules allow."""
+    limit = entry.build.settings.rules.leg_ratio
+    for body, legs in zip(entry.build.supports, entry.legs, strict=False):
+        part = entry.build.parts[body.parts[0]].part.name if body.parts else body.name
+        for leg in legs.too_long:
+            size = f"{leg.length_mm:.1f} mm long, {leg.width_mm:.2f} mm wide"
+            words = f"{size}: {leg.ratio:.1f} times as long as wide, limit {limit:g}"
+            points = np.array([leg.position_mm])
+            yield Finding(CHECK, number, part, "long leg", body.name, words, leg.position_mm, points=points)
 
 
 def _pockets(entry: BuildRecord, number: int) -> Iterator[Finding]:

@@ -106,8 +106,13 @@ class Viewer {
   view(name) {
     const [x, y] = this.build.space.size;
     const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(x, y, Math.max(this.build.height, this.model.alone ? 0 : 10)));
-    const ball = box.getBoundingSphere(new THREE.Sphere());
-    this.stage.look(ball.center, 0.87 * ball.radius, VIEWS[name].clone());
+    const filled = new THREE.Box3();
+    for (const mesh of [...this.shown.parts, ...this.shown.supports]) filled.expandByObject(mesh);
+    const size = filled.getSize(new THREE.Vector3());
+    // parts that cover only a small part of the plate fill the view, as they do in pictures
+    const small = !filled.isEmpty() && Math.max(size.x, size.y) < 0.45 * Math.max(x, y);
+    const ball = (small ? filled : box).getBoundingSphere(new THREE.Sphere());
+    this.stage.look(ball.center, (small ? 1.15 : 0.87) * ball.radius, VIEWS[name].clone());
   }
 
   select(found) {

@@ -9,6 +9,7 @@ from tests.shared.findings import overhang, run_of_overhangs
 from amprep.checks.violation import Violation
 from amprep.geometry.powder.pockets import Pocket
 from amprep.geometry.removal.order import RemovalOrder
+from amprep.measures.legs import BodyLegs, MeasuredLeg
 from amprep.measures.removability import Removal
 from amprep.report.record import BuildRecord, RunRecord, UnplacedRecord
 from amprep.report.triage.findings import build_findings, findings_of
@@ -63,6 +64,16 @@ def test_violations_must_be_fixed_and_powder_is_worth_a_check(entry):
     assert ("must fix", "violation", "bar") in kinds
     assert kinds.count(("worth a check", "powder pocket", "plate & <tray>")) == 1
     assert kinds.count(("worth a check", "powder pocket", "bar")) == 1
+
+
+def test_legs_that_are_too_long_are_worth_a_check(entry):
+    leg = MeasuredLeg(12.0, 24.0, 2.0, (1.0, 2.0, 3.0))
+    rules = replace(entry.build.settings.rules, leg_ratio=10.0)
+    build = replace(entry.build, settings=replace(entry.build.settings, rules=rules), unsupported=())
+    legs = (BodyLegs(4, leg, (leg,)), BodyLegs(1, None, ()))
+    (found,) = build_findings(replace(entry, build=build, legs=legs))
+    assert (found.triage, found.kind, found.position_mm) == ("worth a check", "long leg", (1.0, 2.0, 3.0))
+    assert found.words == "24.0 mm long, 2.00 mm wide: 12.0 times as long as wide, limit 10"
 
 
 def test_a_violation_has_the_place_that_its_message_states(entry):
