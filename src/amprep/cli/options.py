@@ -95,6 +95,10 @@ class BuildOptions(JobOptions):
         str | None,
         job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
     ] = None
+    material: Annotated[
+        str | None,
+        job_option("--material", help="Material by name or profile file; see 'amprep materials list'."),
+    ] = None
     router: Annotated[str | None, job_option("--router", help="Support router by name.")] = None
     connector: Annotated[
         str | None,
@@ -133,6 +137,7 @@ class BuildOptions(JobOptions):
         """The settings of the job that options change, by dotted keys; None where an option is not given."""
         return {
             "printer": self.printer,
+            "material": self.material,
             "supports.strategy": self.router,
             **super().changes,
             "seed": self.seed,

@@ -1,5 +1,6 @@
 """The built-in profiles are complete and plausible, and the page about materials shows the same figures."""
 
+import json
 import re
 from pathlib import Path
 
@@ -72,8 +73,6 @@ def test_a_job_takes_the_limits_and_the_layer_height_of_its_alloy_unless_it_stat
 
 
 def test_the_command_lists_and_shows_materials(tmp_path):
-    import json
-
     run = CliRunner().invoke
     listing = run(app, [], env={"COLUMNS": "200"})
     assert listing.exit_code == 0
@@ -88,3 +87,20 @@ def test_the_command_lists_and_shows_materials(tmp_path):
         original.density_g_cm3,
         original.support_defaults,
     )
+
+
+def test_the_option_names_the_material_of_a_run(tmp_path):
+    from tests.shared.builds import box_mesh
+
+    from amprep.cli.app import app as every
+    from amprep.stl import write_stl
+
+    write_stl(box_mesh((0, 0, 0), (10, 10, 10)), tmp_path / "cube.stl")
+    own = tmp_path / "own.toml"
+    own.write_text('based_on = "316L"\ndensity_g_cm3 = 8', encoding="utf-8")
+    sets = ["--dry-run", "--json", "-q", "--set", "supports.enabled=false", "--set", "packing.lift_mm=0"]
+    for material, mass in (("AlSi10Mg", 2.67), (str(own), 8.0)):
+        done = CliRunner().invoke(every, ["run", str(tmp_path / "cube.stl"), "--material", material, *sets])
+        assert done.exit_code == 0, done.output
+        (build,) = json.loads(done.stdout)["builds"]
+        assert build["printing"]["parts_g"] == pytest.approx(mass)

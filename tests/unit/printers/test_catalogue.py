@@ -91,6 +91,7 @@ def test_a_profile_is_found_by_path_and_zones_are_kept(places):
         ("size = [1, 2, 3]\nsize_mm = [1, 2, 3]", r"unknown key 'size' \(did you mean 'size_mm'\?\)"),
         (PROFILE + 'technology = "metal"', "technology: expected one of 'metal-powder-bed'"),
         (PROFILE + "zones = [[5, 0, 0, 1, 1, 1]]", "zones must be x0, y0, z0, x1, y1, z1"),
+        (PROFILE + "recoater_deg = 361", "recoater_deg must be .*, got 361"),
         ("size_mm = [", "not a TOML file"),
     ],
 )
@@ -103,6 +104,28 @@ def test_an_invalid_profile_is_refused_by_name_and_gives_a_warning_in_the_list(p
     assert str(path) in str(caught.value)
     assert len(list_printers(folder, env)[1]) == 1
     assert find_printer("prusa mk4", folder, env).name == "Prusa MK4"
+
+
+@pytest.mark.parametrize(
+    ("keys", "directions"),
+    [
+        ("", (0, 90)),
+        ("recoater_deg = 90\ngas_flow_deg = 180", (90, 180)),
+        ("recoater_deg = 270", (270, 90)),
+        ('technology = "polymer-powder-bed"', (0, None)),
+        ('technology = "filament"', (None, None)),
+    ],
+)
+def test_recoater_and_gas_flow_have_the_usual_directions_unless_the_profile_states_them(
+    places, keys, directions
+):
+    folder, env = places
+    (folder / "printers" / "mine.toml").write_text(PROFILE + keys)
+    printer = find_printer("mine", folder, env)
+    assert (printer.recoater_deg, printer.gas_flow_deg) == directions
+    assert printer.packing_defaults["blade_angle_deg"] == (
+        5.0 if printer.technology == "metal-powder-bed" else 0.0
+    )
 
 
 def test_an_unknown_printer_is_refused_with_the_nearest(places):
