@@ -162,18 +162,22 @@ def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
             own = layout.red.part == part
             squares += np.bincount(layout.red.region[own], minlength=len(found.regions))
             connected += np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
+        own_angle = placed.part.overrides.overhang_angle_deg
+        angle = build.settings.rules.overhang_angle_deg if own_angle is None else own_angle
         for number, region in enumerate(found.regions):
             left = unsupported.get(region_name(number, placed.label), ())
-            entry = _overhang(region_name(number, placed.label), placed.label, region, left)
+            entry = _overhang(region_name(number, placed.label), placed.label, region, left, angle)
             records.append(
                 replace(entry, demand_squares=int(squares[number]), connected_squares=int(connected[number]))
             )
     return tuple(records)
 
 
-def _overhang(name: str, part: str, region: OverhangRegion, left: Sequence[Unsupported]) -> OverhangRecord:
+def _overhang(
+    name: str, part: str, region: OverhangRegion, left: Sequence[Unsupported], angle_deg: float
+) -> OverhangRecord:
     """Return the record of a region without its demand squares; `left` is what of it has no support."""
-    found = triage_of(region, left)
+    found = triage_of(region, left, angle_deg)
     x, y, z = region.centre.tolist()
     return OverhangRecord(
         name=name,

@@ -42,6 +42,8 @@ class FindingGroup:
         regions = [each.overhang.region for each in self.findings if each.overhang is not None]
         if len(regions) == len(self.findings):
             return regions_in_words(regions)
+        if len(self.findings) == 1 and self.kind != "violation":
+            return self.findings[0].words
         count = counted(
             len(self.findings), SINGULARS.get(self.kind, self.kind), PLURALS.get(self.kind, f"{self.kind}s")
         )

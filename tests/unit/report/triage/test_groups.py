@@ -76,6 +76,7 @@ def test_tips_and_other_findings_have_no_size():
     assert tip.words == "1 tip"
     lost = Finding("must fix", 0, "crane", "unplaced copy", "crane (copy 1)", "too large")
     assert [group.words for group in grouped([lost, lost])] == ["2 unplaced copies"]
+    assert [group.words for group in grouped([lost])] == ["too large"]
 
 
 def test_violations_name_the_promises_that_are_broken():
