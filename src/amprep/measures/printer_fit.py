@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Floats
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.geometry.boxes.build_space import Space, find_feasible_position
 from amprep.geometry.boxes.footprint import convex_outline, enclosing_radius, flush_angles
 from amprep.model.build_volume import BuildVolume
@@ -87,6 +87,17 @@ def poses_of(points: Floats, orientations: Orientations) -> PartPoses:
     else:
         allowed = _about_z(hull, tried)
     return PartPoses(_poses(hull, np.eye(3)), allowed, _about_z(hull, tried))
+
+
+def which_fit(points: Floats, rotations: Floats, space: BuildVolume, clearance: float, lift: float) -> Bools:
+    """Tell which rotations ``(k, 3, 3)`` of a part with vertices `points` fit the build volume, ``(k,)``.
+
+    Clearance and lift are those of `PartPoses.fit`.
+    """
+    hull = _hull_points(points)
+    return np.array(
+        [_fits(_poses(hull, rotation), space, clearance, lift) for rotation in rotations], np.bool_
+    )
 
 
 def _fits(poses: Poses, space: BuildVolume, clearance: float, lift: float) -> bool:

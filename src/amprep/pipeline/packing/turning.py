@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from amprep.hookspecs import PackerAccepts
 from amprep.job import Job
+from amprep.measures.printer_fit import which_fit
 from amprep.measures.printing.blade_edges import BladeRules
 from amprep.measures.printing.blade_turns import turns_off_blade
 from amprep.model import Part
@@ -22,7 +23,7 @@ def blade_rules(job: Job) -> BladeRules | None:
 def turned_off_blade(loaded: LoadedParts, accepts: PackerAccepts) -> tuple[LoadedParts, tuple[str, ...]]:
     """Return the parts with the orientations to pack them in, and a note if some are other than the job's.
 
-    Parts with fixed positions stay as they are.
+    Parts with fixed positions stay as they are, and so do those that would not fit the printer then.
 
     Parameters
     ----------
@@ -34,7 +35,7 @@ def turned_off_blade(loaded: LoadedParts, accepts: PackerAccepts) -> tuple[Loade
     rules = blade_rules(loaded.resolved.job)
     if rules is None:
         return loaded, ()
-    parts = tuple(_turned(part, rules, accepts) for part in loaded.parts)
+    parts = tuple(_turned(part, rules, accepts, loaded.resolved.job) for part in loaded.parts)
     turned = sum(new is not old for new, old in zip(parts, loaded.parts, strict=True))
     note = (
         f"{counted(turned, 'part')} may be turned about z and got only turns in which no straight edge longer than "
@@ -43,8 +44,15 @@ def turned_off_blade(loaded: LoadedParts, accepts: PackerAccepts) -> tuple[Loade
     return replace(loaded, parts=parts), (note,) if turned else ()
 
 
-def _turned(part: Part, rules: BladeRules, accepts: PackerAccepts) -> Part:
+def _turned(part: Part, rules: BladeRules, accepts: PackerAccepts, job: Job) -> Part:
+    """Return the part with the turns that keep its edges off the blade, of those that fit the printer."""
     if part.fixed is not None:
         return part
-    orientations = turns_off_blade(part, rules, accepts.orientations)
-    return part if orientations is part.orientations else replace(part, orientations=orientations)
+    turns = turns_off_blade(part, rules, accepts.orientations)
+    if turns is part.orientations:
+        return part
+    packing = job.packing
+    fits = which_fit(
+        part.mesh.vertices, turns.matrices, job.printer.space, packing.clearance_mm, packing.lift_mm
+    )
+    return replace(part, orientations=replace(turns, matrices=turns.matrices[fits])) if fits.any() else part

@@ -76,6 +76,14 @@ def test_without_a_metal_blade_or_with_the_setting_off_nothing_is_turned(run, pr
     assert record.builds[0].blade_edges == ()
 
 
+@pytest.mark.parametrize(("width", "turned"), [(21.0, False), (31.0, True)])
+def test_a_part_is_turned_only_if_it_fits_the_printer_then(run, width, turned):
+    narrow = {"name": "narrow", "size_mm": [width, 80.0, 50.0]}
+    record = run("about-z", printer=narrow, clearance_mm=0.4)
+    assert record.faults == 0
+    assert len(record.builds[0].blade_edges) == (0 if turned else 2)
+
+
 def test_the_blade_follows_the_direction_of_the_printers_recoater(run):
     across = {"name": "across", "size_mm": [100.0, 100.0, 50.0], "recoater_deg": 90.0}
     (first, _) = run("none", printer=across).builds[0].blade_edges
