@@ -83,10 +83,11 @@ def _volumes(part: Part, entry: PartSettings) -> tuple[str, ...] | None:
 
 
 def _with_settings(part: Part, entry: PartSettings) -> Part:
-    angle = entry.overhang_angle_deg
+    angle, margin = entry.overhang_angle_deg, entry.territory_margin_mm
     overrides = replace(
         part.overrides,
         overhang_angle_deg=part.overrides.overhang_angle_deg if angle is None else angle,
+        territory_margin_mm=part.overrides.territory_margin_mm if margin is None else margin,
         supports=part.overrides.supports if entry.supports is None else entry.supports,
         volumes=_volumes(part, entry),
     )

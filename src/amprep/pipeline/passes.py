@@ -7,7 +7,8 @@ import numpy as np
 
 from amprep.arrays import Ints
 from amprep.model import PlacedPart
-from amprep.overhangs.of_part import PartOverhangs, overhangs_of
+from amprep.overhangs.known import KnownOverhangs
+from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.paint import paint_of, split_by_paint
 from amprep.overhangs.selection import measure_regions, select_regions
 from amprep.pipeline.resolve import ResolvedJob
@@ -56,16 +57,20 @@ class RegionPass(NamedTuple):
     resolved: ResolvedJob
 
 
-def take_regions(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> TakenRegions:
+def take_regions(
+    resolved: ResolvedJob, parts: Sequence[PlacedPart], known: KnownOverhangs | None = None
+) -> TakenRegions:
     """Find the overhangs of the parts, and for each region the first rule whose conditions it meets.
 
-    Faces that are painted in a colour that a rule names are regions of their own.
+    Faces that are painted in a colour that a rule names are regions of their own. Overhangs that are `known` are not
+    searched again.
     """
     job = resolved.job
+    known = known or KnownOverhangs(job.supports)
     colours = {rule.paint or rule.colour for rule in job.rules if rule.colour is not None}
     overhangs, rules = [], []
     for placed in parts:
-        own = overhangs_of(placed, job.supports)
+        own = known.of(placed)
         own = split_by_paint(placed, own if job.supports.has_limits else measure_regions(own), colours)
         paint = paint_of(placed, own, colours)
         overhangs.append(own)

@@ -162,7 +162,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     if not job.supports.enabled:
         return PlannedBuild(build)
     with clock.stage("route") as progress:
-        taken = take_regions(build.resolved, build.parts)
+        taken = take_regions(build.resolved, build.parts, build.overhangs)
         divided, excepted = passes_of(build.resolved, taken)
         planned: list[PlannedPass] = []
         for number, each in enumerate(divided):

@@ -10,6 +10,7 @@ from amprep.job.settings.bounds import require_quantity
 from amprep.model.packing import LARGEST_VALUE
 from amprep.model.part import Orientations
 from amprep.model.rotations import parse_rotations
+from amprep.model.supports.rules import LARGEST_LIMIT
 from amprep.validation import require, require_bounds
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
@@ -31,6 +32,7 @@ class PartSettings:
     fixed: tuple[Point, ...] = ()
     supports: bool | None = None
     overhang_angle_deg: float | None = None
+    territory_margin_mm: float | None = None
     blockers: tuple[str, ...] = ()
     enforcers: tuple[str, ...] = ()
 
@@ -42,6 +44,7 @@ class PartSettings:
         require_quantity(self.quantity)
         require_bounds(self, "value", at_least=0, at_most=LARGEST_VALUE)
         require_bounds(self, "overhang_angle_deg", at_least=0, at_most=89)
+        require_bounds(self, "territory_margin_mm", at_least=0, at_most=LARGEST_LIMIT)
         self._require_boxes()
         try:
             self.orientations  # noqa: B018 reading the property checks the rotations

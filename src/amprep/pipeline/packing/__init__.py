@@ -19,18 +19,21 @@ from amprep.model import (
     Part,
     PlacedPart,
     Placement,
+    Progress,
     Stop,
     TurnedVolume,
 )
 from amprep.model.summary import Summarised
+from amprep.overhangs.known import KnownOverhangs
 from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.packing.parts import bound_for_parts
+from amprep.pipeline.packing.placing import placed_part
+from amprep.pipeline.packing.reserve import find_reserves, is_as_good, room_notes, with_room
 from amprep.pipeline.packing.turning import turned_off_blade
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
-from amprep.threemf.transforms import round_as_stored
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,12 +48,15 @@ class PackedBuild(Summarised):
         Number of the build, from 1; it also seeds the random numbers of the support router.
     build_id
         Name of the build in its file, for example ``bracket.build-1``.
+    overhangs
+        Overhangs of parts that packing found; None where there was no packing.
     """
 
     resolved: ResolvedJob
     number: int
     build_id: str
     parts: tuple[PlacedPart, ...]
+    overhangs: KnownOverhangs | None = None
 
     def __str__(self) -> str:
         """Summary in one line."""
@@ -113,19 +119,36 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
     with clock.stage("pack") as progress:
         problem = packing_problem(parts, volumes, job.printer.space, job.packing, accepts)
         resolved.host.refuse_mismatch(resolved.packer.listed, problem)
-        packing: Packing = resolved.packer.call(
-            problem,
-            rng=np.random.default_rng(job.seed),
-            stop=packing_stop(stop, job),
-            progress=progress,
-        )
-        packing, notes = adjusted(problem, packing, parts, job.packing, stop)
+        packing, notes = _pack(resolved, problem, parts, stop, progress)
+        overhangs = KnownOverhangs(job.supports)
+        reserves = find_reserves(parts, problem, packing, job, overhangs, stop)
+        if reserves:
+            changed, wider = with_room(parts, problem, reserves)
+            again, adjustments = _pack(resolved, wider, parts, stop, progress)
+            kept = is_as_good(again, packing)
+            if kept:
+                parts, problem, packing, notes = changed, wider, again, adjustments
+            notes += room_notes(parts, reserves, kept=kept)
         known = bound_for_parts(parts, problem, packing)
     builds = (
-        PackedBuild(resolved, number, f"{job.name}.build-{number}", placed)
+        PackedBuild(resolved, number, f"{job.name}.build-{number}", placed, overhangs)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
     return PackedParts(problem, packing, tuple(builds), (*turned, *notes), known)
+
+
+def _pack(
+    resolved: ResolvedJob, problem: PackingProblem, parts: Sequence[Part], stop: Stop, progress: Progress
+) -> tuple[Packing, tuple[str, ...]]:
+    """Return the answer of the packer, adjusted as the job asks for, and notes on the adjustments."""
+    job = resolved.job
+    packing: Packing = resolved.packer.call(
+        problem,
+        rng=np.random.default_rng(job.seed),
+        stop=packing_stop(stop, job),
+        progress=progress,
+    )
+    return adjusted(problem, packing, parts, job.packing, stop)
 
 
 def packing_stop(stop: Stop, job: Job) -> Stop:
@@ -228,10 +251,7 @@ def placed_builds(
 
     def placed(placement: Placement) -> PlacedPart:
         item = problem.items[placement.item]
-        part, turn = parts[item.part], np.eye(4)
-        turn[:3, :3] = item.turn
-        matrix = round_as_stored(placement.matrix @ turn)
-        return PlacedPart(names_of[item.part, item.copy], part, matrix, part.orientations)
+        return placed_part(names_of[item.part, item.copy], parts[item.part], item, placement)
 
     return [
         tuple(placed(each) for each in sorted(build, key=lambda each: each.item)) for build in packing.builds
