@@ -71,17 +71,27 @@ def _thin_rests(
 ) -> list["Manifold"]:
     """Return solids around the pieces that holes leave beside them and in which no disc of the least wall fits.
 
-    Pieces are looked for in the horizontal section through the middle of each hole.
+    Pieces are looked for in horizontal sections, of which each hole has one.
     """
+    low, high = (np.array([each[end] for each in holes]) for end in (0, 1))
     found = []
-    for middle in sorted({round(float(lo[2] + hi[2]) / 2.0, 4) for lo, hi in holes}):
-        own = [each for each in holes if each[0][2] < middle < each[1][2]]
-        low, high = (np.array([each[end] for each in own]) for end in (0, 1))
-        for piece in opened.slice(middle).decompose():
+    for height in heights_through(low[:, 2], high[:, 2]):
+        cut = (low[:, 2] < height) & (high[:, 2] > height)
+        for piece in opened.slice(height).decompose():
             left, front, right, back = piece.bounds()
-            beside = (low[:, :2] <= (right + _BESIDE, back + _BESIDE)).all(axis=1)
+            beside = cut & (low[:, :2] <= (right + _BESIDE, back + _BESIDE)).all(axis=1)
             beside &= (high[:, :2] >= (left - _BESIDE, front - _BESIDE)).all(axis=1)
             if beside.any() and piece.offset(_BESIDE - least_wall / 2.0).is_empty():
-                height = high[beside, 2].max() - (bottom := float(low[beside, 2].min()))
-                found.append(piece.offset(_BESIDE).extrude(height).translate((0.0, 0.0, bottom)))
+                bottom, top = float(low[beside, 2].min()), float(high[beside, 2].max())
+                found.append(piece.offset(_BESIDE).extrude(top - bottom).translate((0.0, 0.0, bottom)))
     return found
+
+
+def heights_through(low: Floats, high: Floats) -> list[float]:
+    """Return few heights such that one is inside each interval from `low` to `high` ``(k,)`` mm."""
+    heights: list[float] = []
+    inner = 0.2 * (high - low)
+    for number in np.argsort(high - inner, kind="stable").tolist():
+        if not heights or heights[-1] < low[number] + inner[number]:
+            heights.append(float(high[number] - inner[number]))
+    return heights

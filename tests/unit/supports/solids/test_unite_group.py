@@ -6,7 +6,7 @@ from manifold3d import Manifold
 
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
-from amprep.supports.solids.drain_holes import cut_drain_holes
+from amprep.supports.solids.drain_holes import cut_drain_holes, heights_through
 from amprep.supports.solids.unite_group import stored_solid
 
 NO_FEET = np.empty((0, 3)), np.empty((0, 3))
@@ -36,3 +36,25 @@ def test_a_stored_solid_has_the_volume_of_the_union_and_can_be_read_again():
     again = as_manifold(stored.vertices, stored.triangles)
     assert again.status().name == "NoError"
     assert again.volume() == pytest.approx((ball + base).volume(), rel=1e-5)
+
+
+def test_what_a_drain_hole_leaves_thinner_than_the_least_wall_is_cut_away_with_it():
+    """A hollow box traps powder, so that a hole leads through its wall."""
+    hollow = box((6, 6, 6), (0, 0, 0)) - box((5, 5, 5), (0.5, 0.5, 0.5))
+    opened = cut_drain_holes(hollow, [], 0.4, NO_FEET, 0.3)
+    assert opened.volume() < hollow.volume()
+    assert all(
+        not piece.offset(-0.14).is_empty()
+        for height in np.arange(0.05, 6.0, 0.1)
+        for piece in opened.slice(height).decompose()
+    )
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_drain_hole_is_cut_by_one_of_the_chosen_heights(seed):
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(0.0, 10.0, 60)
+    high = low + rng.uniform(0.1, 2.0, 60)
+    heights = np.array(heights_through(low, high))
+    assert ((low[:, None] < heights) & (heights < high[:, None])).any(axis=1).all()
+    assert len(heights) < 60
