@@ -28,8 +28,12 @@ def part_colours(build: Build) -> list[str]:
     given = [_own(placed.part.appearance.colour) for placed in build.parts]
     if len(names) > 1 and len(set(given)) == 1:
         given = [None] * len(given)
+    owned = [rgb(own) for own in given if own]
+    free = [
+        colour for colour in PALETTE if not any(_are_close(rgb(colour), each) for each in owned)
+    ] or PALETTE
     return [
-        own or PALETTE[names.index(placed.part.name) % len(PALETTE)]
+        own or free[names.index(placed.part.name) % len(free)]
         for own, placed in zip(given, build.parts, strict=True)
     ]
 
@@ -44,6 +48,10 @@ def is_like_a_mark(colour: str) -> bool:
     """Tell whether ``#rrggbb`` is a strong red or orange, on which marks would not be seen."""
     hue, saturation, value = rgb_to_hsv(*rgb(colour))
     return (hue > 0.93 or hue < 0.12) and saturation > 0.6 and value > 0.6
+
+
+def _are_close(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    return max(abs(a - b) for a, b in zip(one, other, strict=True)) < 0.2
 
 
 def _own(colour: str | None) -> str | None:

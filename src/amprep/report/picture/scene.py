@@ -13,6 +13,8 @@ from amprep.report.triage.findings import Finding
 
 PLATE_KIND, PART_KIND, SUPPORT_KIND = 0, 1, 2
 """The kinds of `amprep.kernels.picture.shade`, repeated here because importing that module takes time."""
+SINGLE = 1.6
+"""Factor on the size of a mark that is a single sphere, which would be overlooked."""
 PLATE_COLOUR = "#ccd2da"
 SEEN_THROUGH = "#e8edf4"
 """Colour of supports behind parts."""
@@ -73,7 +75,7 @@ def finding_marks(findings: Iterable[Finding], min_radius: float) -> list[Colour
         own = [each for each in findings if each.triage == triage and len(each.points)]
         points = [thinned(each.points) for each in own]
         radii = [
-            np.full(len(some), mark_radius(each.radius, min_radius))
+            np.full(len(some), mark_radius(each.radius, min_radius) * (SINGLE if len(some) == 1 else 1.0))
             for some, each in zip(points, own, strict=True)
         ]
         if own:

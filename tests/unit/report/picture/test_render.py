@@ -127,6 +127,7 @@ def test_own_colours_are_used_unless_all_parts_have_the_same():
     assert part_colours(coloured("#0000FFFF", "#00ff0080")) == ["#0000ff", "#00ff00"]
     assert part_colours(coloured("#0000FFFF", "#0000FFFF")) == list(PALETTE[:2])
     assert part_colours(coloured("#0000FFFF", '"><script>')) == ["#0000ff", PALETTE[1]]
+    assert part_colours(coloured(PALETTE[1], "none")) == [PALETTE[1], PALETTE[2]], "no colour of another part"
     assert part_colours(coloured("#FF0000FF", "#F58518")) == list(PALETTE[:2])
 
 
