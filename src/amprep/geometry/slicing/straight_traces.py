@@ -1,5 +1,6 @@
 """Find long straight edges of the layers of a body: the lines in which layers cut its planar faces."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +45,12 @@ class Traces(NamedTuple):
     high: Floats
 
 
-def straight_traces(faces: PlanarFaces, least: float, rotation: Floats | None = None) -> Traces:
+def straight_traces(
+    faces: PlanarFaces,
+    least: float,
+    rotation: Floats | None = None,
+    chosen: Callable[[Floats], Bools] | None = None,
+) -> Traces:
     """Return the longest trace of each planar face that has one of at least the length `least` (mm).
 
     Parameters
@@ -55,20 +61,27 @@ def straight_traces(faces: PlanarFaces, least: float, rotation: Floats | None = 
         Least length, mm.
     rotation
         ``(3, 3)`` by which the body is turned before it is cut; None for none.
+    chosen
+        Tells which directions (degrees) of traces are of interest; None for all.
     """
     turn = np.eye(3) if rotation is None else rotation
     points, normal = faces.points @ turn.T, faces.normal @ turn.T
     wide = np.hypot(normal[:, 0], normal[:, 1])
     along = np.column_stack([-normal[:, 1], normal[:, 0]]) / np.where(wide > _LEVEL, wide, 1.0)[:, None]
+    angle = np.degrees(np.arctan2(along[:, 1], along[:, 0])) % 180.0
+    wanted = (wide > _LEVEL) & (_widths(points, faces, along) >= least)
+    if chosen is not None:
+        wanted &= chosen(angle)
+    order = np.argsort(faces.label, kind="stable")
+    ends = np.searchsorted(faces.label[order], np.arange(len(wide) + 1))
     found = []
-    for face in np.flatnonzero((wide > _LEVEL) & (_widths(points, faces, along) >= least)):
-        corners = points[faces.triangles[faces.label == face]]
+    for face in np.flatnonzero(wanted):
+        corners = points[faces.triangles[order[ends[face] : ends[face + 1]]]]
         place = corners[:, :, :2] @ along[face]
         length, height, middle = _longest(np.stack([place, corners[:, :, 2]], axis=2))
         if length >= least:
             x, y = _point(normal[face], along[face], corners[0, 0], middle, height)
-            angle = float(np.degrees(np.arctan2(along[face, 1], along[face, 0]))) % 180.0
-            found.append((angle, length, x, y, height, corners[:, :, 2].min(), corners[:, :, 2].max()))
+            found.append((angle[face], length, x, y, height, corners[:, :, 2].min(), corners[:, :, 2].max()))
     table = np.array(found, np.float64).reshape(-1, 7)
     return Traces(table[:, 0], table[:, 1], table[:, 2:5], table[:, 5], table[:, 6])
 

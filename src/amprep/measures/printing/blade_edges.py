@@ -10,6 +10,9 @@ from amprep.geometry.slicing.straight_traces import Traces, straight_traces
 from amprep.model import Build, Part
 from amprep.validation import require_bounds
 
+ANGLE_TOLERANCE = 1e-3
+"""Degrees; files round the matrices of placed parts."""
+
 
 @dataclass(frozen=True)
 class BladeRules:
@@ -37,6 +40,10 @@ class BladeRules:
         """Return the angles (degrees, 0 to 90) between the blade and edges of these directions in plan."""
         blade = self.recoater_deg + 90.0
         return np.abs((edges_deg - blade + 90.0) % 180.0 - 90.0)
+
+    def meets_blade(self, edges_deg: Floats) -> Bools:
+        """Tell which edges of these directions in plan (degrees) the blade meets at once."""
+        return np.asarray(self.off_blade(edges_deg) < self.angle_deg - ANGLE_TOLERANCE, np.bool_)
 
 
 @dataclass(frozen=True)
@@ -80,10 +87,9 @@ def measure_blade_edges(build: Build, rules: BladeRules) -> tuple[BladeEdge, ...
         if id(placed.part) not in known:
             known[id(placed.part)] = planar_faces_of(placed.part)
         faces = known[id(placed.part)]
-        traces = straight_traces(faces, rules.edge_mm, placed.matrix[:3, :3])
-        meets = rules.off_blade(traces.angle_deg) < rules.angle_deg - 1e-6
-        if meets.any():
-            found.append(_edge(number, traces, meets, rules, placed.matrix[:3, 3]))
+        traces = straight_traces(faces, rules.edge_mm, placed.matrix[:3, :3], rules.meets_blade)
+        if len(traces.length):
+            found.append(_edge(number, traces, rules, placed.matrix[:3, 3]))
     return tuple(found)
 
 
@@ -92,8 +98,8 @@ def planar_faces_of(part: Part) -> PlanarFaces:
     return find_planar_faces(part.mesh.vertices, part.mesh.triangles.astype(np.int64))
 
 
-def _edge(number: int, traces: Traces, meets: Bools, rules: BladeRules, shift: Floats) -> BladeEdge:
-    longest = int(np.where(meets, traces.length, 0.0).argmax())
+def _edge(number: int, traces: Traces, rules: BladeRules, shift: Floats) -> BladeEdge:
+    longest = int(traces.length.argmax())
     x, y, z = (traces.middle[longest] + shift).tolist()
     return BladeEdge(
         number,
@@ -102,5 +108,5 @@ def _edge(number: int, traces: Traces, meets: Bools, rules: BladeRules, shift: F
         (x, y, z),
         float(traces.low[longest] + shift[2]),
         float(traces.high[longest] + shift[2]),
-        int(meets.sum()),
+        len(traces.length),
     )

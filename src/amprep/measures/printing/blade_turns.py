@@ -15,8 +15,9 @@ from amprep.model.rotations import axis_rotations, quarter_turns, turns_about_z
 # if it brings none of them close to the direction of the blade. Where any angle is allowed, each quarter turn is
 # replaced by the turns nearest to it that do, 5 to 15 degrees away. A class without such a rotation stays as it is.
 
-TURNS_DEG = (0.0, 10.0, 7.5, 12.5, 5.0, 15.0)
-"""Angles by which a part that may be turned by any angle is turned from its quarter turns, in order of preference."""
+TURNS_DEG = (0.0, 6.0, 8.0, 10.0, 12.5, 15.0)
+"""Angles by which a part that may be turned by any angle is turned from its quarter turns, in order of preference: the
+smallest first, since the box around a part grows with the angle."""
 
 
 def turns_off_blade(part: Part, rules: BladeRules, orientations: frozenset[str]) -> Orientations:
@@ -65,8 +66,7 @@ def _are_off(members: Floats, edges: Floats, rules: BladeRules) -> Bools:
     """Tell which rotations keep all edges off the blade; `edges` are their directions after the first rotation."""
     relative = members @ members[0].T
     turns = np.degrees(np.arctan2(relative[:, 1, 0], relative[:, 0, 0]))
-    off = rules.off_blade(edges[None, :] + turns[:, None])
-    return np.asarray((off >= rules.angle_deg - 1e-6).all(axis=1))
+    return np.asarray(~rules.meets_blade(edges[None, :] + turns[:, None]).any(axis=1))
 
 
 def _turned(members: Floats, edges: Floats, rules: BladeRules) -> Floats:
