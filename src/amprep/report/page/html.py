@@ -18,7 +18,8 @@ VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">
 <div id="stage">
 <canvas id="canvas" tabindex="0" title="Drag to rotate, scroll to zoom, right-drag to pan, click to identify"></canvas>
-<div id="wait">Loading the geometry ...</div>
+<div id="wait">Loading the geometry ...
+<noscript>The 3D view needs scripts; the tables below are complete.</noscript></div>
 <div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
 <div class="group" id="layers"></div>
 <div class="group" id="volumes" role="radiogroup" aria-label="Bounding volume"></div></div>

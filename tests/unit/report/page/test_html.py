@@ -196,6 +196,11 @@ def test_the_model_contains_the_build_volume(make_build, shape):
     assert shown == {"size": [200, 200, 100], "shape": shape, "zones": [[[0, 0, 0], [5, 6, 7]]]}
 
 
+def test_a_page_without_scripts_says_that_only_the_view_is_missing(make_build):
+    text = html_text(run_of(make_build()))
+    assert "<noscript>The 3D view needs scripts; the tables below are complete.</noscript>" in text
+
+
 def test_the_bundle_contains_the_licence_of_three_js_and_cannot_end_its_element():
     bundle = files("amprep.report").joinpath("viewer.bundle.js").read_text(encoding="utf-8")
     assert "Permission is hereby granted, free of charge" in bundle
