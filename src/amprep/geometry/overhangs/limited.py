@@ -24,8 +24,8 @@ from amprep.geometry.overhangs.regions import (
 # Strategy. Faces flatter than the angle form natural regions, whether blocked, enforced or not: how the part carries
 # them is geometry. Regions that start in the air need support as a whole; the others are subdivided at the limits.
 # Only then blockers take pieces away and enforcers add faces, and what is left is labelled again, since a blocker may
-# cut a region in two. Natural regions that need support as a whole or not at all keep their own triangles, so the
-# mesh grows only where a limit divides a region.
+# cut a region in two. Faces that need support as a whole or not at all keep their own triangles, so the mesh grows
+# only where a limit divides a face.
 
 
 _NARROW = 0.01
@@ -69,7 +69,7 @@ def find_limited_overhangs(
     A point of an overhang region is carried if a straight line in plan leads over the region to a border that the
     part holds, no longer than a ledge may be; if it is on a line between two such borders, no longer than a bridge
     may be; or if it is under an arch whose diameter is at most that of a bore. Nothing is carried in a region in
-    which the part starts in the air. Where a limit divides a region, the mesh is subdivided.
+    which the part starts in the air. Where a limit divides a face, the mesh is subdivided.
 
     Parameters
     ----------
@@ -130,10 +130,10 @@ def _judge_faces(found: Candidates, carrier: Carrier) -> _JudgedFaces:
     hanging = np.zeros(int(own.label.max(initial=-1)) + 1, np.bool_)
     hanging[own.label[(found.minimum[corners] >= 0).any(axis=1)]] = True
     pieces = subdivide_at_limits(carrier, surface.points, corners, ~(hanging | _slivers(carrier))[own.label])
-    mixed = _mixed(pieces, own.label, len(hanging))
+    mixed = _mixed(pieces, len(own.face))
     needed = hanging[own.label]
     needed[pieces.face[pieces.needed]] = True
-    kept = mixed[own.label[pieces.face]]
+    kept = mixed[pieces.face]
     stitched = stitch(
         surface.triangles, pieces.triangles[kept], own.face[pieces.face[kept]], len(surface.points)
     )
@@ -160,10 +160,10 @@ def _slivers(carrier: Carrier) -> Bools:
     return np.asarray((width <= _NARROW) & ~np.isin(np.arange(count), own.anchor_label))
 
 
-def _mixed(pieces: Pieces, label: Int64s, count: int) -> Bools:
-    """Tell which natural regions have both pieces that need support and pieces that do not."""
+def _mixed(pieces: Pieces, count: int) -> Bools:
+    """Tell which of `count` faces have both pieces that need support and pieces that do not."""
     both = np.zeros((2, count), np.bool_)
-    both[pieces.needed.astype(np.int64), label[pieces.face]] = True
+    both[pieces.needed.astype(np.int64), pieces.face] = True
     return np.asarray(both.all(axis=0))
 
 
@@ -190,11 +190,14 @@ def _mesh(
     vertices: Floats, triangles: Int32s, found: Candidates, judged: _JudgedFaces
 ) -> tuple[Floats, Int32s]:
     """Return the mesh given with the triangles that were subdivided."""
-    count = len(found.surface.points)
-    if len(judged.stitched.parent) == len(triangles) and (judged.stitched.piece < 0).all():
+    if (judged.stitched.piece < 0).all():
         return vertices, triangles
-    old = np.concatenate([found.surface.first, len(vertices) + np.arange(len(judged.points) - count)])
-    finer = old[judged.stitched.triangles].astype(np.int32)
+    corners = judged.stitched.triangles
+    used = np.unique(corners[corners >= len(found.surface.points)])
+    number = np.zeros(len(judged.points), np.int32)
+    number[: len(found.surface.points)] = found.surface.first
+    number[used] = len(vertices) + np.arange(len(used))
+    finer = number[corners]
     uncut = np.bincount(judged.stitched.parent)[judged.stitched.parent] == 1
     finer[uncut] = triangles[judged.stitched.parent[uncut]]
-    return np.concatenate([vertices, judged.points[count:]]), finer
+    return np.concatenate([vertices, judged.points[used]]), finer

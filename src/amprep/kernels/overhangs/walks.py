@@ -122,8 +122,12 @@ def _chord(
     face: int,
     point: tuple[float, float, float],
     direction: tuple[float, float],
+    nearest: float,
 ) -> tuple[float, float]:
-    """Return the bridge and the arch along a line through a point, infinite where there is none."""
+    """Return the bridge and the arch along a line through a point, infinite where there is none.
+
+    One end of an arch is at most `nearest` mm from the point.
+    """
     x, y, z = point
     dx, dy = direction
     one, kind, z1, top1 = _walk(faces, face, x, y, z, dx, dy, limits.most, limits.plate)
@@ -134,7 +138,8 @@ def _chord(
         return np.inf, np.inf
     bridge = one + other
     rise = max(top1, top2) - max(z1, z2)
-    return bridge, bridge if rise >= limits.rise * bridge else np.inf
+    is_arch = rise >= limits.rise * bridge and min(one, other) <= nearest
+    return bridge, bridge if is_arch else np.inf
 
 
 @helper
@@ -190,6 +195,7 @@ def find_spans(
     points: Floats,
     face: Int64s,
     targets: Floats,
+    nearest: Floats,
     fully: bool,
     spans: Floats,
 ) -> None:
@@ -203,6 +209,8 @@ def find_spans(
         ``(n, 3)`` mm, and the face ``(n,)`` that each is on.
     targets
         ``(n, 2)`` mm, the anchor nearest to each point; not a number if its region has none.
+    nearest
+        ``(n,)`` mm, largest distance of a point from the nearer end of an arch.
     fully
         Whether to try all directions even if a bridge or arch is within its limit.
     spans
@@ -219,7 +227,7 @@ def find_spans(
                     dx, dy = targets[n, 0] - x, targets[n, 1] - y
                     size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
                     dx, dy = dx / size, dy / size
-                one, two = _chord(faces, limits, at, (x, y, z), (dx, dy))
+                one, two = _chord(faces, limits, at, (x, y, z), (dx, dy), nearest[n])
                 bridge, arch = min(bridge, one), min(arch, two)
                 if not fully and (bridge <= limits.bridge or arch <= limits.arch[at]):
                     break

@@ -46,9 +46,13 @@ def fitted_diameters(regions: RegionFaces, normals: Floats, count: int) -> Float
 
 
 def _diameter(corners: Floats, normals: Floats, outer: Floats) -> float:
-    """Return the diameter of one region with the corners ``(n, 3, 3)``."""
+    """Return the diameter of one region with the corners ``(n, 3, 3)``.
+
+    The normals of a cylinder are in a plane through 0, those of a cone in another plane.
+    """
     weight = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    spread = np.einsum("n,ni,nj->ij", weight / weight.sum(), normals, normals)
+    weight /= weight.sum()
+    spread, weighted = np.einsum("n,ni,nj->ij", weight, normals, normals), weight @ normals
     values, axes = np.linalg.eigh(spread)
     points = corners.reshape(-1, 3)
     if values[1] < _FLAT:
@@ -58,7 +62,8 @@ def _diameter(corners: Floats, normals: Floats, outer: Floats) -> float:
         if len(section) < _FEWEST_LINES:
             section = _distinct(np.concatenate([points, outer]) @ axes[:, 1:])
         return _fitted(section) if len(section) >= _FEWEST_LINES else float("nan")
-    return _fitted(_distinct(points)) if len(points) >= _FEWEST_POINTS else float("nan")
+    is_cone = np.linalg.eigvalsh(spread - np.outer(weighted, weighted))[0] < _FLAT
+    return float("nan") if is_cone or len(points) < _FEWEST_POINTS else _fitted(_distinct(points))
 
 
 def _distinct(points: Floats) -> Floats:

@@ -22,8 +22,11 @@ _SPACING = 0.25
 _APART = 1e5
 """Distance (mm) between the samples of two regions in the third coordinate of the search tree."""
 
-_END = 1e-3
-"""Walks end at least at this fraction of an anchor's length from its ends."""
+_OBLIQUE = 1.5
+"""Largest distance of a point from the nearer end of an arch, as a multiple of its shortest ledge."""
+
+_END = 1e-5
+"""Walks end at least this far (mm) from the ends of anchors, so that they do not slip past them."""
 
 
 class Limits(NamedTuple):
@@ -84,8 +87,13 @@ class Carrier(NamedTuple):
         )
         return ledges
 
-    def spans(self, points: Floats, face: Int64s, *, fully: bool = False) -> tuple[Floats, Floats]:
+    def spans(
+        self, points: Floats, face: Int64s, ledges: Floats, *, fully: bool = False
+    ) -> tuple[Floats, Floats]:
         """Return the shortest bridge and arch ``(n,)`` mm at points, infinite where there is none.
+
+        Lines along a ring that is carried on one side only are no arches: unless the region is a cylinder or a sphere,
+        an end of an arch is hardly farther from a point than its shortest ledge ``(n,)``.
 
         Without `fully` the search ends as soon as one is within its limit, and it does not find longer ones.
         """
@@ -93,17 +101,26 @@ class Carrier(NamedTuple):
 
         target, _ = self.nearest(points, face)
         spans = np.empty((len(points), 2))
+        nearest = np.where(np.isnan(self.diameters[self.regions.label[face]]), _OBLIQUE * ledges, np.inf)
         most = np.inf if fully else self._longest()
         find_spans(
-            self._faces(), self._kernel_limits(most), np.ascontiguousarray(points), face, target, fully, spans
+            self._faces(),
+            self._kernel_limits(most),
+            np.ascontiguousarray(points),
+            face,
+            target,
+            nearest,
+            fully,
+            spans,
         )
         return spans[:, 0], spans[:, 1]
 
     def carries(self, points: Floats, face: Int64s) -> Bools:
         """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries."""
-        carried = self.ledges(points, face) <= self.limits.ledge + TOLERANCE
+        ledges = self.ledges(points, face)
+        carried = ledges <= self.limits.ledge + TOLERANCE
         left = np.flatnonzero(~carried)
-        bridge, arch = self.spans(points[left], face[left])
+        bridge, arch = self.spans(points[left], face[left], ledges[left])
         carried[left] = (bridge <= self.limits.bridge + TOLERANCE) | (
             arch <= self.arch[face[left]] + TOLERANCE
         )
@@ -121,9 +138,10 @@ class Carrier(NamedTuple):
         distance = np.asarray(distance)
         start, end = (self.regions.anchors[self.owner[sample], i] for i in (0, 1))
         along = end - start
-        share = np.einsum("ij,ij->i", points[:, :2] - start, along)
-        share /= np.maximum(np.einsum("ij,ij->i", along, along), 1e-300)
-        target = start + np.clip(share, _END, 1 - _END)[:, None] * along
+        square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-300)
+        share = np.einsum("ij,ij->i", points[:, :2] - start, along) / square
+        end_share = np.minimum(_END / np.sqrt(square), 0.5)
+        target = start + np.clip(share, end_share, 1 - end_share)[:, None] * along
         alien = distance > _APART / 2
         target[alien] = np.nan
         return target, np.where(alien, np.inf, np.maximum(distance - _SPACING / 2, 0.0))

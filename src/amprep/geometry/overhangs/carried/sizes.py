@@ -138,7 +138,7 @@ def _halves(corners: Floats) -> Floats:
 
 def _named(carrier: Carrier, worst: _Points, holds: Bools) -> dict[int, RegionSize]:
     """Return kind and size of each region from its worst point."""
-    bridge, arch = carrier.spans(worst.at, worst.face, fully=True)
+    bridge, arch = carrier.spans(worst.at, worst.face, worst.ledge, fully=True)
     diameter = carrier.diameters[carrier.regions.label[worst.face]]
     by_width = arch / np.sin(np.radians(carrier.limits.angle_deg))
     bore = np.where(np.isnan(diameter) | np.isinf(arch), by_width, diameter)

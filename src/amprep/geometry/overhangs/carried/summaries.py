@@ -34,7 +34,7 @@ def face_regions(
         found.append(
             OverhangRegion(
                 kind,
-                size_mm=size,
+                size_mm=round(size, 6),
                 limit_mm=limit,
                 starts_in_air=bool(starts[number]),
                 is_self_supporting=bool(holds[number]),
