@@ -49,13 +49,18 @@ def _judged(body: SupportBody, shadows: Sequence[Shadow], build: Build) -> list[
         return []
     covered = solid.project()
     own = CrossSection.batch_boolean([shadows[part].polygons for part in body.parts], OpType.Add)
-    margin = build.settings.rules.territory_margin_mm + TOLERANCE
-    outside = covered - own.offset(margin, JoinType.Round, 2.0, _SEGMENTS)
+    limits = [_margin_of(build, part) for part in body.parts]
+    grown = [
+        shadows[part].polygons.offset(limit + TOLERANCE, JoinType.Round, 2.0, _SEGMENTS)
+        for part, limit in zip(body.parts, limits, strict=True)
+    ]
+    outside = covered - CrossSection.batch_boolean(grown, OpType.Add)
     found = []
     names = " and ".join(build.parts[part].label for part in body.parts)
     if not _is_thin(outside):
-        limit = build.settings.rules.territory_margin_mm
-        message = f"leaves the shadow of {names} by more than the margin of {limit:g} mm{_where(outside)}"
+        message = (
+            f"leaves the shadow of {names} by more than the margin of {max(limits):g} mm{_where(outside)}"
+        )
         found.append(Violation(PROMISE, body.name, message))
     for part, other in enumerate(shadows):
         if part not in body.parts and _boxes_meet(covered, other.polygons):
@@ -64,6 +69,12 @@ def _judged(body: SupportBody, shadows: Sequence[Shadow], build: Build) -> list[
                 message = f"enters the shadow of {other.label}, although it holds {names}{_where(inside)}"
                 found.append(Violation(PROMISE, body.name, message))
     return found
+
+
+def _margin_of(build: Build, part: int) -> float:
+    """Return the margin (mm) of a part: its own, for which packing left room, or that of the rules."""
+    own = build.parts[part].part.overrides.territory_margin_mm
+    return build.settings.rules.territory_margin_mm if own is None else own
 
 
 def _is_thin(region: "CrossSection") -> bool:

@@ -10,7 +10,7 @@ from tests.shared.examples import examples
 from tests.shared.supported import box, build_of, table
 
 from amprep.checks.supports.territory import TOLERANCE, check_territory
-from amprep.model import Stop
+from amprep.model import Overrides, Stop
 
 OWN = {"territory": "own", "territory_margin_mm": 1.0}
 
@@ -65,3 +65,11 @@ def test_a_shared_support_may_be_in_the_territory_of_either_part(shared):
 
 def test_with_shared_territory_nothing_is_judged():
     assert judged([table(10)], [box((2, 2, 10), (50, 50, 0))], territory="shared") == []
+
+
+def test_a_margin_of_the_part_itself_takes_the_place_of_that_of_the_rules():
+    build = build_of([table(10)], [box((2, 2, 10.1), (21, 5, 0))], **OWN)
+    assert len(check_territory(build, Stop())) == 1
+    (placed,) = build.parts
+    wide = replace(placed, part=replace(placed.part, overrides=Overrides(territory_margin_mm=3.0)))
+    assert check_territory(replace(build, parts=(wide,)), Stop()) == []
