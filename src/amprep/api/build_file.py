@@ -23,10 +23,13 @@ class Verification:
     pairs
         How many pairs of parts were judged by which method: their enclosing boxes, the distance of their triangles, or
         the intersection of their solids.
+    extent
+        For promises on supports that depend on the rules of the build: limit, tolerance, and what was judged.
     """
 
     violations: tuple[Violation, ...]
     pairs: PairCounts = field(default_factory=PairCounts)
+    extent: dict[str, str] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:

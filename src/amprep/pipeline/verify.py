@@ -7,7 +7,7 @@ from typing import NamedTuple
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.packing.parts_placed import judge_placed
 from amprep.checks.supports import bodies as cells
-from amprep.checks.supports import coverage, xy_distance
+from amprep.checks.supports import coverage, limits, xy_distance
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
 from amprep.checks.supports.xy_distance import check_xy_distance
@@ -27,20 +27,32 @@ PROMISES = (
     cells.STANDING,
     cells.PENETRATION,
     xy_distance.PROMISE,
+    *limits.PROMISES,
     coverage.PROMISE,
 )
 """Names of all promises, in the order in which they are judged."""
 
 
 class JudgedBuild(NamedTuple):
-    """Every broken promise of a build, and how many pairs of parts were judged by which method."""
+    """The result of judging a build.
+
+    Attributes
+    ----------
+    violations
+        Every broken promise.
+    pairs
+        How many pairs of parts were judged by which method.
+    extent
+        For promises on supports that depend on the rules of the build: limit, tolerance, and what was judged.
+    """
 
     violations: tuple[Violation, ...]
     pairs: PairCounts
+    extent: dict[str, str]
 
 
 def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:
-    """Return every broken promise: of parts, then of supports, then of overhangs without support.
+    """Return every broken promise: of parts, of supports, of overhangs without support, and of limits of supports.
 
     Parameters
     ----------
@@ -59,10 +71,12 @@ def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress =
         ("coverage", lambda: check_coverage(build)),
     )
     for index, (name, judge) in enumerate(judges, start=1):
-        progress(index / (len(judges) + 1), name)
+        progress(index / (len(judges) + 2), name)
         found += judge()
+    progress(1.0 - 1.0 / (len(judges) + 2), "limits")
+    judged = limits.check_limits(build, stop)
     progress(1.0, "verified")
-    return JudgedBuild(tuple(found), pairs)
+    return JudgedBuild((*found, *judged.violations), pairs, judged.extent)
 
 
 def verify_file(path: Path, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:

@@ -29,14 +29,17 @@ from amprep.checks.overhangs.borders import RegionEdges
 CHUNK = 1_000_000
 """Pairs of a point and an edge that are computed at once."""
 
-_LINES = (12, 72, 360)
+_FEW, _MORE, _MANY = 12, 72, 360
 """Numbers of lines through a point: the first ones, then those for points that none of the former carries."""
 
 _RIM = 0.25
 """Width (mm) of the strip along open borders of a bridge or bore that its neighbourhood carries."""
 
-_OBLIQUE = 2.0
-"""Greatest length of a line across an arch, in diameters."""
+_NEAR = 0.3
+"""Distance (mm) up to which anchors are looked for first, because most points have one as near."""
+
+_STRAIGHT, _OBLIQUE = 0.8, 2.0
+"""Greatest length of a line across an arch, in diameters: at first, and where few points are left."""
 
 _PARALLEL = 0.985
 """Cosine of the greatest angle between anchors that count as parallel."""
@@ -97,17 +100,23 @@ def carried(
     thorough
         Whether points that no line carries are tried with more lines.
     """
-    found = _sees_anchor(points, region, edges, reaches)
-    longest = max(reaches.ledge, reaches.bridge, _OBLIQUE * reaches.bore)
-    anchored = np.unique(edges.region[edges.is_anchor])
-    for count in _LINES if thorough else _LINES[:1]:
-        left = np.flatnonzero(~found & np.isin(region, anchored))
-        found[left] = _carried_by_lines(points[left], region[left], edges, reaches, longest, count)
-    left = np.flatnonzero(~found & np.isin(region, anchored))
+    found = np.zeros(len(points), np.bool_)
+    for reach in (min(_NEAR, reaches.ledge), reaches.ledge):
+        left = np.flatnonzero(~found)
+        found[left] = _sees_anchor(points[left], region[left], edges, reach, reaches.angle)
+    anchored = np.isin(region, np.unique(edges.region[edges.is_anchor]))
+    longest = max(reaches.ledge, reaches.bridge, _STRAIGHT * reaches.bore)
+    oblique = max(longest, _OBLIQUE * reaches.bore)
+    for count, reach in (
+        ((_FEW, longest), (_MORE, longest), (_MANY, oblique)) if thorough else ((_FEW, longest),)
+    ):
+        left = np.flatnonzero(~found & anchored)
+        found[left] = _carried_by_lines(points[left], region[left], edges, reaches, reach, count)
+    left = np.flatnonzero(~found & anchored)
     if thorough and len(left):
         inner = _away_from_rims(points[left], region[left], edges)
         both_sides = reaches._replace(ledge=-1.0)
-        found[left] = _carried_by_lines(inner, region[left], edges, both_sides, longest, _LINES[1])
+        found[left] = _carried_by_lines(inner, region[left], edges, both_sides, oblique, _MORE)
     return found
 
 
@@ -129,7 +138,7 @@ def _away_from_rims(points: Floats, region: Int64s, edges: RegionEdges) -> Float
 
 def _groups(points: Floats, region: Int64s, edges: RegionEdges, rows: Int64s, reach: float) -> list[_Group]:
     """Group points by region and square of the plan, with those of the edges `rows` that come within `reach`."""
-    side = max(2.0 * reach, 4.0)
+    side = max(0.75 * reach, 1.0)
     square = np.floor(points[:, :2] / side).astype(np.int64)
     key = np.stack([region, square[:, 0], square[:, 1]])
     order = np.lexsort(key)
@@ -167,14 +176,14 @@ def _pairs(groups: Sequence[_Group]) -> Iterator[tuple[Int64s, Int64s]]:
         yield np.concatenate(points), np.concatenate(edges)
 
 
-def _sees_anchor(points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches) -> Bools:
-    """Tell from which points the nearest anchor is at most the ledge away and visible inside the region."""
+def _sees_anchor(points: Floats, region: Int64s, edges: RegionEdges, reach: float, angle: float) -> Bools:
+    """Tell from which points the nearest anchor is at most `reach` away and visible inside the region."""
     away = np.full(len(points), np.inf)
     foot = np.zeros((len(points), 3))
-    for i, j in _pairs(_groups(points, region, edges, np.flatnonzero(edges.is_anchor), reaches.ledge)):
+    for i, j in _pairs(_groups(points, region, edges, np.flatnonzero(edges.is_anchor), reach)):
         place, distance = _nearest(points[i], edges.start[j], edges.end[j])
-        near = distance <= reaches.ledge
-        near &= np.abs(place[:, 2] - points[i, 2]) <= distance * np.tan(reaches.angle) + _SLACK
+        near = distance <= reach
+        near &= np.abs(place[:, 2] - points[i, 2]) <= distance * np.tan(angle) + _SLACK
         order = np.flatnonzero(near)
         order = order[np.lexsort((distance[order], i[order]))]
         own, first = np.unique(i[order], return_index=True)
@@ -183,7 +192,7 @@ def _sees_anchor(points: Floats, region: Int64s, edges: RegionEdges, reaches: Re
     rows = np.flatnonzero(seen)
     hidden = np.zeros(len(rows), np.bool_)
     borders = np.flatnonzero(edges.is_border)
-    for i, j in _pairs(_groups(points[rows], region[rows], edges, borders, reaches.ledge)):
+    for i, j in _pairs(_groups(points[rows], region[rows], edges, borders, reach)):
         hidden[i[_blocks(points[rows[i]], foot[rows[i]], edges.start[j], edges.end[j])]] = True
     seen[rows] = ~hidden
     return np.asarray(seen)
@@ -225,6 +234,7 @@ def _carried_by_lines(
         direction = np.array([np.cos(angle), np.sin(angle)])
         ahead, back = _ends(points, edges, pairs, direction, reaches.angle)
         for end in (ahead, back):
+            end.at_anchor[end.distance > longest] = False
             found |= end.at_anchor & (end.distance <= reaches.ledge)
         both = ahead.at_anchor & back.at_anchor
         span = ahead.distance + back.distance

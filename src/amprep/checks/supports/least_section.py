@@ -4,7 +4,7 @@ Strategy. Horizontal planes cut each finished solid. A connected piece of a sect
 it when its border moves inwards by half the least wall: no disc of that size fits in it. A fin is too thin if it
 reaches far beyond what such discs cover; near the discs are the corners, which no disc fills. A piece beside a wall of
 a part is one with the part there, and is judged together with it. Ends that taper on purpose, of teeth, points and
-necks, have their own least size up to the height of the taper below the part.
+necks, may be as narrow as 0.1 mm, or as they are wide if that is less, up to their height below the part.
 """
 
 from collections.abc import Sequence
@@ -27,10 +27,10 @@ LEAST_CONTACT = "least contact"
 TOLERANCE = 0.03
 """Length (mm) by which a section may be thinner than the least wall, because circles are polygons and files round."""
 
-_STEP = 0.4
+_STEP = 0.5
 """Distance (mm) of sections."""
 
-_MOST_SECTIONS = 60
+_MOST_SECTIONS = 40
 """Largest number of sections of one support."""
 
 _CORNER = 1.5
@@ -38,6 +38,9 @@ _CORNER = 1.5
 
 _TOUCH = 0.02
 """Distance (mm) up to which a piece touches a part."""
+
+_SLIVER = 0.1
+"""Least width (mm) of tips: borders of territories and walls may cut teeth and points, but leave no slivers."""
 
 _SLOPE = 0.3
 """Height (mm) by which a tip may begin lower, because the part above it is not level."""
@@ -155,6 +158,7 @@ class _Section:
     ) -> None:
         self.region, self.height = region, height
         self.parts, self.sizes = parts, settings.sizes
+        self.part_sections: dict[int, CrossSection] = {}
         self.wall = max(settings.rules.least_wall_mm - TOLERANCE, 0.0)
         self.contact = max(
             settings.rules.least_contact_mm2 - 2.0 * TOLERANCE * settings.rules.least_wall_mm, 0.0
@@ -162,7 +166,9 @@ class _Section:
 
     def small_pieces(self) -> list[ThinPlace]:
         """Return the pieces that are too narrow or too small, unless they are tips or touch a part."""
-        found = []
+        found: list[ThinPlace] = []
+        if _all_large(self.region, self.wall, self.contact):
+            return found
         for piece in self.region.decompose():
             area, width = piece.area(), _mean_width(piece)
             narrow = width < self.wall and piece.offset(-self.wall / 2.0).is_empty()
@@ -215,11 +221,13 @@ class _Section:
 
         low, high = _bounds(piece)
         found = CrossSection()
-        for part in self.parts:
+        for number, part in enumerate(self.parts):
             box = part.bounding_box()
             margin = 2.0 * self.wall
             if (low - margin <= np.array(box[3:5])).all() and (high + margin >= np.array(box[:2])).all():
-                found += part.slice(self.height)
+                if number not in self.part_sections:
+                    self.part_sections[number] = part.slice(self.height)
+                found += self.part_sections[number]
         return found
 
     def _touches_part(self, piece: "CrossSection") -> bool:
@@ -231,13 +239,13 @@ class _Section:
         return np.append(points.mean(axis=0), self.height)
 
     def _limits_at(self, place: Floats) -> tuple[float, float]:
-        """Return the least wall and the least contact at a place: those of tips up to their height below a part."""
+        """Return the least wall and the least contact at a place; less for tips, up to their height below a part."""
         least = min(
             (size for size in (self.sizes.tip_width_mm, self.sizes.neck_mm) if size > 0.0), default=0.0
         )
-        if least <= 0.0 or least >= self.wall + TOLERANCE or not self._is_tip(place):
+        if least <= 0.0 or self.wall <= _SLIVER or not self._is_tip(place):
             return self.wall, self.contact
-        least = max(least - TOLERANCE, 0.0)
+        least = min(least, _SLIVER)
         return least, min(self.contact, np.pi / 4.0 * least**2)
 
     def _is_tip(self, place: Floats) -> bool:
@@ -246,6 +254,20 @@ class _Section:
         height = self.sizes.tip_height_mm + (self.sizes.square_mm if self.sizes.neck_mm else 0.0) + _SLOPE
         column = Manifold.cube((self.wall, self.wall, height)).translate(place.tolist())
         return any(not (part ^ column).is_empty() for part in self.parts)
+
+
+def _all_large(region: "CrossSection", wall: float, contact: float) -> bool:
+    """Tell whether a section has no holes, and each contour is clearly wide and large enough."""
+    contours = [np.asarray(contour) for contour in region.to_polygons()]
+    if not contours:
+        return True
+    points = np.concatenate(contours)
+    starts = np.cumsum([0, *(len(contour) for contour in contours[:-1])])
+    following = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
+    cross = points[:, 0] * following[:, 1] - points[:, 1] * following[:, 0]
+    area = np.add.reduceat(cross, starts) / 2.0
+    length = np.add.reduceat(np.hypot(*(following - points).T), starts)
+    return bool((area >= contact).all() and (2.0 * area >= wall * length).all() and (area > 0.0).all())
 
 
 def _mean_width(region: "CrossSection") -> float:

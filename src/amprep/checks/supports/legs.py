@@ -69,18 +69,21 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     """Return the legs of a support with a ratio of length to width above a limit.
 
     Strategy. Horizontal planes cut the solid into contours. A leg is a chain of contours of which each has exactly one
-    above and one below; at a brace, a fork or an end it ends. Long chains are cut where they touch a part, and end
+    above and one below; at a brace, a fork or an end it ends. What is no higher than one cell, such as the posts beside
+    its windows, is a detail of the cell. Long chains are cut where they touch a part, and end
     where their tips begin.
     """
     low, high = (float(corner[2]) for corner in body.mesh.bounds)
     step = max(STEP, (high - low) / _MOST_PLANES)
+    rules = build.settings.rules
+    cell = build.settings.sizes.square_mm * float(np.tan(np.radians(rules.strut_angle_deg)))
     slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
     legs = []
     for chain in _chains(slices):
         if _is_long(slices, chain, limit):
             touches = _touches(slices, chain, build)
             legs += [_leg(slices, own) for own in _runs(chain, ~touches) if _is_long(slices, own, limit)]
-    return legs
+    return [leg for leg in legs if leg.length_mm > cell]
 
 
 def _chains(slices: Slices) -> list[Int64s]:

@@ -1,0 +1,50 @@
+"""Verification judges the limits that a build's file records, and says to which tolerance."""
+
+from dataclasses import replace
+
+import pytest
+from tests.shared.supported import box, build_of, table
+
+from amprep.checks.supports.limits import NOT_JUDGED, PROMISES
+from amprep.model.supports.sizes import SupportSizes
+from amprep.pipeline.verify import verify_build, verify_file
+from amprep.threemf import write_build
+
+LIMITS = {"rules": "limits", "ledge_mm": 1.0, "bridge_mm": 2.0, "bore_mm": 8.0}
+SIZES = SupportSizes(square_mm=2.0, tip_width_mm=0.5, neck_mm=0.25)
+
+
+def ledge_build(length, supported, **rules):
+    """A block with a shelf of a length, and a wall below its outer border."""
+    part = box((10, 10, 20), (0, 0, 0)) + box((10 + length, 10, 5), (0, 0, 10))
+    wall = box((max(length - 0.5, 0.5), 10, 10.05), (10.4, 0, 0))
+    build = build_of([part], [wall] if supported else [], SIZES, **(LIMITS | rules))
+    return replace(build, settings=replace(build.settings, reach=0.3))
+
+
+@pytest.mark.parametrize(("length", "broken"), [(0.9, False), (1.3, True), (6.0, True)])
+def test_a_support_removed_below_a_ledge_breaks_coverage_beyond_the_limit(length, broken):
+    promises = {each.promise for each in verify_build(ledge_build(length, supported=False)).violations}
+    assert ("coverage" in promises) == broken
+    assert "coverage" not in {
+        each.promise for each in verify_build(ledge_build(length, supported=True)).violations
+    }
+
+
+def test_a_file_keeps_the_rules_and_sizes_that_judges_need(tmp_path):
+    build = ledge_build(3.0, supported=True, least_wall_mm=0.3, leg_ratio=10.0)
+    write_build(build, tmp_path / "a.3mf")
+    judged = verify_file(tmp_path / "a.3mf")
+    assert "0.3 mm, to 0.03 mm" in judged.extent["least wall"]
+    assert judged.extent["coverage"] == "beyond ledges 1, bridges 2, bores 8 mm, to 0.08 mm"
+
+
+def test_builds_by_the_rules_of_the_thesis_are_judged_by_none_of_the_limits(tmp_path):
+    tables = [table(10), table(10, corner=(50, 0))]
+    thin = build_of(tables, [box((20, 20, 10.1), (0, 0, 0)), box((0.05, 0.05, 10.05), (52, 5, 0))])
+    write_build(thin, tmp_path / "a.3mf")
+    judged = verify_file(tmp_path / "a.3mf")
+    assert {each.promise for each in judged.violations} == {"coverage"}
+    assert {promise for promise, text in judged.extent.items() if text.startswith(NOT_JUDGED)} == set(
+        PROMISES
+    )
