@@ -17,11 +17,11 @@ _QUADRANTS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
 def thicken(room: Room, leg: RoutedLeg, ratio: float, pitch: float, cell: Floats) -> list[Strut]:
-    """Return columns with which no stretch of a leg on the plate is too long, none if there is no room for them.
+    """Return columns with which no stretch of a leg is too long, none if there is no room for them.
 
     Each column is a copy of a path down the leg, shifted along x or y. Two columns, one square away along both
     axes, make the leg two squares wide; two further ones make it three squares wide, and so on. Columns
-    begin where the width above is not enough any more.
+    begin where the width above is not enough any more. They end at the plate, or join the leg again as low as they can.
 
     Parameters
     ----------
@@ -36,8 +36,8 @@ def thicken(room: Room, leg: RoutedLeg, ratio: float, pitch: float, cell: Floats
     cell
         Extents (mm) of one cell, see `amprep.supports.legs.cell.measure_cell`.
     """
-    path = _path(room, leg)
-    if path is None or (path[0][0] > 0 and path[0][1:] != path[1][1:]):
+    path, leg = _path(room, leg), replace(leg, touching=0.0)
+    if path is None or leg.ratio() <= ratio:
         return []
     for along_y, along_x in _QUADRANTS:
         columns = _columns(room, leg, path, (along_y, along_x), ratio, pitch, cell)
@@ -72,25 +72,23 @@ def _columns(
     cell: Floats,
 ) -> list[Strut]:
     """Return the columns in one quadrant beside a leg, none if voxels are not free or the width does not suffice."""
-    part, columns = room.part[path[-1]], []
+    columns: list[Strut] = []
+    highest = {step: len(path) - 1 for step in ((quadrant[0], 0), (0, quadrant[1]))}
     own = [list(room.squares[section]) for section in leg.sections]
-    own_squares = {square for squares in own for square in squares}
     for shift in range(1, LARGEST_WIDTH):
-        begin = _lowest_enough(leg, path, ratio)
-        if begin < PLANES_TO_TOUCH or begin == len(path) - 1:
-            return []
-        for step in ((quadrant[0], 0), (0, quadrant[1])):
-            before = _shifted(path[begin + 1], step, shift - 1)
-            foot = _shifted(path[0], step, shift if path[0][0] == 0 else shift - 1)
-            column = Strut((before, *(_shifted(path[k], step, shift) for k in range(begin, 0, -1)), foot))
-            if set(column.squares[1:-1]) <= own_squares:
+        lowest = _lowest_enough(leg, ratio)
+        for step in tuple(highest):
+            in_leg = {square for squares in own for square in squares}
+            if {_shifted(each, step, shift) for each in path[1:-1]} <= in_leg:
                 continue
-            is_in_use = any(each in room.section for each in column.squares[1:-1])
-            if is_in_use or not room.is_open(column.squares, part):
+            found = _column(room, path, step, shift, range(lowest, highest[step]))
+            if found is None:
                 return []
+            column, begin = found
+            highest[step] = begin
             columns.append(column)
-            for k in range(begin + 1):
-                own[k].append(column.squares[1 + begin - k])
+            for k, square in enumerate(column.squares[1:]):
+                own[begin - k].append(square)
         widths = tuple(_width(squares, pitch, cell) for squares in own)
         leg = replace(leg, widths=widths)
         if leg.ratio() <= ratio:
@@ -98,17 +96,36 @@ def _columns(
     return []
 
 
-def _lowest_enough(leg: RoutedLeg, path: list[Square], ratio: float) -> int:
-    """Return the lowest position down to which the leg is wide enough, and to which the path leads straight down.
+def _column(
+    room: Room, path: list[Square], step: tuple[int, int], shift: int, begins: range
+) -> tuple[Strut, int] | None:
+    """Return an open column beside a path that leads as far down as possible, and the position of its first square.
 
-    The last position is returned if there is none.
+    It begins as low as possible in the range `begins`, where the path leads straight down, and it is long enough to
+    touch the leg.
     """
+    for end in range(len(path) - PLANES_TO_TOUCH):
+        if path[end][0] > 0 and path[end][1:] != path[end + 1][1:]:
+            continue
+        low_enough = range(max(begins.start, end + PLANES_TO_TOUCH), begins.stop)
+        begin = next((k for k in low_enough if path[k][1:] == path[k + 1][1:]), None)
+        if begin is None:
+            return None
+        squares = [_shifted(path[begin + 1], step, shift - 1)]
+        squares += [_shifted(path[k], step, shift) for k in range(begin, end, -1)]
+        squares.append(_shifted(path[end], step, shift if path[end][0] == 0 else shift - 1))
+        in_use = any(each in room.section for each in squares[1:-1])
+        if not in_use and room.is_open(squares, room.part[path[-1]]):
+            return Strut(tuple(squares)), begin
+    return None
+
+
+def _lowest_enough(leg: RoutedLeg, ratio: float) -> int:
+    """Return the lowest position down to which a leg is wide enough."""
     last = len(leg.lengths)
     lowest = last - 1
-    while lowest > PLANES_TO_TOUCH and leg.ratio(lowest - 1, last) <= ratio:
+    while lowest > 0 and leg.ratio(lowest - 1, last) <= ratio:
         lowest -= 1
-    while lowest < last and path[lowest][1:] != path[lowest + 1][1:]:
-        lowest += 1
     return lowest
 
 
