@@ -36,7 +36,16 @@ def test_a_cell_from_a_file_supports_a_job_that_passes_every_judge(amprep, fixtu
     checked = amprep("cells", "check", cell, "--pitch", "4")
     assert checked.code == 0, checked.out + checked.err
     done = amprep(
-        "run", fixtures / "table.stl", "--cell", cell, "--set", "supports.pitch_mm=4", "-o", tmp_path
+        "run",
+        fixtures / "table.stl",
+        "--cell",
+        cell,
+        "--set",
+        "supports.pitch_mm=4",
+        "--set",
+        "supports.reach_mm=5",
+        "-o",
+        tmp_path,
     )
     assert done.code == 0, done.err
     assert "yes" in done.out
@@ -46,7 +55,16 @@ def test_a_cell_from_a_file_supports_a_job_that_passes_every_judge(amprep, fixtu
 @pytest.mark.parametrize("name", ["strut", "bcc", "hatch"])
 def test_a_built_in_lattice_supports_a_job_that_passes_every_judge(amprep, fixtures, tmp_path, name):
     done = amprep(
-        "run", fixtures / "table.stl", "--cell", name, "--set", "supports.pitch_mm=4", "-o", tmp_path
+        "run",
+        fixtures / "table.stl",
+        "--cell",
+        name,
+        "--set",
+        "supports.pitch_mm=4",
+        "--set",
+        "supports.reach_mm=5",
+        "-o",
+        tmp_path,
     )
     assert done.code == 0, done.err
     assert amprep("verify", tmp_path / "table.build-1.3mf").code == 0
@@ -72,7 +90,7 @@ def test_beams_hold_a_part_in_a_file_that_verifies(amprep, fixtures, tmp_path, n
 
     done = amprep(
         *("run", fixtures / "table.stl", "--cell", name, "--lattice", "beams", "--supports-as", "model"),
-        *("--set", "supports.pitch_mm=4", "-o", tmp_path),
+        *("--set", "supports.pitch_mm=4", "--set", "supports.reach_mm=5", "-o", tmp_path),
     )
     assert done.code == 0, done.err
     path = tmp_path / "table.build-1.3mf"
@@ -88,7 +106,16 @@ def test_slicers_and_whoever_asks_for_meshes_get_no_beams(amprep, fixtures, tmp_
     for option, word in (("--lattice", "mesh"), ("--for", "prusaslicer")):
         done = amprep(
             *("run", fixtures / "table.stl", "--cell", "strut", "--set", "cells.params.solid=false"),
-            *(option, word, "--set", "supports.pitch_mm=4", "-o", tmp_path / word),
+            *(
+                option,
+                word,
+                "--set",
+                "supports.pitch_mm=4",
+                "--set",
+                "supports.reach_mm=5",
+                "-o",
+                tmp_path / word,
+            ),
         )
         assert done.code == 0, done.err
         build = read_build(tmp_path / word / "table.build-1.3mf")
@@ -98,6 +125,15 @@ def test_slicers_and_whoever_asks_for_meshes_get_no_beams(amprep, fixtures, tmp_
 def test_beams_with_connectors_of_cells_are_refused_in_one_line(amprep, fixtures, tmp_path):
     done = amprep(
         *("run", fixtures / "table.stl", "--cell", "strut", "--lattice", "beams"),
-        *("--set", "cells.connector=extend", "--set", "supports.pitch_mm=4", "-o", tmp_path),
+        *(
+            "--set",
+            "cells.connector=extend",
+            "--set",
+            "supports.pitch_mm=4",
+            "--set",
+            "supports.reach_mm=5",
+            "-o",
+            tmp_path,
+        ),
     )
     assert (done.code, "cells.connector = 'full'" in done.err) == (2, True)

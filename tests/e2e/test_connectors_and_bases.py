@@ -11,7 +11,7 @@ import pytest
     ],
 )
 def test_a_job_with_teeth_or_points_on_a_base_verifies(amprep, fixtures, tmp_path, options):
-    plain = ("--cell", "prism", "--set", "supports.pitch_mm=4")
+    plain = ("--cell", "prism", "--set", "supports.pitch_mm=4", "--set", "supports.reach_mm=5")
     done = amprep("run", fixtures / "table.stl", *options, *plain, "-o", tmp_path)
     assert done.code == 0, done.err
     assert amprep("verify", tmp_path / "table.build-1.3mf").code == 0

@@ -24,7 +24,7 @@ def test_low_x_walls_with_gaps_trap_no_powder_below_a_horizontal_plate(amprep, t
 
 
 def test_x_walls_without_gaps_trap_powder_which_is_not_a_fault(amprep, fixtures, tmp_path):
-    joined = ("supports.pitch_mm=4", "cells.params.join_every=1")
+    joined = ("supports.pitch_mm=4", "supports.reach_mm=5", "cells.params.join_every=1")
     found, done = supports(amprep, tmp_path, fixtures / "table.stl", *joined)
     assert done.code == 0
     assert "powder that cannot leave" in " ".join(done.out.split())
@@ -43,7 +43,7 @@ def test_x_walls_with_gaps_trap_no_powder_and_joined_ones_do(amprep, fixtures, t
 
 
 def test_mass_and_scanned_area_follow_from_the_volume(amprep, fixtures, tmp_path):
-    keys = ("supports.pitch_mm=4", "cells.density_g_cm3=8", "supports.layer_mm=0.05")
+    keys = ("supports.pitch_mm=4", "supports.reach_mm=5", "cells.density_g_cm3=8", "supports.layer_mm=0.05")
     found, _ = supports(amprep, tmp_path, fixtures / "table.stl", *keys)
     assert found["mass_g"] == pytest.approx(found["volume_mm3"] * 0.008)
     assert found["scanned_area_mm2"] == pytest.approx(found["volume_mm3"] / 0.05)

@@ -28,9 +28,11 @@ class ConnectorRules:
         ``full``: the connector fills the whole square; ``teeth``: it ends in a grid of square teeth; ``point``: it
         ends in cones; ``extend``: the lattice cell itself continues up to the part.
     tooth_pitch_mm, tooth_width_mm, tooth_height_mm
-        Distance between teeth (None: about 1 mm), their width at the part, and the length of their taper.
+        Distance between teeth (None: at most the contact spacing, without one about 1 mm), their width
+        at the part, and the length of their taper.
     point_pitch_mm, point_mm, point_height_mm
-        Distance between points (None: one per square), their diameter at the part, and the length of their taper.
+        Distance between points (None: at most the contact spacing, and one per square), their
+        diameter at the part, and the length of their taper.
     neck_mm
         Width of the break-away neck below the contact; 0 for none.
     neck_height_mm

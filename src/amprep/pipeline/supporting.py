@@ -274,6 +274,16 @@ def least_section(job: Job) -> LeastSection | None:
     return LeastSection(rules.least_wall_mm, rules.least_contact_mm2) if has_least else None
 
 
+def usual_reach(pitch: float, spacing: float) -> float:
+    """Return the reach (mm) of a job that states none: 1.5 pitches, but no more than the contact spacing.
+
+    Contacts at the corners of squares as wide as the spacing are 0.71 spacings from the middle. With the distance
+    of sample points that is 0.8 spacings, below which the reach does not fall.
+    """
+    reach = min(1.5 * pitch, LARGEST_REACH)
+    return max(min(reach, spacing), 0.8 * spacing) if spacing else reach
+
+
 def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
     """Return the rules that travel with the build's file."""
     return BuildSettings(
@@ -284,7 +294,7 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         clearance=job.packing.clearance_mm,
         lift=job.packing.lift_mm,
         overlap=job.cells.overlap_mm,
-        reach=job.supports.reach_mm or min(1.5 * pitch, LARGEST_REACH),
+        reach=job.supports.reach_mm or usual_reach(pitch, job.supports.contact_spacing_mm),
         rules=job.supports,
         supported=job.supports.enabled,
         supports_as=job.supports.write_as,

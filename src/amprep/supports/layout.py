@@ -46,6 +46,10 @@ class SupportLayout:
         ``(k, 5)`` int32: columns that end on a part; see `amprep.supports.routes.on_part.Grounded`.
     territories
         Where the supports of each part may be; none where parts share all space.
+    contact_spacing
+        Largest distance (mm) between neighbouring contacts; 0 for that of the grid.
+    close
+        ``(m,)`` bool, red squares where contacts are at most half of that apart; by default none.
     """
 
     grid: Grid
@@ -61,6 +65,8 @@ class SupportLayout:
     shared: tuple[str, ...] = ()
     feet: Ints = field(default_factory=lambda: np.empty((0, 5), np.int32))
     territories: tuple[PartTerritory, ...] = ()
+    contact_spacing: float = 0.0
+    close: Bools = field(default_factory=lambda: np.empty(0, np.bool_))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "red", RedSquares(*(frozen(each, np.int32) for each in self.red)))
@@ -68,6 +74,8 @@ class SupportLayout:
         object.__setattr__(self, "feet", frozen(self.feet, np.int32, 5))
         object.__setattr__(self, "voxels", frozen(self.voxels, np.uint8))
         object.__setattr__(self, "connected", frozen(self.connected, np.bool_))
+        close = self.close if len(self.close) else np.zeros(len(self.connected), np.bool_)
+        object.__setattr__(self, "close", frozen(close, np.bool_))
 
     def reason_at(self, part: int, points: Floats) -> tuple[str, ...]:
         """Return for each point ``(n, 3)`` mm of a part's unsupported overhangs the reason.

@@ -15,6 +15,7 @@ from amprep.model.counting import counted
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
+from amprep.supports.grid.spacing import are_beside, space_contacts, steps_within
 from amprep.supports.grid.taken import close_taken, taken_by
 from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
@@ -89,17 +90,45 @@ def plan_supports(
     if overhangs is None:
         overhangs = [overhangs_of(placed, rules) for placed in parts]
     progress(0.05, "overhangs found")
-    close = partial(close_taken, taken=taken_by(earlier)) if earlier else None
-    laid = make_grid(parts, overhangs, space, rules, choose, close)
+    close_voxels = partial(close_taken, taken=taken_by(earlier)) if earlier else None
+    laid = make_grid(parts, overhangs, space, rules, choose, close_voxels)
     progress(0.15, "grid laid")
     territories = find_territories(parts, laid, rules)
-    network = SupportNetwork(laid, rules, material, route, stop, territories)
-    routed = _route(network, rules, progress)
+    every = SupportNetwork(laid, rules, material, route, stop, territories)
+    network, routed, close = _route_spaced(every, overhangs, rules, progress)
+    laid, territories = network.laid, tuple(network.territories)
     notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
     supports = _shorten_legs(laid, territories, _ground(laid, territories, routed, rules), rules, extents)
     supports = supports._replace(notes=(*notes, *supports.notes))
     layout = _layout(parts, overhangs, laid, supports, routed.reasons)
-    return replace(layout, territories=territories)
+    return replace(layout, territories=territories, contact_spacing=rules.contact_spacing_mm, close=close)
+
+
+def _route_spaced(
+    every: SupportNetwork, overhangs: Sequence[PartOverhangs], rules: PlanningRules, progress: Progress
+) -> tuple[SupportNetwork, Routed, Bools]:
+    """Route the red squares that the contact spacing needs; where one stays unconnected, also those beside it.
+
+    Returns
+    -------
+    The network of these red squares, its routes, and the squares where contacts are at most half the spacing apart.
+    """
+    spacing, red = rules.contact_spacing_mm, every.red
+    if not spacing or not len(red.part):
+        return every, _route(every, rules, progress), np.zeros(len(red.part), np.bool_)
+    reachable = every.reachable()
+    chosen, close = space_contacts(
+        every.laid, overhangs, reachable, spacing=spacing, rules=rules, layer=rules.layer_mm
+    )
+    network = every.only(chosen)
+    routed = _route(network, rules, progress)
+    lost = np.flatnonzero(chosen)[[reason != "" for reason in routed.reasons]]
+    more = ~chosen & are_beside(red, lost[reachable[lost]], steps_within(spacing, every.laid.grid.pitch))
+    if more.any() and not every.stop():
+        chosen = chosen | more
+        network = every.only(chosen)
+        routed = _route(network, rules, progress)
+    return network, routed, close[chosen]
 
 
 def _route(network: SupportNetwork, rules: PlanningRules, progress: Progress) -> Routed:

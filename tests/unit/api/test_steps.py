@@ -17,7 +17,7 @@ from amprep.testing.problems import box_mesh
 
 FIXTURES = Path(__file__).parents[3] / "fixtures"
 TABLE = FIXTURES / "table.stl"
-COARSE = {"pitch_mm": 4}
+COARSE = {"pitch_mm": 4, "reach_mm": 5}
 
 
 def test_importing_amprep_imports_nothing_heavy():
@@ -49,10 +49,10 @@ def test_every_public_name_exists_and_is_documented():
 
 
 def test_the_steps_give_the_same_build_job_as_a_whole_run(tmp_path):
-    settings = {"supports.pitch_mm": 4, "cells.strategy": "prism"}
+    settings = {"supports.pitch_mm": 4, "supports.reach_mm": 5, "cells.strategy": "prism"}
     record = amprep.run(f"{TABLE}:2", output=tmp_path / "run", settings=settings)
     packed = amprep.pack(amprep.load(f"{TABLE}:2"))
-    planned = amprep.plan_supports(packed.builds[0], pitch_mm=4, cell="prism")
+    planned = amprep.plan_supports(packed.builds[0], pitch_mm=4, reach_mm=5, cell="prism")
     supported = amprep.emit_cells(planned)
     path = amprep.write(supported, tmp_path / "steps" / "table.build-1.3mf")
     assert record.builds[0].file == path.name
@@ -152,7 +152,7 @@ def test_progress_is_reported_as_fractions_with_the_stage(tmp_path):
         TABLE,
         output=tmp_path,
         dry_run=True,
-        settings={"supports.pitch_mm": 4, "cells.strategy": "prism"},
+        settings={"supports.pitch_mm": 4, "supports.reach_mm": 5, "cells.strategy": "prism"},
         progress=lambda fraction, message: heard.append((fraction, message)),
     )
     assert {message.partition(":")[0] for _, message in heard} >= {"read", "pack", "route", "cells", "verify"}

@@ -18,7 +18,12 @@ from amprep.model import Part
 from amprep.model.supports import EXCEPTED
 
 CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
-THESIS = {"supports.rules": "thesis", "supports.pitch_mm": 2.0, "printer": "EOS M290"}
+THESIS = {
+    "supports.rules": "thesis",
+    "supports.contact_spacing_mm": 0.0,
+    "supports.pitch_mm": 2.0,
+    "printer": "EOS M290",
+}
 
 
 def tree():

@@ -22,7 +22,7 @@ from amprep.model.supports import (
     Voxel,
 )
 from amprep.model.supports.edges import SupportEdges, square_keys
-from amprep.supports.grid.red_squares import SupportGrid
+from amprep.supports.grid.red_squares import RedSquares, SupportGrid
 from amprep.supports.grid.territory import PartTerritory
 from amprep.supports.routes.drifting import reroute_drifting
 from amprep.supports.routes.straightening import straighten
@@ -79,6 +79,25 @@ class SupportNetwork:
         self.rules, self.material, self.route, self.stop = rules, material, route, stop
         self.reasons = [""] * len(self.red.part)
         self.notes: list[tuple[int | None, str]] = []
+
+    def only(self, chosen: Bools) -> "SupportNetwork":
+        """Return a network of the chosen red squares ``(m,)`` alone, in which nothing is routed."""
+        laid = self.laid._replace(red=RedSquares(*(each[chosen] for each in self.red)))
+        territories = tuple(
+            each._replace(reachable=each.reachable[chosen[self.red.part == part]])
+            for part, each in enumerate(self.territories)
+        )
+        return SupportNetwork(laid, self.rules, self.material, self.route, self.stop, territories)
+
+    def reachable(self) -> Bools:
+        """Tell which red squares ``(m,)`` have a path to the plate, or are on it."""
+        found = np.asarray(self.red.square[:, 0] == 0)
+        for own in self.groups(np.flatnonzero(~found).astype(np.int32)):
+            if not len(own):
+                continue
+            posed = self.pose(own, NO_VOXELS)
+            found[own] = find_reachable(posed.problem)[posed.number] & ~self.are_blocked(own, NO_VOXELS)
+        return found
 
     def connect(self, red_squares: Ints, closed: Ints, stop: Stop, progress: Progress) -> SupportEdges:
         """Route red squares, with further voxels closed, and note why red squares stay unconnected.

@@ -41,6 +41,28 @@ On coplanar faces manifold3d leaves folds, and loses volume when it reads such a
 _WHOLE = 1.0 - 1e-6
 
 
+class TipSpacing(NamedTuple):
+    """Distance of tips where the rules do not state their pitch.
+
+    Attributes
+    ----------
+    distance
+        Largest distance (mm) between neighbouring tips; 0 for the defaults of the connectors.
+    close
+        ``(m,)`` columns whose tips are at most half of that apart.
+    """
+
+    distance: float
+    close: Bools
+
+    def classes(self) -> list[tuple[Bools, float]]:
+        """Return the columns with equal distances and the distance in them, mm."""
+        if not self.distance or not self.close.any():
+            return [(np.ones(len(self.close), np.bool_), self.distance)]
+        both = ((~self.close, self.distance), (self.close, self.distance / 2))
+        return [each for each in both if each[0].any()]
+
+
 class ShapedConnectors(NamedTuple):
     """Shaped connectors, and the notch to subtract from the cells below so that tips have their full height."""
 
@@ -82,6 +104,7 @@ def shape_connectors(
     base: Floats,
     sink: Floats,
     rules: ConnectorRules,
+    spacing: TipSpacing,
     overlap: float,
 ) -> ShapedConnectors:
     """Intersect plain connectors with tips and perforate them; they still end in the true surface of the part.
@@ -99,6 +122,8 @@ def shape_connectors(
         which the others may begin.
     rules
         Shape of the connectors.
+    spacing
+        Distance of tips in each column.
     overlap
         Depth (mm) to which connectors enter the part.
 
@@ -107,22 +132,28 @@ def shape_connectors(
     JobError
         When the neck is not narrower than the tip above it.
     """
-    count, profile = _profile(rules, float(columns.grid[2]))
-    tip_height, notch = 0.0, union([])
-    if profile is not None:
-        sites = find_sites(contact, columns, count, profile.width)
-        own, square = sites.column, columns.lo[:, 2]
-        pad = np.minimum(PAD, sink / 2.0)
-        floor = np.where(sink > 0.0, square - sink + pad, -np.inf)
+    side, square = float(columns.grid[2]), columns.lo[:, 2]
+    tip_height, lowest = 0.0, np.full(len(square), np.inf)
+    pad = np.minimum(PAD, sink / 2.0)
+    floor = np.where(sink > 0.0, square - sink + pad, -np.inf)
+    tips = []
+    for chosen, distance in spacing.classes():
+        count, profile = _profile(rules, side, distance)
+        if profile is None:
+            break
+        tip_height = profile.height
+        sites = find_sites(contact, _columns_of(columns, chosen), count, profile.width)
+        own = np.flatnonzero(chosen)[sites.column]
         level = np.maximum(sites.lowest - profile.height, floor[own])
-        lowest = np.full(len(square), np.inf)
         np.minimum.at(lowest, own, level)
         base = np.where(sink > 0.0, np.minimum(base, lowest - pad), base)
-        connectors ^= make_tips(sites, profile, level, base[own], overlap).translate(NUDGE)
+        tips.append(make_tips(sites, profile, level, base[own], overlap))
+    notch = union([])
+    if tips:
+        connectors ^= union(tips).translate(NUDGE)
         low = (lowest < square) & (sink > 0.0)
         plan = columns.square[low], columns.lo[low, :2], columns.hi[low, :2]
         notch = grid_prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
-        tip_height = profile.height
     if rules.perforation_mm:
         solid = _solid_heights(contact, columns, tip_height)
         for opening in perforations(columns, solid, rules.perforation_mm):
@@ -130,8 +161,15 @@ def shape_connectors(
     return ShapedConnectors(connectors, notch)
 
 
-def _profile(rules: ConnectorRules, side: float) -> tuple[int, TipProfile | None]:
-    """Return the number of tips along the side of a square and their profile; None for plain connectors."""
+def _columns_of(columns: ConnectorColumns, chosen: Bools) -> ConnectorColumns:
+    return columns._replace(lo=columns.lo[chosen], hi=columns.hi[chosen], square=columns.square[chosen])
+
+
+def _profile(rules: ConnectorRules, side: float, distance: float = 0.0) -> tuple[int, TipProfile | None]:
+    """Return the number of tips along the side of a square and their profile; None for plain connectors.
+
+    Where the rules do not state the pitch of the tips, these are at most `distance` mm apart, if that is not 0.
+    """
     neck, neck_height = rules.neck_mm, rules.neck_height_mm
     if rules.connector == "full" and neck:
         # the flanks above the neck have 45 degrees, so that they can be printed
@@ -142,6 +180,8 @@ def _profile(rules: ConnectorRules, side: float) -> tuple[int, TipProfile | None
     is_round = rules.connector == "point"
     pitch = rules.tip_pitch_mm or (side if is_round else TOOTH_PITCH)
     count = max(1, round(side / pitch))
+    if distance and not rules.tip_pitch_mm:
+        count = max(1, int(np.ceil(side / distance - 1e-9)))
     width = min(rules.tip_width_mm, WIDEST * side / count)
     return count, _require_neck(TipProfile(width, rules.tip_height_mm, neck, neck_height, is_round))
 

@@ -21,7 +21,7 @@ from amprep.supports.solids.extended_cells import extended_cells, on_red
 from amprep.supports.solids.keep_out import PartObstacles, drop_floating
 from amprep.supports.solids.least_section import post_solids
 from amprep.supports.solids.territory import clip_to_territory
-from amprep.supports.solids.tips import ShapedConnectors, shape_connectors, sink_depths
+from amprep.supports.solids.tips import ShapedConnectors, TipSpacing, shape_connectors, sink_depths
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -163,7 +163,10 @@ def _subtract_and_shape(
     columns = context.surfaces.columns
     columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
     base = columns.lo[:, 2] - depth[red]
-    return shape_connectors(connectors, contact, columns, base, sink[red], context.connector, context.overlap)
+    spacing = TipSpacing(context.layout.contact_spacing, context.layout.close[red])
+    return shape_connectors(
+        connectors, contact, columns, base, sink[red], context.connector, spacing, context.overlap
+    )
 
 
 def _feet(context: SupportContext, group: int) -> list["Manifold"]:
