@@ -12,6 +12,7 @@ from amprep.model.supports import (
     NO_FREE_VOXEL_BELOW,
     OUT_OF_TIME,
     TERRITORY,
+    Grounding,
 )
 from amprep.supports.grid.sizing import estimated_megabytes, usual_pitch
 
@@ -48,14 +49,21 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
         )
     if counts[TERRITORY]:
         yield (
-            f"{_have(counts[TERRITORY])} a path only outside the territory of the part; allow it with "
-            "--set supports.territory=shared, or give more room by a larger packing.clearance_mm or "
-            "supports.territory_margin_mm"
+            f"{_have(counts[TERRITORY])} a path only outside the territory of the part or with more drift than allowed"
+            f"{_stand_on_part(rules.grounding)}; allow such paths: --set supports.territory=shared, or a larger "
+            "supports.territory_margin_mm or supports.drift_ratio"
         )
     if counts[CAPACITY]:
         yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"
     if counts[OUT_OF_TIME]:
         yield f"{_have(counts[OUT_OF_TIME])} no path yet, because the time ended; allow a longer time limit"
+
+
+def _stand_on_part(grounding: Grounding) -> str:
+    """Return the advice to let supports stand on parts, empty where they may already."""
+    if grounding == "anywhere":
+        return ""
+    return "; supports may stand on the part below: --set supports.grounding=anywhere"
 
 
 def _have(count: int) -> str:

@@ -17,7 +17,7 @@ ADVICE = {
     "enclosed": "no path to the build plate; .* --set supports.grounding=anywhere",
     "capacity": "too little capacity; .* --set supports.escalation=cut",
     "time limit": "allow a longer time limit",
-    "territory": "only outside the territory of the part; .* --set supports.territory=shared",
+    "territory": "outside the territory of the part .*grounding=anywhere; .* --set supports.territory=shared",
 }
 
 
