@@ -54,7 +54,8 @@ def walls_of(
     vertices, triangles
         The mesh, ``(n, 3)`` mm and ``(m, 3)``.
     held
-        Overhangs; their faces are no walls, and above their edges and tips walls begin `overlap` higher.
+        Overhangs; neither their faces nor those beside them, to which contacts extend, are walls, and above their
+        edges and tips walls begin `overlap` higher.
     overlap
         Depth (mm) to which supports enter the part.
     stood_on
@@ -66,6 +67,7 @@ def walls_of(
     aside = np.linalg.norm(normal[:, :2], axis=1)
     keep = aside > _LEVEL * np.maximum(length, 1e-300)
     keep[held.faces] = False
+    keep[held.beside] = False
     if stood_on:
         keep &= normal[:, 2] <= _UP * length
     sharp = np.zeros(len(vertices), np.bool_)

@@ -8,7 +8,9 @@ from manifold3d import Manifold
 
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.geometry.meshes.sampling import sample_triangles
+from amprep.geometry.overhangs.carried.points import Limits
 from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.overhangs.limited import find_limited_overhangs
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, spaces_beside, wall_distance, walls_of
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, SupportBody
 from amprep.model.supports.rules import SupportRules
@@ -160,6 +162,33 @@ def test_level_faces_overhangs_and_upper_faces_that_supports_stand_on_are_no_wal
     sides = walls_of(pyramid.vertices, pyramid.triangles, none, 0.1, stood_on=True)
     assert len(sides.corners) == 2  # the two upright ones
     assert isinstance(sides, PartWalls)
+
+
+SHED = Manifold.hull_points(np.array([[x, y, z] for y in (0.0, 6.0) for x, z in ((0, 10), (8, 16), (0, 20))]))
+"""A roof that rises by 37 degrees, away from the wall that carries it."""
+
+
+def test_faces_beside_overhangs_are_no_walls_because_contacts_extend_to_them():
+    mesh = mesh_of(SHED + box((-3, 0, 0), (0, 6, 20)))
+    vertices, triangles, needs = find_limited_overhangs(
+        mesh.vertices, mesh.triangles, Limits(45.0, 1.0, 2.0, 8.0, 0.05, 0.04)
+    )
+    assert len(needs.faces) > 0
+    assert vertices[triangles[needs.beside]][:, :, 0].min() == pytest.approx(0.0, abs=1e-9)
+    walls = walls_of(vertices, triangles, needs, 0.1).corners
+    normal = np.cross(walls[:, 1] - walls[:, 0], walls[:, 2] - walls[:, 0])
+    assert (normal[:, 2] > -0.7 * np.linalg.norm(normal, axis=1)).all()
+    assert len(walls) > 0
+
+
+@pytest.mark.parametrize(("begins", "faults"), [(0.55, 0), (0.3, 1)])
+def test_a_post_that_extends_to_faces_beside_an_overhang_keeps_its_distance_from_the_wall_alone(
+    begins, faults
+):
+    part = SHED + box((-3, 0, 0), (0, 6, 20))
+    post = box((begins, 2, 0), (4, 4, 14)) - SHED.translate((0, 0, 0.1))
+    (post,) = (piece for piece in post.decompose() if piece.bounding_box()[2] < 0.1)
+    assert judged(post, part, rules="limits", ledge_mm=1.0, bridge_mm=2.0, bore_mm=8.0) == faults
 
 
 def test_the_judge_finds_unclipped_supports_and_accepts_clipped_ones():
