@@ -72,21 +72,26 @@ def region_edges(
 
 
 def _turns_down(surface: MergedMesh, faces: Int64s, number: Int64s, face: Int64s) -> Bools:
-    """Tell at which border edges the other face goes down and the solid has at least 180 degrees."""
+    """Tell at which border edges another face goes down and the solid has at least 180 degrees.
+
+    An edge of more than two faces has several others; one of them suffices.
+    """
     others = np.setdiff1d(np.arange(len(surface.triangles)), faces)
-    other = np.full(len(surface.ends), -1)
-    opposite = np.full(len(surface.ends), -1)
-    for side in range(3):
-        other[surface.edge[others, side]] = others
-        opposite[surface.edge[others, side]] = surface.triangles[others, (side + 2) % 3]
-    start, end = (surface.points[surface.ends[number, side]] for side in (0, 1))
+    position = np.full(len(surface.ends), -1)
+    position[number] = np.arange(len(number))
+    border = position[surface.edge[others]].reshape(-1)
+    opposite = np.roll(surface.triangles[others], -2, axis=1).reshape(-1)[border >= 0]
+    border = border[border >= 0]
+    start, end = (surface.points[surface.ends[number[border], side]] for side in (0, 1))
     along = end - start
-    ray = surface.points[opposite[number]] - start
+    ray = surface.points[opposite] - start
     square = np.maximum(np.einsum("ij,ij->i", along, along), LEVEL**2)
     ray -= (np.einsum("ij,ij->i", ray, along) / square)[:, None] * along
     height = np.linalg.norm(ray, axis=1)
-    out = np.einsum("ij,ij->i", ray, surface.normal[face]) >= -1e-4 * height
-    return np.asarray((other[number] >= 0) & (height > LEVEL) & out & (ray[:, 2] < -LEVEL * height))
+    out = np.einsum("ij,ij->i", ray, surface.normal[face[border]]) >= -1e-4 * height
+    turns = np.zeros(len(number), np.bool_)
+    turns[border[out & (height > LEVEL) & (ray[:, 2] < -LEVEL * height)]] = True
+    return turns
 
 
 def _solid_beyond(surface: MergedMesh, start: Floats, end: Floats, face: Int64s, angle: float) -> Bools:

@@ -22,6 +22,9 @@ GRANT_MM = 0.08
 _GRANT_PART = 0.01
 """Fraction of a span that is granted because lines through a point have a finite number of directions."""
 
+_NOISE = 0.01
+"""Width (mm) up to which a region that does not start in the air is noise of the mesh, and no overhang."""
+
 _INWARDS = 0.02
 """Distance (mm) by which samples are moved into their faces, so that no sample is on a border."""
 
@@ -86,11 +89,19 @@ def _carried_faces(
     edges = region_edges(surface, faces, region, reaches.angle, plate)
     in_air = np.zeros(int(region.max()) + 1, np.bool_)
     in_air[region[starts[surface.triangles[faces]].any(axis=1)]] = True
-    is_carried = np.zeros(len(points), np.bool_)
-    rows = np.flatnonzero(~in_air[region[owner]])
+    is_carried = (_widths(surface, faces, region) <= _NOISE)[region[owner]] & ~in_air[region[owner]]
+    rows = np.flatnonzero(~in_air[region[owner]] & ~is_carried)
     inner = _inwards(surface, points[rows], faces[owner[rows]])
     is_carried[rows] = carried(inner, region[owner[rows]], edges, reaches, thorough=thorough)
     return is_carried
+
+
+def _widths(surface: MergedMesh, faces: Int64s, region: Int64s) -> Floats:
+    """Return the width (mm) of each region: that of a strip with the same area and perimeter."""
+    edge, first, count = np.unique(surface.edge[faces], return_index=True, return_counts=True)
+    length = np.linalg.norm(np.diff(surface.points[surface.ends[edge]], axis=1)[:, 0], axis=1)
+    perimeter = np.bincount(region[first // 3], weights=np.where(count == 1, length, 0.0))
+    return np.asarray(2.0 * np.bincount(region, weights=surface.area[faces]) / np.maximum(perimeter, 1e-12))
 
 
 def _inwards(surface: MergedMesh, points: Floats, face: Int64s) -> Floats:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from amprep.arrays import Bools, Floats
+from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
 from amprep.checks.overhangs.samples import judged_overhangs
 from amprep.checks.violation import Violation
@@ -17,6 +18,9 @@ TOLERANCE = 0.1
 
 _SPACING = 1.0
 """Distance (mm) of samples on overhangs and supports."""
+
+_BORDER = 1.5
+"""Largest distance of the samples that are left out beside a blocker, over the uncertainty of its border."""
 
 _CELL = 0.5
 """Side (mm) of the squares in plan of which only the highest sample counts."""
@@ -44,7 +48,8 @@ def check_drift(build: Build, stop: Stop) -> list[Violation]:
             if part not in targets:
                 targets[part] = _targets(build.parts[part], build)
         above = np.concatenate([np.empty((0, 3)), *(targets[part] for part in body.parts)])
-        found += _judged(body, above, build)
+        uncertain = _BORDER * max((border_of(build.parts[part]) for part in body.parts), default=0.0)
+        found += _judged(body, above, build, uncertain)
     return found
 
 
@@ -57,13 +62,13 @@ def _targets(placed: PlacedPart, build: Build) -> Floats:
     return points[_highest(points)]
 
 
-def _judged(body: SupportBody, above: Floats, build: Build) -> list[Violation]:
+def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) -> list[Violation]:
     corners = body.mesh.triangles
     start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     once = start < end
     points, _ = sample_segments(body.mesh.vertices[start[once]], body.mesh.vertices[end[once]], _SPACING)
     points = points[_highest(points)]
-    excess = _excess(points, above, build)
+    excess = _excess(points, above, build) - uncertain
     far = np.flatnonzero(excess > TOLERANCE)
     if not len(far):
         return []

@@ -22,6 +22,9 @@ _MOST_PLANES = 400
 _GRANT = 1.02
 """Factor that is granted on the ratio."""
 
+_SAME_WIDTH = 0.05
+"""Widths (mm) that differ by less are judged together."""
+
 _TOUCH = 0.1
 """Horizontal distance (mm) up to which a support touches a wall of a part."""
 
@@ -32,7 +35,7 @@ class Leg(NamedTuple):
     Attributes
     ----------
     length_mm, width_mm
-        Length between the lowest and the highest plane that cuts it, and least width between its ends.
+        Length between the lowest and the highest plane that cuts it, and greatest width between them.
     position_mm
         ``(3,)`` middle of the lowest contour.
     """
@@ -69,9 +72,10 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     """Return the legs of a support with a ratio of length to width above a limit.
 
     Strategy. Horizontal planes cut the solid into contours. A leg is a chain of contours of which each has exactly one
-    above and one below; at a brace, a fork or an end it ends. What is no higher than one cell, such as the posts beside
-    its windows, is a detail of the cell. Long chains are cut where they touch a part, and end
-    where their tips begin.
+    above and one below; at a brace, a fork or an end it ends. It may be wider at its foot, in proportion to the length
+    above: a stretch of it is as wide as its widest contour, and the worst stretch counts. What is no higher than one
+    cell, such as the posts beside its windows, is a detail of the cell. Long chains are cut where they touch a part,
+    and end where their tips begin.
     """
     low, high = (float(corner[2]) for corner in body.mesh.bounds)
     step = max(STEP, (high - low) / _MOST_PLANES)
@@ -107,17 +111,22 @@ def _is_long(slices: Slices, chain: Int64s, limit: float) -> bool:
 
 
 def _leg(slices: Slices, chain: Int64s) -> Leg:
-    """Return the figures of a chain; the stretches of one width at both ends, which the part cuts, set no width."""
+    """Return the figures of the worst stretch of a chain: consecutive contours, as wide as the widest of them."""
     heights, widths = slices.heights[slices.plane[chain]], slices.width[chain]
-    usual = float(np.median(widths))
-    inner = (heights >= heights[0] + usual) & (heights <= heights[-1] - usual)
-    width = float(widths[inner].min()) if inner.any() else usual
-    lowest = slices.points_of(int(chain[0]))
-    return Leg(float(heights[-1] - heights[0]), width, lowest.mean(axis=0))
+    worst = Leg(0.0, 1.0, slices.points_of(int(chain[0])).mean(axis=0))
+    for width in np.unique(np.ceil(widths / _SAME_WIDTH)) * _SAME_WIDTH:
+        for run in _runs(np.arange(len(chain)), widths <= width + 1e-9):
+            length, own = float(heights[run[-1]] - heights[run[0]]), float(widths[run].max())
+            if length * worst.width_mm > worst.length_mm * own:
+                lowest = slices.points_of(int(chain[run[0]]))
+                worst = Leg(length, own, lowest.mean(axis=0))
+    return worst
 
 
 def _runs(chain: Int64s, free: Bools) -> list[Int64s]:
-    """Return the runs of consecutive contours that touch no part."""
+    """Return the runs of consecutive contours that are free."""
+    if not free.any():
+        return []
     changes = np.flatnonzero(np.diff(free)) + 1
     return [run for run, own in zip(np.split(chain, changes), np.split(free, changes), strict=True) if own[0]]
 

@@ -38,7 +38,8 @@ def struts_between(
     """Yield open struts between a square of a leg and squares of other sections of the part, the shortest first.
 
     A strut leads one square sideways in each layer, downwards or upwards from the leg. It may lead to an end of the
-    leg, but not to a section there that the leg already meets in the next layer.
+    leg, but not to a section there that the leg already meets in the next layer. Columns that touch at a corner are
+    one slender leg together, so no strut leads from one to the other.
 
     Parameters
     ----------
@@ -60,6 +61,8 @@ def struts_between(
     for distance in range(1, longest + 1):
         excluded = leg if distance == 1 else leg[1:-1]
         for dy, dx in offsets(distance):
+            if distance == 2 and abs(dy) == abs(dx):
+                continue
             for end in ((plane - distance, y + dy, x + dx), (plane + distance, y + dy, x + dx)):
                 section = room.section.get(end, -1)
                 if section < 0 or section in excluded or room.part[end] != part:

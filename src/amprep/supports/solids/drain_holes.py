@@ -20,6 +20,9 @@ _ROUNDS = 4
 _BESIDE = 0.01
 """Distance (mm) of a piece from a hole that cut it off."""
 
+_SLICES = 3
+"""Slices into which holes are divided to look for what is left beside them."""
+
 _CRUMB = 1e-3
 """Largest volume (mm3) of support that may lose its connection to the plate by a drain hole."""
 
@@ -71,19 +74,23 @@ def _thin_rests(
 ) -> list["Manifold"]:
     """Return solids around the pieces that holes leave beside them and in which no disc of the least wall fits.
 
-    Pieces are looked for in horizontal sections, of which each hole has one.
+    Pieces are looked for in horizontal sections, of which each slice of a hole has one: beside tips, which taper, what
+    is left at the lower end of a hole can be thick enough, and thin above.
     """
     low, high = (np.array([each[end] for each in holes]) for end in (0, 1))
+    levels = np.linspace(low[:, 2], high[:, 2], _SLICES + 1)
     found = []
-    for height in heights_through(low[:, 2], high[:, 2]):
-        cut = (low[:, 2] < height) & (high[:, 2] > height)
-        for piece in opened.slice(height).decompose():
-            left, front, right, back = piece.bounds()
-            beside = cut & (low[:, :2] <= (right + _BESIDE, back + _BESIDE)).all(axis=1)
-            beside &= (high[:, :2] >= (left - _BESIDE, front - _BESIDE)).all(axis=1)
-            if beside.any() and piece.offset(_BESIDE - least_wall / 2.0).is_empty():
-                bottom, top = float(low[beside, 2].min()), float(high[beside, 2].max())
-                found.append(piece.offset(_BESIDE).extrude(top - bottom).translate((0.0, 0.0, bottom)))
+    for bottom, top in zip(levels, levels[1:], strict=False):
+        for height in heights_through(bottom, top):
+            cut = (bottom < height) & (top > height)
+            for piece in opened.slice(height).decompose():
+                left, front, right, back = piece.bounds()
+                beside = cut & (low[:, :2] <= (right + _BESIDE, back + _BESIDE)).all(axis=1)
+                beside &= (high[:, :2] >= (left - _BESIDE, front - _BESIDE)).all(axis=1)
+                if beside.any() and piece.offset(_BESIDE - least_wall / 2.0).is_empty():
+                    ends = float(bottom[beside].min()), float(top[beside].max())
+                    prism = piece.offset(_BESIDE).extrude(ends[1] - ends[0])
+                    found.append(prism.translate((0.0, 0.0, ends[0])))
     return found
 
 

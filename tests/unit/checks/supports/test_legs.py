@@ -73,11 +73,22 @@ def test_a_wall_beside_half_of_a_leg_leaves_the_other_half():
     assert legs(post, part=table(30) + box((2, 20, 15), (3, 0, 7))) == []
 
 
-def test_a_leg_is_as_wide_as_its_thinnest_place_between_the_ends():
-    waist = box((2, 2, 15), (5, 5, 0)) - box((2, 4, 2), (5.8, 4, 7))
-    (leg,) = legs(waist, 15.0)
-    assert leg.width_mm == pytest.approx(0.8, abs=0.02)
-    assert legs(box((2, 2, 15), (5, 5, 0)), 15.0) == []
+def post_with_a_foot(foot):
+    """Return a post 2 mm wide and 34 mm high, on a foot of 4 mm that is included in its height."""
+    return box((2, 2, 34), (5, 5, 0)) + box((4, 4, foot), (4, 4, 0))
+
+
+def test_a_leg_may_be_wider_below_in_proportion_to_the_length_above():
+    assert len(legs(post_with_a_foot(5), 34.0)) == 1
+    assert legs(post_with_a_foot(16), 34.0) == []
+
+
+def test_a_short_wide_place_does_not_divide_a_leg():
+    knot = box((2, 2, 60), (5, 5, 0)) + box((4, 4, 2), (4, 4, 30))
+    (leg,) = legs(knot, 60.0)
+    assert leg.length_mm == pytest.approx(60.0, abs=2 * STEP)
+    narrow = box((2, 2, 15), (5, 5, 0)) - box((2, 4, 2), (5.8, 4, 7))
+    assert legs(narrow, 15.0) == [], "a short narrow place is none that the whole leg is measured by"
 
 
 def test_ends_that_the_part_cuts_and_tips_set_no_width():
