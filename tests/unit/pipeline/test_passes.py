@@ -20,6 +20,8 @@ from amprep.model.supports import EXCEPTED
 CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
 THESIS = {
     "supports.rules": "thesis",
+    "supports.territory": "shared",
+    "supports.drift_mm": 0.0,
     "supports.contact_spacing_mm": 0.0,
     "supports.pitch_mm": 2.0,
     "printer": "EOS M290",
