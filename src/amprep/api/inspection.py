@@ -81,6 +81,7 @@ def inspect(
 def explain_regions(
     *inputs: str | Path | Job,
     part: str = "*",
+    center: bool = False,
     printer: str | Path | Mapping[str, Any] | None = None,
     settings: Mapping[str, Any] | None = None,
     allow_surface: bool = False,
@@ -96,6 +97,8 @@ def explain_regions(
         Mesh files, 3MF files and folders, or one job file (.toml).
     part
         Name of the part or of its file; ``*`` and ``?`` stand for any letters and any one letter.
+    center
+        Whether all parts together are first moved to the middle of the plate and onto it.
     printer
         Printer by name, path of a printer profile, or a table like one; default: the job's, else the EOS M290.
     settings
@@ -122,4 +125,6 @@ def explain_regions(
     """
     resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))
     shown = watcher or ProgressWatcher(progress)
-    return region_stage.explain_regions(resolved, part, allow_surface=allow_surface, watcher=shown)
+    return region_stage.explain_regions(
+        resolved, part, center=center, allow_surface=allow_surface, watcher=shown
+    )

@@ -75,9 +75,10 @@ def build_and_report(
     finish(record, to_json, lambda shown: summary(shown, folder), options)
 
 
-def explain_and_report(inputs: list[str], part: str, options: BuildOptions) -> NoReturn:
+def explain_and_report(inputs: list[str], part: str, options: BuildOptions, *, center: bool) -> NoReturn:
     """Print the overhang regions of a part and exit."""
-    record = call_api("explain_regions", inputs, options, {}, part=part, allow_surface=options.allow_surface)
+    own = {"part": part, "center": center, "allow_surface": options.allow_surface}
+    record = call_api("explain_regions", inputs, options, {}, **own)
 
     from amprep.report.regions import summary, to_json
 

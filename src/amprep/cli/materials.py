@@ -69,9 +69,10 @@ def _print_table(materials: "list[Material]") -> None:
 
     table = Table(box=None)
     table.add_column("name", no_wrap=True)
-    for heading in ("g/cm3", "ledge", "bridge", "bore", "layer (mm)", "mm2/s"):
+    for heading in ("g/cm3", "ledge mm", "bridge mm", "bore mm", "layer mm", "mm2/s"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("source")
+    sources = Table(box=None, show_header=False)
+    sources.add_column(no_wrap=True)
     for material in materials:
         profile = material.profile
         default = " [dim](default)" if profile.name in DEFAULT_MATERIALS.values() else ""
@@ -82,9 +83,9 @@ def _print_table(materials: "list[Material]") -> None:
             *map(_limit, (profile.ledge_mm, profile.bridge_mm, profile.bore_mm)),
             f"{profile.layer_mm:g}",
             f"{profile.scan_mm2_s:g}",
-            origin + escape(profile.source),
         )
-    Console().print(table)
+        sources.add_row(escape(profile.name), origin + escape(profile.source))
+    Console().print(table, "", "Sources:", sources)
 
 
 def _limit(value: float) -> str:

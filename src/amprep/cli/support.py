@@ -53,5 +53,5 @@ def support(
     2 for wrong input (nothing written), 130 if interrupted (nothing written).
     """
     if explain is not None:
-        explain_and_report(inputs, explain, options)
+        explain_and_report(inputs, explain, options, center=center)
     build_and_report("support", inputs, options, {"supports.grounding": grounding}, center=center)

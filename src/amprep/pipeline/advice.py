@@ -44,7 +44,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
         )
     if counts[ENCLOSED] and rules.grounding == "plate-only":
         yield (
-            f"{_have(counts[ENCLOSED])} no path to the build plate; supports may stand on the part below: "
+            f"{_have(counts[ENCLOSED])} no path to the build plate; let supports stand on their own part: "
             "--set supports.grounding=anywhere"
         )
     if counts[TERRITORY]:
@@ -63,7 +63,7 @@ def _stand_on_part(grounding: Grounding) -> str:
     """Return the advice to let supports stand on parts, empty where they may already."""
     if grounding == "anywhere":
         return ""
-    return "; supports may stand on the part below: --set supports.grounding=anywhere"
+    return "; let supports stand on their own part: --set supports.grounding=anywhere"
 
 
 def _have(count: int) -> str:

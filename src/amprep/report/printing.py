@@ -61,6 +61,6 @@ def _masses(estimates: Sequence[PrintingEstimate]) -> str:
     """Return the mass of parts and supports, or that the density of the material is unknown."""
     total = total_mass_g(estimates)
     if total is None:
-        return "mass unknown (no density)"
+        return "mass unknown (no density: choose an alloy by --material)"
     supports = sum(each.supports_g or 0.0 for each in estimates)
     return f"mass {' '.join(mass_words(total))} (supports {' '.join(mass_words(supports))})"

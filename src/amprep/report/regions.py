@@ -98,8 +98,10 @@ def summary(record: RegionsRecord) -> "RenderableType":
         table.add_column(heading, justify="right", no_wrap=True)
     for heading in ("verdict", "taken by"):
         table.add_column(heading, overflow="fold")
+    several = len({each.part for each in record.regions}) > 1
     for each in record.regions:
-        table.add_row(*(Text(printable(cell)) for cell in _cells(each)))
+        name = each.name if several else each.name.partition(" of ")[0]
+        table.add_row(*(Text(printable(cell)) for cell in (name, *_cells(each))))
     return Group(Text(printable(str(record))), table)
 
 
@@ -108,7 +110,6 @@ def _cells(region: ExplainedRegion) -> Sequence[str]:
     measure = "" if region.kind == "tip" else f"{region.measure:.1f}{' mm' if length else ''}"
     rule = f"{region.rule}: {region.settings}" if region.settings else region.rule
     return (
-        region.name,
         region.kind,
         f"{region.size_mm:.1f}" if region.size_mm else "",
         "" if region.kind == "tip" else f"{region.angle_deg:.0f}",

@@ -35,8 +35,8 @@ def test_a_file_keeps_the_rules_and_sizes_that_judges_need(tmp_path):
     build = ledge_build(3.0, supported=True, least_wall_mm=0.3, leg_ratio=10.0)
     write_build(build, tmp_path / "a.3mf")
     judged = verify_file(tmp_path / "a.3mf")
-    assert "0.3 mm, to 0.03 mm" in judged.extent["least wall"]
-    assert judged.extent["coverage"] == "beyond ledges 1, bridges 2, bores 8 mm, to 0.08 mm"
+    assert "0.3 mm, tolerance 0.03 mm" in judged.extent["least wall"]
+    assert judged.extent["coverage"] == "ledges 1, bridges 2, bores 8 mm are carried, tolerance 0.08 mm"
 
 
 def test_builds_by_the_rules_of_the_thesis_are_judged_by_none_of_the_limits(tmp_path):

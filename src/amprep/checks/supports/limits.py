@@ -44,18 +44,20 @@ def check_limits(build: Build, stop: Stop) -> JudgedLimits:
 
 
 def _extent(rules: SupportRules, sections: int) -> dict[str, str]:
-    own, cut = rules.territory == "own", f"to {TOLERANCE:g} mm: {counted(sections, 'section')}"
+    own, cut = rules.territory == "own", f"tolerance {TOLERANCE:g} mm: {counted(sections, 'section')}"
     drifts = [f"{rules.drift_ratio:.3g} of the height"] if rules.drift_ratio > 0.0 else []
     drifts += [f"{rules.drift_mm:g} mm"] if rules.drift_mm > 0.0 else []
-    margin = f"margin {rules.territory_margin_mm:g} mm, to {territory.TOLERANCE:g} mm"
+    margin = f"margin {rules.territory_margin_mm:g} mm, tolerance {territory.TOLERANCE:g} mm"
     known = {
         LEAST_WALL: f"{rules.least_wall_mm:g} mm, {cut}" if rules.least_wall_mm > 0.0 else "",
         LEAST_CONTACT: f"{rules.least_contact_mm2:g} mm2, {cut}" if rules.least_contact_mm2 > 0.0 else "",
-        legs.PROMISE: f"{rules.leg_ratio:g} to 1, by planes {legs.STEP:g} mm apart"
+        legs.PROMISE: f"length at most {rules.leg_ratio:g} times the width, by planes {legs.STEP:g} mm apart"
         if rules.leg_ratio > 0.0
         else "",
         territory.PROMISE: margin if own else "",
-        drift.PROMISE: f"{', at most '.join(drifts)}, to one square of the grid" if own and drifts else "",
+        drift.PROMISE: f"{', at most '.join(drifts)}, tolerance one square of the grid"
+        if own and drifts
+        else "",
     }
     return {promise: text or f"{NOT_JUDGED}: no limit" for promise, text in known.items()}
 
@@ -66,6 +68,6 @@ def _coverage_extent(build: Build) -> str:
     if not build.settings.supported:
         return f"{NOT_JUDGED}: the job asked for no supports"
     if not rules.has_limits:
-        return f"all below {rules.overhang_angle_deg:g} degrees"
+        return f"all overhangs flatter than {rules.overhang_angle_deg:g} degrees"
     sizes = f"ledges {rules.ledge_mm:g}, bridges {rules.bridge_mm:g}, bores {rules.bore_mm:g} mm"
-    return f"beyond {sizes}, to {GRANT_MM:g} mm"
+    return f"{sizes} are carried, tolerance {GRANT_MM:g} mm"

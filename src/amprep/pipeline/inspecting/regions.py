@@ -12,20 +12,26 @@ from amprep.overhangs.conditions import RegionConditions, is_named
 from amprep.overhangs.unsupported import region_name
 from amprep.overhangs.verdicts import verdict_words
 from amprep.pipeline.passes import take_regions
-from amprep.pipeline.reading import read_job
+from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, Watcher
+from amprep.pipeline.support_plate import place_as_read
 from amprep.report.regions import ExplainedRegion, RegionsRecord
 from amprep.threemf.transforms import round_as_stored
 
 
 def explain_regions(
-    resolved: ResolvedJob, pattern: str, *, allow_surface: bool = False, watcher: Watcher
+    resolved: ResolvedJob,
+    pattern: str,
+    *,
+    center: bool = False,
+    allow_surface: bool = False,
+    watcher: Watcher,
 ) -> RegionsRecord:
     """Find the overhang regions of the parts that a pattern names, and say what takes each.
 
-    Parts are at their positions in the file, as `amprep support` supports them; a part that reaches below the plate is
-    raised to the lift of the job.
+    Parts are at their positions in the file, as `amprep support` supports them. Without `center` a part that reaches
+    below the plate is raised to the lift of the job.
 
     Parameters
     ----------
@@ -33,6 +39,8 @@ def explain_regions(
         Job with the offers that it names.
     pattern
         Name of parts or of their files, with ``*`` and ``?``.
+    center
+        Whether all parts together are first moved to the middle of the plate and onto it.
     allow_surface
         Whether meshes that are not solids are accepted as surfaces.
     watcher
@@ -46,17 +54,18 @@ def explain_regions(
         For wrong input.
     """
     clock = Clock(watcher)
-    parts = read_job(resolved, clock, allow_surface=allow_surface).parts
-    chosen = [part for part in parts if is_named(part, pattern)]
+    loaded = read_job(resolved, clock, allow_surface=allow_surface)
+    parts, lift = loaded.parts, resolved.job.packing.lift_mm
+    chosen = [index for index, part in enumerate(parts) if is_named(part, pattern)]
     if not chosen:
         raise JobError(f"no part is called {pattern!r}{nearest_hint(pattern, [part.name for part in parts])}")
     with clock.stage("overhangs"):
-        regions = [each for part in chosen for each in _regions_of(resolved, part)]
+        lying = _in_the_middle(loaded) if center else [_placed(part, lift) for part in parts]
+        regions = [each for index in chosen for each in _regions_of(resolved, parts[index], lying[index])]
     return RegionsRecord(resolved.job.name, tuple(regions))
 
 
-def _regions_of(resolved: ResolvedJob, part: Part) -> list[ExplainedRegion]:
-    placed = _placed(part, resolved.job.packing.lift_mm)
+def _regions_of(resolved: ResolvedJob, part: Part, placed: PlacedPart) -> list[ExplainedRegion]:
     taken = take_regions(resolved, [placed])
     (own,), (rules,) = taken.overhangs, taken.rules
     return [
@@ -78,6 +87,13 @@ def _regions_of(resolved: ResolvedJob, part: Part) -> list[ExplainedRegion]:
         )
         for number, (region, rule) in enumerate(zip(own.overhangs.regions, rules.tolist(), strict=True))
     ]
+
+
+def _in_the_middle(loaded: LoadedParts) -> list[PlacedPart]:
+    """Return the first copy of each part as `amprep support --center` places it."""
+    placed = place_as_read(loaded, center=True).parts
+    first = np.cumsum([0, *(len(part.origins) for part in loaded.parts)])[:-1]
+    return [placed[index] for index in first.tolist()]
 
 
 def _placed(part: Part, lift: float) -> PlacedPart:

@@ -76,3 +76,9 @@ def test_the_command_prints_a_table_or_json_and_writes_nothing(job):
     regions = json.loads(done.stdout)["regions"]
     assert {each["part"] for each in regions} == {"hook", "other"}
     assert sorted(job.parent.iterdir()) == before
+
+
+def test_center_puts_parts_on_the_plate_where_their_bottom_is_no_overhang(job):
+    """As `amprep support --center` does: the lowest part stands on the plate."""
+    record = amprep.explain_regions(job, part="other", center=True)
+    assert {round(each.height_mm) for each in record.regions} == {10, 18, 25}
