@@ -10,6 +10,7 @@ from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, limits, xy_distance
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.coverage import check_coverage
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, silent
@@ -64,17 +65,18 @@ def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress =
         Called before each group of judges.
     """
     stop = stop or Stop()
+    solids = KnownSolids()
     progress(0.0, "parts")
     found, pairs = judge_placed(build.parts, build.settings, stop)
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
-        ("supports", lambda: [*check_bodies(build, stop), *check_xy_distance(build, stop)]),
+        ("supports", lambda: [*check_bodies(build, stop, solids), *check_xy_distance(build, stop)]),
         ("coverage", lambda: check_coverage(build)),
     )
     for index, (name, judge) in enumerate(judges, start=1):
         progress(index / (len(judges) + 2), name)
         found += judge()
     progress(1.0 - 1.0 / (len(judges) + 2), "limits")
-    judged = limits.check_limits(build, stop)
+    judged = limits.check_limits(build, stop, solids)
     progress(1.0, "verified")
     return JudgedBuild((*found, *judged.violations), pairs, judged.extent)
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +9,9 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.checks.supports import beams
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
 from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
@@ -35,27 +34,28 @@ NEGLIGIBLE_VOLUME = 1e-4
 class JudgedBody:
     """A support body with its solid, which is made when it is first needed."""
 
-    def __init__(self, support: SupportBody) -> None:
-        self.support = support
+    def __init__(self, support: SupportBody, solids: KnownSolids) -> None:
+        self.support, self.solids = support, solids
         self.name = support.name
 
-    @cached_property
+    @property
     def solid(self) -> "Manifold":
         """The body as a solid."""
-        return as_manifold(self.support.mesh.vertices, self.support.mesh.triangles)
+        return self.solids.of(self.support.mesh)
 
 
-def check_bodies(build: Build, stop: Stop) -> list[Violation]:
+def check_bodies(build: Build, stop: Stop, solids: KnownSolids | None = None) -> list[Violation]:
     """Return the broken promises of the supports of a build.
 
     Solids are judged exactly, by manifold3d. Walls without thickness are judged at their corners and at the centres of
-    triangles and edges, beams at points on balls along them.
+    triangles and edges, beams at points on balls along them. `solids` are shared with other judges.
     """
     found: list[Violation] = []
+    solids = solids or KnownSolids()
     for support in build.supports:
-        solids = None if support.lattice is None else support.lattice.solids
-        body = JudgedBody(support if solids is None else replace(support, mesh=solids))
-        faults = _unsound(support) if support.lattice else _closed(body)
+        beside = None if support.lattice is None else support.lattice.solids
+        body = JudgedBody(support if beside is None else replace(support, mesh=beside), solids)
+        faults = _unsound(support, solids) if support.lattice else _closed(body)
         found += faults
         if faults:
             continue
@@ -80,7 +80,7 @@ def _closed(body: JudgedBody) -> list[Violation]:
     return [Violation(CLOSED, body.name, f"expected a solid, manifold3d says {status} and {volume:.3g} mm3")]
 
 
-def _unsound(support: SupportBody) -> list[Violation]:
+def _unsound(support: SupportBody, solids: KnownSolids) -> list[Violation]:
     """Judge the arrays of beams, the solids beside them, and the mesh for readers without beams."""
     if support.lattice is None:
         return []
@@ -88,7 +88,7 @@ def _unsound(support: SupportBody) -> list[Violation]:
     found = [Violation(CLOSED, support.name, fault)] if fault else []
     for mesh in (support.lattice.solids, support.lattice.stand_in):
         if len(mesh.triangles):
-            found += _closed(JudgedBody(replace(support, mesh=mesh, lattice=None)))
+            found += _closed(JudgedBody(replace(support, mesh=mesh, lattice=None), solids))
     return found
 
 
@@ -140,6 +140,8 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
     """
     if body.support.lattice is not None:
         return _standing_beams(body, body.support.lattice, build)
+    if _all_reach_plate(body):
+        return []
     points, triangles = merge_equal_vertices(
         np.round(body.support.mesh.vertices, 4), body.support.mesh.triangles
     )
@@ -161,6 +163,15 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
     place = np.round(first, 2).tolist()
     message = f"floats: {floating} of {counted(count, 'component')} not on the plate, one at {place} mm"
     return [Violation(STANDING, body.name, message)]
+
+
+def _all_reach_plate(body: JudgedBody) -> bool:
+    """Tell whether every component reaches the plate even if none of those that share a point are connected."""
+    mesh = body.support.mesh
+    used, shell = label_shells(mesh.triangles, len(mesh.vertices))
+    lowest = np.full(used, np.inf)
+    np.minimum.at(lowest, shell, mesh.vertices[:, 2][mesh.triangles].min(axis=1))
+    return bool((lowest <= TOLERANCE).all())
 
 
 def _standing_beams(body: JudgedBody, lattice: Lattice, build: Build) -> list[Violation]:
@@ -225,7 +236,7 @@ def _volume_deeper(body: JudgedBody, placed: PlacedPart, depth: float, *, feet: 
 
     With `feet`, the point `depth` above them must be in the part too.
     """
-    part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
+    part = body.solids.of(placed.mesh)
     below = body.solid ^ part.translate((0.0, 0.0, depth))
     if below.is_empty() or below.volume() <= NEGLIGIBLE_VOLUME:
         return 0.0

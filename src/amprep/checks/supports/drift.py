@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats
+from amprep.arrays import Floats, Int64s
 from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
 from amprep.checks.overhangs.samples import judged_overhangs
@@ -24,6 +24,9 @@ _BORDER = 1.5
 
 _CELL = 0.5
 """Side (mm) of the squares in plan of which only the highest sample counts."""
+
+_FEW = 4
+"""Number of the nearest targets of a point that are tried before all of them."""
 
 _CHUNK = 2_000_000
 """Pairs of samples that are computed at once."""
@@ -63,11 +66,7 @@ def _targets(placed: PlacedPart, build: Build) -> Floats:
 
 
 def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) -> list[Violation]:
-    corners = body.mesh.triangles
-    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    once = start < end
-    points, _ = sample_segments(body.mesh.vertices[start[once]], body.mesh.vertices[end[once]], _SPACING)
-    points = points[_highest(points)]
+    points = _samples(body)
     excess = _excess(points, above, build) - uncertain
     far = np.flatnonzero(excess > TOLERANCE)
     if not len(far):
@@ -81,6 +80,17 @@ def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) ->
     return [Violation(PROMISE, body.name, message)]
 
 
+def _samples(body: SupportBody) -> Floats:
+    """Return the highest points in each square of the plan, of the vertices and of points along edges."""
+    vertices, corners = body.mesh.vertices, body.mesh.triangles
+    start, end = corners.ravel(), corners[:, [1, 2, 0]].ravel()
+    way = np.abs(vertices[start] - vertices[end]).sum(axis=1)
+    long = np.flatnonzero((start < end) & (way > _SPACING))
+    along, _ = sample_segments(vertices[start[long]], vertices[end[long]], _SPACING)
+    points = np.concatenate([vertices, along])
+    return points[_highest(points)]
+
+
 def _excess(points: Floats, above: Floats, build: Build) -> Floats:
     """Return how much farther each point is to the side than it may be, mm; at most 0 where it is not."""
     rules, sizes = build.settings.rules, build.settings.sizes
@@ -90,24 +100,50 @@ def _excess(points: Floats, above: Floats, build: Build) -> Floats:
     limit = rules.drift_mm or np.inf
     square = sizes.square_mm or build.settings.reach
     nearby = np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0)
-    rows = max(_CHUNK // len(above), 1)
-    for at in range(0, len(points), rows):
-        own = points[at : at + rows]
-        away = np.hypot(own[:, None, 0] - above[:, 0], own[:, None, 1] - above[:, 1])
-        climb = above[:, 2] - own[:, None, 2]
+
+    def over(rows: Int64s, targets: Floats) -> Floats:
+        """Return the excess of points over each of their targets."""
+        own = points[rows, None]
+        away = np.hypot(own[..., 0] - targets[..., 0], own[..., 1] - targets[..., 1])
+        climb = targets[..., 2] - own[..., 2]
         allowed = np.minimum(rules.drift_ratio * climb if rules.drift_ratio > 0.0 else np.inf, limit)
-        over = away - np.maximum(allowed, 0.0) - nearby
-        least[at : at + rows] = np.where(climb > -build.settings.overlap - square, over, np.inf).min(axis=1)
+        excess = away - np.maximum(allowed, 0.0) - nearby
+        return np.asarray(np.where(climb > -build.settings.overlap - square, excess, np.inf))
+
+    nearest = _nearest(points, above)
+    every = np.arange(len(points))
+    least = over(every, above[nearest]).min(axis=1)
+    left = np.flatnonzero(least > TOLERANCE)
+    rows = max(_CHUNK // len(above), 1)
+    for at in range(0, len(left), rows):
+        some = left[at : at + rows]
+        least[some] = over(some, above[None]).min(axis=1)
     base = points[:, 2] <= sizes.base_height_mm
     return np.asarray(least - np.where(base, sizes.base_margin_mm, 0.0))
 
 
-def _highest(points: Floats) -> Bools:
-    """Tell which points are the highest in their square of the plan."""
+def _nearest(points: Floats, above: Floats) -> Int64s:
+    """Return the targets that are nearest to each point in plan, ``(n, k)``; they decide nearly always."""
+    from scipy.spatial import KDTree
+
+    count = min(_FEW, len(above))
+    found = KDTree(above[:, :2]).query(points[:, :2], k=count)[1]
+    return np.asarray(found, np.int64).reshape(len(points), count)
+
+
+def _highest(points: Floats) -> Int64s:
+    """Return the highest of the points in each square of the plan."""
     square = np.floor(points[:, :2] / _CELL).astype(np.int64)
-    order = np.lexsort((-points[:, 2], square[:, 1], square[:, 0]))
-    first = np.ones(len(order), np.bool_)
-    first[1:] = (np.diff(square[order], axis=0) != 0).any(axis=1)
-    highest = np.zeros(len(points), np.bool_)
-    highest[order[first]] = True
-    return highest
+    square -= square.min(axis=0, initial=0)
+    number = square[:, 0] * (int(square[:, 1].max(initial=0)) + 1) + square[:, 1]
+    order = np.argsort(number, kind="stable")
+    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+    height = points[order, 2]
+    top = (
+        np.repeat(np.maximum.reduceat(height, starts), np.diff(starts, append=len(order)))
+        if len(order)
+        else height
+    )
+    highest = np.flatnonzero(height == top)
+    _, first = np.unique(number[order[highest]], return_index=True)
+    return np.asarray(order[highest[first]])

@@ -3,18 +3,22 @@
 Strategy. Horizontal planes cut each finished solid. A connected piece of a section is too narrow if nothing is left of
 it when its border moves inwards by half the least wall: no disc of that size fits in it. A fin is too thin if it
 reaches far beyond what such discs cover; near the discs are the corners, which no disc fills. A piece beside a wall of
-a part is one with the part there, and is judged together with it. Ends that taper on purpose, of teeth, points and
+a part is one with the part there, and is judged together with it. Contours of a shape that is known to be right need no
+further judge (`amprep.checks.supports.shapes`). Ends that taper on purpose, of teeth, points and
 necks, may be as narrow as 0.1 mm, or as they are wide if that is less, up to their height below the part.
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.checks.supports.shapes import KnownShapes
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
-from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.meshes.manifold import accepted
 from amprep.model.build import Build, BuildSettings, SupportBody
 from amprep.model.control import Stop
 
@@ -80,22 +84,24 @@ class ThinPlaces(NamedTuple):
     sections: int
 
 
-def check_least_section(build: Build, stop: Stop) -> tuple[list[Violation], int]:
+def check_least_section(
+    build: Build, stop: Stop, solids: KnownSolids | None = None
+) -> tuple[list[Violation], int]:
     """Return the supports that are too thin somewhere, and the number of sections that were judged.
 
-    Walls without thickness are not judged.
+    Walls without thickness are not judged. `solids` are those that other judges have made.
     """
     found: list[Violation] = []
     sections = 0
     rules = build.settings.rules
     if rules.least_wall_mm <= 0.0 and rules.least_contact_mm2 <= 0.0:
         return found, sections
-    parts = [as_manifold(placed.mesh.vertices, placed.mesh.triangles) for placed in build.parts]
+    judge = _Judge(build, solids or KnownSolids())
     for body in build.supports:
         if stop.cancelled.is_set():
             break
         if not body.surface:
-            thin = thin_places(body, build.settings, parts)
+            thin = judge.thin_places(body)
             sections += thin.sections
             found += _violations(body, build.settings, thin.places)
     return found, sections
@@ -120,27 +126,45 @@ def _violations(body: SupportBody, settings: BuildSettings, places: Sequence[Thi
     return found
 
 
-def thin_places(body: SupportBody, settings: BuildSettings, parts: "Sequence[Manifold]") -> ThinPlaces:
-    """Return the places where a support is too thin.
+class _Limits(NamedTuple):
+    """The least wall (mm) and the least contact (mm2), less the tolerance."""
 
-    Parameters
-    ----------
-    body
-        A solid.
-    settings
-        Rules, and the sizes of tips.
-    parts
-        The parts of the build as solids.
-    """
-    solid = as_manifold(body.mesh.vertices, body.mesh.triangles)
-    if not accepted(solid):
-        return ThinPlaces([], 0)
-    places: list[ThinPlace] = []
-    heights = _heights(body)
-    for height in heights.tolist():
-        section = _Section(solid.slice(height), height, settings, parts)
-        places += [*section.small_pieces(), *section.fins()]
-    return ThinPlaces(places, len(heights))
+    wall: float
+    contact: float
+
+    @property
+    def reach(self) -> float:
+        """Distance (mm) beyond the centres of discs up to which corners reach."""
+        return self.wall / 2.0 + _CORNER * self.wall
+
+
+def _limits_of(settings: BuildSettings) -> _Limits:
+    wall, contact = settings.rules.least_wall_mm, settings.rules.least_contact_mm2
+    return _Limits(max(wall - TOLERANCE, 0.0), max(contact - 2.0 * TOLERANCE * wall, 0.0))
+
+
+class _Judge:
+    """Judges the supports of a build one after the other."""
+
+    def __init__(self, build: Build, solids: KnownSolids) -> None:
+        self.settings, self.solids = build.settings, solids
+        self.parts = [solids.of(placed.mesh) for placed in build.parts]
+        limits = _limits_of(build.settings)
+        self.shapes = KnownShapes(limits.wall, limits.contact, limits.reach)
+
+    def thin_places(self, body: SupportBody) -> ThinPlaces:
+        """Return the places where a support is too thin."""
+        solid = self.solids.of(body.mesh)
+        if not accepted(solid):
+            return ThinPlaces([], 0)
+        places: list[ThinPlace] = []
+        heights = _heights(body)
+        for height in heights.tolist():
+            region, around = self.shapes.undecided(solid.slice(height))
+            if not region.is_empty():
+                section = _Section(region, around, height, self.settings, self.parts)
+                places += [*section.small_pieces(), *section.fins()]
+        return ThinPlaces(places, len(heights))
 
 
 def _heights(body: SupportBody) -> Floats:
@@ -151,18 +175,21 @@ def _heights(body: SupportBody) -> Floats:
 
 
 class _Section:
-    """A horizontal section of a support."""
+    """What is to be judged of a horizontal section of a support, and what is around it."""
 
     def __init__(
-        self, region: "CrossSection", height: float, settings: BuildSettings, parts: "Sequence[Manifold]"
+        self,
+        region: "CrossSection",
+        around: "CrossSection",
+        height: float,
+        settings: BuildSettings,
+        parts: "Sequence[Manifold]",
     ) -> None:
-        self.region, self.height = region, height
+        self.region, self.around, self.height = region, around, height
         self.parts, self.sizes = parts, settings.sizes
         self.part_sections: dict[int, CrossSection] = {}
-        self.wall = max(settings.rules.least_wall_mm - TOLERANCE, 0.0)
-        self.contact = max(
-            settings.rules.least_contact_mm2 - 2.0 * TOLERANCE * settings.rules.least_wall_mm, 0.0
-        )
+        self.limits = _limits_of(settings)
+        self.wall, self.contact = self.limits.wall, self.limits.contact
 
     def small_pieces(self) -> list[ThinPlace]:
         """Return the pieces that are too narrow or too small, unless they are tips or touch a part."""
@@ -186,7 +213,7 @@ class _Section:
 
     def fins(self) -> list[ThinPlace]:
         """Return what reaches beyond the discs of the least wall farther than corners do."""
-        rest = self._beyond_discs(self.region) if self.wall > 0.0 else None
+        rest = self._beyond_discs(self.region, self.around) if self.wall > 0.0 else None
         if rest is None or rest.area() <= _SPECK:
             return []
         found = []
@@ -195,25 +222,30 @@ class _Section:
             if piece.area() <= _SPECK or self._is_alone(piece) or self._limits_at(place)[0] < self.wall:
                 continue
             if self._touches_part(piece):
-                together = self._beyond_discs(self.region + self._part(piece)) ^ piece
+                joined = self.around + self._part(piece)
+                together = self._beyond_discs(joined, joined) ^ piece
                 if together.area() <= _SPECK or self._touches_part(together):
                     continue
             found.append(ThinPlace(LEAST_WALL, min(_mean_width(piece), self.wall), place, is_fin=True))
         return found
 
-    def _beyond_discs(self, region: "CrossSection") -> "CrossSection":
+    def _beyond_discs(self, region: "CrossSection", around: "CrossSection") -> "CrossSection":
+        """Return what of a region the discs that fit in it and around it leave, apart from corners."""
         from manifold3d import JoinType
 
-        discs = region.offset(-self.wall / 2.0)
-        reach = self.wall / 2.0 + _CORNER * self.wall
-        return region - discs.offset(reach, JoinType.Round, 2.0, _SEGMENTS)
+        discs = around.offset(-self.wall / 2.0)
+        return region - discs.offset(self.limits.reach, JoinType.Round, 2.0, _SEGMENTS)
+
+    @cached_property
+    def _alone(self) -> "CrossSection":
+        """The connected pieces in which no disc fits; they are judged as wholes."""
+        from manifold3d import CrossSection, OpType
+
+        narrow = [each for each in self.region.decompose() if each.offset(-self.wall / 2.0).is_empty()]
+        return CrossSection.batch_boolean(narrow, OpType.Add) if narrow else CrossSection()
 
     def _is_alone(self, piece: "CrossSection") -> bool:
-        """Tell whether a piece belongs to a connected piece in which no disc fits; that is judged as a whole."""
-        return any(
-            not (each ^ piece).is_empty() and each.offset(-self.wall / 2.0).is_empty()
-            for each in self.region.decompose()
-        )
+        return not (self._alone ^ piece).is_empty()
 
     def _part(self, piece: "CrossSection") -> "CrossSection":
         """Return the section of the parts around a piece."""

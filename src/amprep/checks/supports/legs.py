@@ -83,7 +83,7 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     cell = build.settings.sizes.square_mm * float(np.tan(np.radians(rules.strut_angle_deg)))
     slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
     legs = []
-    for chain in _chains(slices):
+    for chain in _long_enough(slices, _chains(slices), limit, cell):
         if _is_long(slices, chain, limit):
             touches = _touches(slices, chain, build)
             legs += [_leg(slices, own) for own in _runs(chain, ~touches) if _is_long(slices, own, limit)]
@@ -103,6 +103,20 @@ def _chains(slices: Slices) -> list[Int64s]:
             at = int(slices.above[at])
         chains.append(np.array(chain))
     return chains
+
+
+def _long_enough(slices: Slices, chains: list[Int64s], limit: float, cell: float) -> list[Int64s]:
+    """Return the chains that may be legs: longer than a cell, and long for their least width."""
+    if not chains:
+        return []
+    starts = np.cumsum([0, *(len(chain) for chain in chains[:-1])])
+    contours = np.concatenate(chains)
+    height = slices.heights[slices.plane[contours]]
+    ends = np.append(starts[1:], len(contours)) - 1
+    length = height[ends] - height[starts]
+    width = np.minimum.reduceat(slices.width[contours], starts)
+    long = (length > cell) & (length > limit * _GRANT * width)
+    return [chains[row] for row in np.flatnonzero(long)]
 
 
 def _is_long(slices: Slices, chain: Int64s, limit: float) -> bool:

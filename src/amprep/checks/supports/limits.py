@@ -1,11 +1,11 @@
 """Judge the supports of a build by the limits that its file records, and say what was judged and how exactly."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from amprep.checks.overhangs.needs import GRANT_MM
 from amprep.checks.supports import coverage, drift, legs, territory
 from amprep.checks.supports.least_section import LEAST_CONTACT, LEAST_WALL, TOLERANCE, check_least_section
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
 from amprep.model.build import Build
 from amprep.model.control import Stop
@@ -26,19 +26,16 @@ class JudgedLimits(NamedTuple):
     extent: dict[str, str]
 
 
-def check_limits(build: Build, stop: Stop) -> JudgedLimits:
+def check_limits(build: Build, stop: Stop, solids: KnownSolids | None = None) -> JudgedLimits:
     """Judge sections, legs, territory and drift of the supports of a build; the thesis asks for none of them.
 
-    The extent of coverage is told, too, although another judge checks it.
+    The extent of coverage is told, too, although another judge checks it. `solids` are shared with other judges.
     """
-    violations, sections = check_least_section(build, stop)
-    checks: tuple[Callable[[Build, Stop], list[Violation]], ...] = (
-        legs.check_legs,
-        territory.check_territory,
-        drift.check_drift,
-    )
-    for check in checks:
-        violations += check(build, stop)
+    solids = solids or KnownSolids()
+    violations, sections = check_least_section(build, stop, solids)
+    violations += legs.check_legs(build, stop)
+    violations += territory.check_territory(build, stop, solids)
+    violations += drift.check_drift(build, stop)
     extent = _extent(build.settings.rules, sections) | {coverage.PROMISE: _coverage_extent(build)}
     return JudgedLimits(violations, extent)
 

@@ -8,6 +8,7 @@ polygon is computed. 100,000 pairs take about 0.1 s.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -66,15 +67,13 @@ def slices_of(mesh: Mesh, heights: Floats) -> Slices:
     """
     points, triangles = merge_equal_vertices(mesh.vertices, mesh.triangles)
     triangles = triangles.astype(np.int64)
-    edge = _edges(triangles, len(points))
-    z = points[triangles, 2]
-    low, high = z.min(axis=1), z.max(axis=1)
-    first = np.searchsorted(heights, low, side="right")
-    last = np.searchsorted(heights, high, side="right")
-    triangle, plane = _repeated(first, last - first)
+    z = points[:, 2][triangles]
+    planes = _Rows.of(z.min(axis=1), z.max(axis=1), heights)
+    pairs = _pairs(triangles, len(points))
+    crossed = _Rows.of(*_ends(z, pairs.one), heights)
+    contour = planes.components(pairs, crossed)
+    triangle, plane = planes.listed()
     is_above = z[triangle] >= heights[plane][:, None]
-    crosses = is_above != np.roll(is_above, -1, axis=1)
-    contour = _linked(edge[triangle], plane, crosses, len(heights))
     order = np.argsort(contour, kind="stable")
     starts = np.searchsorted(contour[order], np.arange(int(contour.max(initial=-1)) + 2))
     down, up = _segments(points[triangles[triangle[order]]], is_above[order], heights[plane[order]])
@@ -84,47 +83,81 @@ def slices_of(mesh: Mesh, heights: Floats) -> Slices:
         else up[:, 0]
     )
     own_plane = plane[order[starts[:-1]]]
-    slabs = _slabs(edge, z, heights, np.maximum(first - 1, 0), np.minimum(last, len(heights) - 1))
-    above = _above(slabs, triangle, plane, contour, area > 0.0, len(heights))
+    slabs = planes.between(len(heights))
+    component = slabs.components(pairs, crossed.between(len(heights)))
+    above = _above(slabs, component, triangle, plane, contour, area > 0.0, len(heights))
     return Slices(heights, own_plane, area, _widths(down, starts[:-1]), down, starts, above)
 
 
-def _edges(triangles: Int64s, count: int) -> Int64s:
-    """Number the edges of triangles, ``(m, 3)``: from each corner to the next."""
-    following = np.roll(triangles, -1, axis=1)
-    key = np.minimum(triangles, following) * count + np.maximum(triangles, following)
-    return np.unique(key, return_inverse=True)[1].reshape(-1, 3)
+class _Pairs(NamedTuple):
+    """Pairs of corners of triangles from which the same edge goes to the next corner, as indices ``3 t + corner``."""
+
+    one: Int64s
+    other: Int64s
 
 
-def _repeated(first: Int64s, count: Int64s) -> tuple[Int64s, Int64s]:
-    """Return pairs of each index and the `count` numbers from `first` on."""
-    count = np.maximum(count, 0)
-    own = np.repeat(np.arange(len(count)), count)
-    return own, first[own] + np.arange(len(own)) - (np.cumsum(count) - count)[own]
-
-
-def _linked(edge: Int64s, level: Int64s, links: Bools, levels: int) -> Int64s:
-    """Label rows; rows with a linking edge in common, at the same level, have the same label.
-
-    Parameters
-    ----------
-    edge, links
-        ``(r, 3)`` edges of each row, and which of them link.
-    level
-        ``(r,)``.
-    levels
-        Number of levels.
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    row, side = np.nonzero(links)
-    key = edge[row, side] * levels + level[row]
-    order = np.argsort(key, kind="stable")
+def _pairs(triangles: Int64s, count: int) -> _Pairs:
+    """Return the pairs of triangles that connect all triangles at each edge."""
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    key = np.minimum(start, end) * count + np.maximum(start, end)
+    order = np.argsort(key)
     same = np.flatnonzero(np.diff(key[order]) == 0)
-    one, other = row[order[same]], row[order[same + 1]]
-    graph = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(len(edge), len(edge)))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    return _Pairs(order[same], order[same + 1])
+
+
+def _ends(z: Floats, corner: Int64s) -> tuple[Floats, Floats]:
+    """Return the lower and the upper height of the edge that begins at each corner."""
+    start, end = z.ravel()[corner], z[:, [1, 2, 0]].ravel()[corner]
+    return np.minimum(start, end), np.maximum(start, end)
+
+
+class _Rows(NamedTuple):
+    """Rows of pairs of an index and each level of its range, ordered by index; levels are planes or slabs.
+
+    Attributes
+    ----------
+    first, levels
+        ``(n,)`` first level and number of levels of each index.
+    start
+        ``(n,)`` row of the first level.
+    """
+
+    first: Int64s
+    levels: Int64s
+    start: Int64s
+
+    @classmethod
+    def of(cls, low: Floats, high: Floats, heights: Floats) -> "_Rows":
+        """Return the planes above each low height, up to the high one."""
+        first = np.searchsorted(heights, low, side="right")
+        count = np.searchsorted(heights, high, side="right") - first
+        return cls(first, count, np.cumsum(count) - count)
+
+    def between(self, planes: int) -> "_Rows":
+        """Return the slabs that what crosses these planes meets; a slab has the number of the plane below."""
+        first = np.maximum(self.first - 1, 0)
+        count = np.maximum(np.minimum(self.first + self.levels, planes - 1) - first, 0)
+        return _Rows(first, count, np.cumsum(count) - count)
+
+    def row(self, index: Int64s, level: Int64s) -> Int64s:
+        """Return the row of each pair of an index and a level."""
+        return self.start[index] + level - self.first[index]
+
+    def listed(self) -> tuple[Int64s, Int64s]:
+        """Return the index and the level of each row."""
+        own = np.repeat(np.arange(len(self.levels)), self.levels)
+        return own, np.arange(len(own)) + (self.first - self.start)[own]
+
+    def components(self, pairs: _Pairs, crossed: "_Rows") -> Int64s:
+        """Label the rows of triangles; those of a pair are connected at the levels that its edge crosses."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        pair, level = crossed.listed()
+        one, other = (self.row(each[pair] // 3, level) for each in pairs)
+        size = int(self.levels.sum())
+        graph = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(size, size))
+        return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
 
 def _segments(corners: Floats, is_above: Bools, heights: Floats) -> tuple[Floats, Floats]:
@@ -163,30 +196,14 @@ def _widths(points: Floats, starts: Int64s) -> Floats:
     return widths
 
 
-@dataclass(frozen=True, eq=False)
-class _Slabs:
-    """Pairs of a triangle and a slab, sorted by their key, with the component of surface that each belongs to."""
-
-    key: Int64s
-    component: Int64s
-    levels: int
-
-    def component_of(self, triangle: Int64s, slab: Int64s) -> Int64s:
-        """Return the component of the part of each triangle in a slab."""
-        return self.component[np.searchsorted(self.key, triangle * self.levels + slab)]
-
-
-def _slabs(edge: Int64s, z: Floats, heights: Floats, first: Int64s, last: Int64s) -> _Slabs:
-    """Return the components of surface in each slab between consecutive planes."""
-    triangle, slab = _repeated(first, last - first)
-    below, above = z[triangle] < heights[slab + 1][:, None], z[triangle] >= heights[slab][:, None]
-    links = (below | np.roll(below, -1, axis=1)) & (above | np.roll(above, -1, axis=1))
-    component = _linked(edge[triangle], slab, links, len(heights))
-    return _Slabs(triangle * len(heights) + slab, component, len(heights))
-
-
 def _above(
-    slabs: _Slabs, triangle: Int64s, plane: Int64s, contour: Int64s, is_outer: Bools, levels: int
+    slabs: _Rows,
+    component: Int64s,
+    triangle: Int64s,
+    plane: Int64s,
+    contour: Int64s,
+    is_outer: Bools,
+    levels: int,
 ) -> Int64s:
     """Return the contour above each outer contour, -1 unless exactly one is above exactly one."""
     count = len(is_outer)
@@ -198,9 +215,9 @@ def _above(
         chosen = np.flatnonzero(rows & is_outer[contour])
         _, once = np.unique(contour[chosen], return_index=True)
         own = chosen[once]
-        ends.append((contour[own], slabs.component_of(triangle[own], plane[own] + step)))
+        ends.append((contour[own], component[slabs.row(triangle[own], plane[own] + step)]))
     (lower, lower_slab), (upper, upper_slab) = ends
-    size = int(slabs.component.max()) + 1
+    size = int(component.max()) + 1
     alone = (np.bincount(lower_slab, minlength=size) == 1) & (np.bincount(upper_slab, minlength=size) == 1)
     upper_of = np.full(size, -1)
     upper_of[upper_slab] = upper

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.checks.packing.shadows import Shadow, shadows_of
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
-from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.meshes.manifold import accepted
 from amprep.model.build import Build, SupportBody
 from amprep.model.control import Stop
 
@@ -23,28 +24,32 @@ _SEGMENTS = 64
 """Sides of the polygons that stand for circles."""
 
 
-def check_territory(build: Build, stop: Stop) -> list[Violation]:
+def check_territory(build: Build, stop: Stop, solids: KnownSolids | None = None) -> list[Violation]:
     """Return the supports that leave the territory of their part; with ``territory = "shared"`` there are none.
 
     The territory of a part is its shadow grown by the margin, without the shadows of other parts where they are not
     below its own shadow. A support that several parts share may be in the territory of any of them; walls without
-    thickness and beams are judged as the solids that stand in for them.
+    thickness and beams are judged as the solids that stand in for them. `solids` are shared
+    with other judges.
     """
     found: list[Violation] = []
     if build.settings.rules.territory != "own" or not build.supports:
         return found
     shadows = shadows_of(build.parts)
+    solids = solids or KnownSolids()
     for body in build.supports:
         if stop.cancelled.is_set():
             return found
-        found += _judged(body, shadows, build)
+        found += _judged(body, shadows, build, solids)
     return found
 
 
-def _judged(body: SupportBody, shadows: Sequence[Shadow], build: Build) -> list[Violation]:
+def _judged(
+    body: SupportBody, shadows: Sequence[Shadow], build: Build, solids: KnownSolids
+) -> list[Violation]:
     from manifold3d import CrossSection, JoinType, OpType
 
-    solid = as_manifold(body.mesh.vertices, body.mesh.triangles)
+    solid = solids.of(body.mesh)
     if body.surface or not accepted(solid):
         return []
     covered = solid.project()
