@@ -12,6 +12,7 @@ from amprep.checks.supports import beams
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
+from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
 from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
@@ -236,7 +237,7 @@ def _volume_deeper(body: JudgedBody, placed: PlacedPart, depth: float, *, feet: 
 
     With `feet`, the point `depth` above them must be in the part too.
     """
-    part = body.solids.of(placed.mesh)
+    part = as_manifold(placed.mesh.vertices, placed.mesh.triangles)
     below = body.solid ^ part.translate((0.0, 0.0, depth))
     if below.is_empty() or below.volume() <= NEGLIGIBLE_VOLUME:
         return 0.0

@@ -18,7 +18,7 @@ from amprep.arrays import Floats
 from amprep.checks.supports.shapes import KnownShapes
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
-from amprep.geometry.meshes.manifold import accepted
+from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model.build import Build, BuildSettings, SupportBody
 from amprep.model.control import Stop
 
@@ -96,7 +96,7 @@ def check_least_section(
     rules = build.settings.rules
     if rules.least_wall_mm <= 0.0 and rules.least_contact_mm2 <= 0.0:
         return found, sections
-    judge = _Judge(build, solids or KnownSolids())
+    judge = _SectionJudge(build, solids or KnownSolids())
     for body in build.supports:
         if stop.cancelled.is_set():
             break
@@ -126,7 +126,7 @@ def _violations(body: SupportBody, settings: BuildSettings, places: Sequence[Thi
     return found
 
 
-class _Limits(NamedTuple):
+class _GrantedLimits(NamedTuple):
     """The least wall (mm) and the least contact (mm2), less the tolerance."""
 
     wall: float
@@ -138,17 +138,17 @@ class _Limits(NamedTuple):
         return self.wall / 2.0 + _CORNER * self.wall
 
 
-def _limits_of(settings: BuildSettings) -> _Limits:
+def _limits_of(settings: BuildSettings) -> _GrantedLimits:
     wall, contact = settings.rules.least_wall_mm, settings.rules.least_contact_mm2
-    return _Limits(max(wall - TOLERANCE, 0.0), max(contact - 2.0 * TOLERANCE * wall, 0.0))
+    return _GrantedLimits(max(wall - TOLERANCE, 0.0), max(contact - 2.0 * TOLERANCE * wall, 0.0))
 
 
-class _Judge:
+class _SectionJudge:
     """Judges the supports of a build one after the other."""
 
     def __init__(self, build: Build, solids: KnownSolids) -> None:
         self.settings, self.solids = build.settings, solids
-        self.parts = [solids.of(placed.mesh) for placed in build.parts]
+        self.parts = [as_manifold(placed.mesh.vertices, placed.mesh.triangles) for placed in build.parts]
         limits = _limits_of(build.settings)
         self.shapes = KnownShapes(limits.wall, limits.contact, limits.reach)
 

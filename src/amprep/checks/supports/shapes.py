@@ -81,7 +81,7 @@ class KnownShapes:
         )
         return Undecided(own, around)
 
-    def _judged(self, contours: "_Contours", rows: Int64s) -> Bools:
+    def _judged(self, contours: "_SectionContours", rows: Int64s) -> Bools:
         """Tell which contours keep the limits for certain, by discs that fit in each of them alone."""
         from manifold3d import CrossSection, FillRule, JoinType
 
@@ -100,7 +100,7 @@ class KnownShapes:
         return np.asarray(has_disc & ~has_fin & large)
 
 
-class _Contours(NamedTuple):
+class _SectionContours(NamedTuple):
     """Contours of a section, the inside to their left.
 
     Attributes
@@ -125,7 +125,7 @@ class _Contours(NamedTuple):
         return self.points[self.first[contour] : self.first[contour + 1]]
 
 
-def _contours_of(region: "CrossSection") -> _Contours:
+def _contours_of(region: "CrossSection") -> _SectionContours:
     polygons: Sequence[Floats] = [np.asarray(polygon) for polygon in region.to_polygons()]
     points = np.concatenate(polygons)
     first = np.cumsum([0, *(len(polygon) for polygon in polygons)])
@@ -134,7 +134,7 @@ def _contours_of(region: "CrossSection") -> _Contours:
     following[first[1:] - 1] = starts
     step = points[following] - points
     cross = points[:, 0] * step[:, 1] - points[:, 1] * step[:, 0]
-    return _Contours(
+    return _SectionContours(
         points,
         first,
         np.add.reduceat(cross, starts) / 2.0,
@@ -144,7 +144,7 @@ def _contours_of(region: "CrossSection") -> _Contours:
     )
 
 
-def _have_no_holes(contours: _Contours) -> Bools:
+def _have_no_holes(contours: _SectionContours) -> Bools:
     """Tell which contours are certainly no holes and have none."""
     found = contours.area > 0.0
     for hole in np.flatnonzero(~found):
@@ -153,7 +153,7 @@ def _have_no_holes(contours: _Contours) -> Bools:
     return found
 
 
-def _keys(contours: _Contours) -> list[bytes]:
+def _keys(contours: _SectionContours) -> list[bytes]:
     """Return the shapes of contours: their vertices on a grid, from the lowest and leftmost on."""
     starts, count = contours.first[:-1], np.diff(contours.first)
     owner = np.repeat(np.arange(len(count)), count)
@@ -167,7 +167,7 @@ def _keys(contours: _Contours) -> list[bytes]:
     return [data[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
 
-def _near(contours: _Contours, chosen: Bools, margin: float) -> Bools:
+def _near(contours: _SectionContours, chosen: Bools, margin: float) -> Bools:
     """Tell which contours are in or near the boxes around chosen ones."""
     near = chosen.copy()
     for row in np.flatnonzero(chosen):

@@ -68,9 +68,9 @@ def slices_of(mesh: Mesh, heights: Floats) -> Slices:
     points, triangles = merge_equal_vertices(mesh.vertices, mesh.triangles)
     triangles = triangles.astype(np.int64)
     z = points[:, 2][triangles]
-    planes = _Rows.of(z.min(axis=1), z.max(axis=1), heights)
+    planes = _LevelRows.of(z.min(axis=1), z.max(axis=1), heights)
     pairs = _pairs(triangles, len(points))
-    crossed = _Rows.of(*_ends(z, pairs.one), heights)
+    crossed = _LevelRows.of(*_ends(z, pairs.one), heights)
     contour = planes.components(pairs, crossed)
     triangle, plane = planes.listed()
     is_above = z[triangle] >= heights[plane][:, None]
@@ -89,20 +89,20 @@ def slices_of(mesh: Mesh, heights: Floats) -> Slices:
     return Slices(heights, own_plane, area, _widths(down, starts[:-1]), down, starts, above)
 
 
-class _Pairs(NamedTuple):
+class _SharedEdges(NamedTuple):
     """Pairs of corners of triangles from which the same edge goes to the next corner, as indices ``3 t + corner``."""
 
     one: Int64s
     other: Int64s
 
 
-def _pairs(triangles: Int64s, count: int) -> _Pairs:
+def _pairs(triangles: Int64s, count: int) -> _SharedEdges:
     """Return the pairs of triangles that connect all triangles at each edge."""
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     key = np.minimum(start, end) * count + np.maximum(start, end)
     order = np.argsort(key)
     same = np.flatnonzero(np.diff(key[order]) == 0)
-    return _Pairs(order[same], order[same + 1])
+    return _SharedEdges(order[same], order[same + 1])
 
 
 def _ends(z: Floats, corner: Int64s) -> tuple[Floats, Floats]:
@@ -111,7 +111,7 @@ def _ends(z: Floats, corner: Int64s) -> tuple[Floats, Floats]:
     return np.minimum(start, end), np.maximum(start, end)
 
 
-class _Rows(NamedTuple):
+class _LevelRows(NamedTuple):
     """Rows of pairs of an index and each level of its range, ordered by index; levels are planes or slabs.
 
     Attributes
@@ -127,17 +127,17 @@ class _Rows(NamedTuple):
     start: Int64s
 
     @classmethod
-    def of(cls, low: Floats, high: Floats, heights: Floats) -> "_Rows":
+    def of(cls, low: Floats, high: Floats, heights: Floats) -> "_LevelRows":
         """Return the planes above each low height, up to the high one."""
         first = np.searchsorted(heights, low, side="right")
         count = np.searchsorted(heights, high, side="right") - first
         return cls(first, count, np.cumsum(count) - count)
 
-    def between(self, planes: int) -> "_Rows":
+    def between(self, planes: int) -> "_LevelRows":
         """Return the slabs that what crosses these planes meets; a slab has the number of the plane below."""
         first = np.maximum(self.first - 1, 0)
         count = np.maximum(np.minimum(self.first + self.levels, planes - 1) - first, 0)
-        return _Rows(first, count, np.cumsum(count) - count)
+        return _LevelRows(first, count, np.cumsum(count) - count)
 
     def row(self, index: Int64s, level: Int64s) -> Int64s:
         """Return the row of each pair of an index and a level."""
@@ -148,7 +148,7 @@ class _Rows(NamedTuple):
         own = np.repeat(np.arange(len(self.levels)), self.levels)
         return own, np.arange(len(own)) + (self.first - self.start)[own]
 
-    def components(self, pairs: _Pairs, crossed: "_Rows") -> Int64s:
+    def components(self, pairs: _SharedEdges, crossed: "_LevelRows") -> Int64s:
         """Label the rows of triangles; those of a pair are connected at the levels that its edge crosses."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
@@ -197,7 +197,7 @@ def _widths(points: Floats, starts: Int64s) -> Floats:
 
 
 def _above(
-    slabs: _Rows,
+    slabs: _LevelRows,
     component: Int64s,
     triangle: Int64s,
     plane: Int64s,

@@ -5,12 +5,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amprep.arrays import Bools, Floats, Ints
 from amprep.checks.packing.shadows import Shadow, shadows_of
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
+from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import accepted
 from amprep.model.build import Build, SupportBody
 from amprep.model.control import Stop
+from amprep.model.mesh import Mesh
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -19,6 +22,9 @@ PROMISE = "own territory"
 
 TOLERANCE = 0.05
 """Distance (mm) that is granted at the borders of territories, because circles are polygons and files round."""
+
+_SQUARE = 0.25
+"""Side (mm) of the squares of the plan that are decided at once."""
 
 _SEGMENTS = 64
 """Sides of the polygons that stand for circles."""
@@ -52,14 +58,16 @@ def _judged(
     solid = solids.of(body.mesh)
     if body.surface or not accepted(solid):
         return []
-    covered = solid.project()
     own = CrossSection.batch_boolean([shadows[part].polygons for part in body.parts], OpType.Add)
     limits = [_margin_of(build, part) for part in body.parts]
     grown = [
         shadows[part].polygons.offset(limit + TOLERANCE, JoinType.Round, 2.0, _SEGMENTS)
         for part, limit in zip(body.parts, limits, strict=True)
     ]
-    outside = covered - CrossSection.batch_boolean(grown, OpType.Add)
+    allowed = CrossSection.batch_boolean(grown, OpType.Add)
+    others = [each for part, each in enumerate(shadows) if part not in body.parts]
+    covered = _uncertain_cover(body.mesh, allowed, others)
+    outside = covered - allowed
     found = []
     names = " and ".join(build.parts[part].label for part in body.parts)
     if not _is_thin(outside):
@@ -74,6 +82,53 @@ def _judged(
                 message = f"enters the shadow of {other.label}, although it holds {names}{_where(inside)}"
                 found.append(Violation(PROMISE, body.name, message))
     return found
+
+
+def _uncertain_cover(mesh: Mesh, allowed: "CrossSection", others: Sequence[Shadow]) -> "CrossSection":
+    """Return what those triangles cover that may leave the allowed region or enter a shadow of others.
+
+    Strategy. The plan is divided into squares. A square is certain if it is in the allowed region and in the box of no
+    other shadow; a triangle is certain if all squares that its box meets are. Sums over rectangles tell which boxes
+    contain uncertain squares. Few triangles are left, those near borders, and only these are united.
+    """
+    from manifold3d import CrossSection, FillRule
+
+    plan = mesh.vertices[:, :2]
+    low = plan.min(axis=0) - _SQUARE
+    square = np.floor((plan - low) / _SQUARE).astype(np.int32)
+    uncertain = ~_squares_inside(allowed, low, square.max(axis=0) + 2)
+    for other in others:
+        if not other.polygons.is_empty():
+            box = np.floor((np.asarray(other.polygons.bounds()).reshape(2, 2) - low) / _SQUARE) + ((0,), (1,))
+            (x0, y0), (x1, y1) = np.clip(box, 0, uncertain.shape).astype(np.int64)
+            uncertain[x0:x1, y0:y1] = True
+    corners = plan[mesh.triangles[_meet(square, mesh.triangles, uncertain)]]
+    one, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    up = one[:, 0] * second[:, 1] - one[:, 1] * second[:, 0] > 0.0
+    return CrossSection(list(corners[up]), FillRule.Positive) if up.any() else CrossSection()
+
+
+def _meet(square: Ints, triangles: Ints, uncertain: Bools) -> Bools:
+    """Tell of which triangles the box meets uncertain squares; `square` has the squares of vertices, ``(n, 2)``."""
+    sums = np.zeros(np.add(uncertain.shape, 1), np.int32)
+    sums[1:, 1:] = uncertain.cumsum(axis=0).cumsum(axis=1)
+    columns = [[square[:, axis][triangles[:, corner]] for corner in range(3)] for axis in (0, 1)]
+    (x0, x1), (y0, y1) = (
+        (np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c) + 1) for a, b, c in columns
+    )
+    return np.asarray(sums[x1, y1] - sums[x0, y1] - sums[x1, y0] + sums[x0, y0] > 0)
+
+
+def _squares_inside(region: "CrossSection", low: Floats, shape: Ints) -> Bools:
+    """Tell which squares are certainly in a region, ``(nx, ny)``: those with the middle far inside."""
+    core = region.offset(-1.5 * _SQUARE)
+    if core.is_empty():
+        return np.zeros(shape, np.bool_)
+    slab = core.extrude(1.0).to_mesh64()
+    middle = low + (np.indices(tuple(shape)).reshape(2, -1).T + 0.5) * _SQUARE
+    points = np.hstack([middle, np.full((len(middle), 1), 0.5)])
+    found = inside(points, np.asarray(slab.vert_properties)[:, :3], np.asarray(slab.tri_verts))
+    return found.reshape(shape)
 
 
 def _margin_of(build: Build, part: int) -> float:
