@@ -90,6 +90,8 @@ def expectation(wanted: Any, where: str) -> str:
 
 
 def _tuple_expectation(arguments: tuple[Any, ...], where: str) -> str:
+    if arguments == (Any, Ellipsis):
+        return "a list"
     if len(arguments) == 2 and arguments[1] is Ellipsis:
         return f"a list, each {expectation(arguments[0], where)}"
     return "a list of " + ", ".join(expectation(each, where) for each in arguments)

@@ -287,6 +287,8 @@ def _covers(entry: Path, path: Path) -> bool:
 def _hint(key: str) -> str:
     """Suggest the known key with the most similar name; a key of a section is named with its section."""
     sections = {"packing": PackingSettings, "supports": SupportSettings, "cells": CellSettings}
+    if key.removesuffix("s") in KEYS:  # entries are named in the singular: [[rule]], [[part]]
+        return f" (did you mean {key.removesuffix('s')!r}?)"
     for section, cls in sections.items():
         if key in {each.name for each in fields(cls)}:
             return f" (did you mean '{section}.{key}'?)"

@@ -408,3 +408,10 @@ def test_what_a_part_entry_does_not_say_stays_as_it_was_read(job_file):
 def test_a_part_entry_that_names_no_part_is_an_error_with_the_nearest(job_file, tmp_path, entry, message):
     with pytest.raises(JobError, match=message):
         apply_part_settings([part("lid", str(tmp_path / "a.stl"))], load_job(job_file(f"[[part]]\n{entry}")))
+
+
+def test_the_plural_of_an_entry_suggests_the_entry(tmp_path):
+    path = tmp_path / "job.toml"
+    path.write_text('[[rules]]\nkind = "bore"\nsupport = false\n')
+    with pytest.raises(JobError, match=r"unknown key 'rules' \(did you mean 'rule'\?\)"):
+        load_job(path)
