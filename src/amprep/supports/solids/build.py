@@ -21,6 +21,7 @@ from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.least_section import without_narrow
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.territory import territory_section
+from amprep.supports.solids.thin_rests import without_thin_rests
 from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
 
 if TYPE_CHECKING:
@@ -210,14 +211,29 @@ class _SupportBuilder(NamedTuple):
     rules: SolidRules
 
     def drained_solid(self, group: int) -> "Manifold | None":
-        """Return the solid of a group, with drain holes where the cell promises them; its pieces may float."""
+        """Return the solid of a group, with drain holes where the cell promises them; its pieces may float.
+
+        What is thinner than the least section is cut away.
+        """
         solid, diameter = solid_of(self.context, group, self.instances), self.instances.cells.hole
-        if solid is None or diameter == 0.0:
+        if solid is None:
             return solid
-        held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
-        return cut_drain_holes(
-            solid, held, diameter, self.context.foot_boxes(group), least_wall_of(self.rules)
-        )
+        if diameter > 0.0:
+            held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
+            boxes = self.context.foot_boxes(group)
+            solid = cut_drain_holes(solid, held, diameter, boxes, least_wall_of(self.rules))
+        if self.rules.least is None:
+            return solid
+        tip_height = self._tip_height()
+        return without_thin_rests(solid, self.context.obstacles.near(solid), self.rules.least, tip_height)
+
+    def _tip_height(self) -> float:
+        """Return the height (mm) below parts up to which connectors taper; 0 where they do not."""
+        connector = self.rules.connector
+        if not connector.is_shaped:
+            return 0.0
+        neck = self.context.layout.grid.pitch if connector.neck_mm else 0.0
+        return connector.tip_height_mm + neck
 
     def bodies(
         self, group: int, name: str, solid: "Manifold | None", base: "Manifold | None"

@@ -96,6 +96,10 @@ class PartObstacles:
             return solids
         return [self._clearance.clip(union(solids))]
 
+    def near(self, solid: "Manifold") -> list["Manifold"]:
+        """Return the solid parts whose boxes meet that of a solid."""
+        return [self._solid(index) for index in _meeting(solid, self._meshes)]
+
     def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
         """Return the triangles ``(t, 3, 3)`` mm of the held parts inside the connectors."""
         found = [np.empty((0, 3, 3))]

@@ -1,0 +1,179 @@
+"""Find what is too thin in a horizontal section of a solid, from the narrow ends of its outline."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection
+
+_TURN = np.radians(145.0)
+"""Angle by which an outline turns at a narrow end; sharper corners than the rest to 180 degrees are narrow ends."""
+
+_WEDGE = np.radians(190.0)
+"""Angle by which an outline turns at the wider end of a wedge."""
+
+_WEDGE_SPAN = 1.4
+"""Length (in widths) of the end of a wedge."""
+
+_VERTICES = 4
+"""Largest number of vertices of a narrow end."""
+
+_SMOOTH = 0.003
+"""Distance (mm) by which outlines are simplified."""
+
+_CORNER = 1.3
+"""Distance (in widths) by which corners may reach beyond the discs that fit into a region."""
+
+_AROUND = 8.0
+"""Half of the side (in widths) of the squares around narrow ends in which a region is looked at."""
+
+_BORDER = 1.5
+"""Distance (in widths) from the border of these squares in which nothing is judged."""
+
+_ROUNDS = 8
+"""Largest number of rounds; each shortens long fins by several widths."""
+
+_SEGMENTS = 16
+"""Sides of the polygons that stand for circles."""
+
+_SPECK = 1e-3
+"""Area (mm2) that offsets of polygons leave by rounding."""
+
+# Strategy. Offsets of whole sections take most of the time of a test for thin places, so they are taken only there
+# where the outline tells that something may be thin.
+# 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees.
+# 2. In a square around each narrow end, the rest is what discs of the least width, grown by the reach of corners, do
+#    not cover. Near the border of the square, which cuts the region, nothing is judged.
+# 3. Where the rest is cut away, the next narrow end of a long fin appears; so steps 1 and 2 are repeated.
+
+
+def find_thin_rests(
+    region: "CrossSection", width: float, area: float, is_kept: "Callable[[CrossSection], bool]"
+) -> "list[CrossSection]":
+    """Return the pieces of a section that are thinner than a width, and whole pieces that are smaller than an area.
+
+    Parameters
+    ----------
+    region
+        The section.
+    width, area
+        Least width (mm) and least area (mm2).
+    is_kept
+        Tells whether a piece may stay though it is thin.
+    """
+    from manifold3d import CrossSection, OpType
+
+    found: list[CrossSection] = []
+    ends = narrow_ends(region, width, area)
+    for _ in range(_ROUNDS):
+        cut = _rests_at(region, ends, width, area, is_kept) if len(ends) else []
+        if not cut:
+            break
+        found += cut
+        region -= CrossSection.batch_boolean(cut, OpType.Add).offset(_SMOOTH)
+        ends = narrow_ends(region, width, area)
+        ends = ends[_near(ends, cut, width)]
+    return found
+
+
+def _rests_at(
+    region: "CrossSection",
+    ends: Floats,
+    width: float,
+    area: float,
+    is_kept: "Callable[[CrossSection], bool]",
+) -> "list[CrossSection]":
+    """Return the rests in the squares around narrow ends ``(k, 2)`` mm."""
+    found: list[CrossSection] = []
+    half = _AROUND * width
+    seen = np.empty((0, 2))
+    for end in ends:
+        if len(seen) and (np.abs(seen - end) < half / 2.0).all(axis=1).any():
+            continue
+        seen = np.concatenate([seen, end[None]])
+        local = region ^ _square(end, half)
+        thin = _beyond_discs(local, width) ^ _square(end, half - _BORDER * width)
+        rests = [rest for rest in thin.decompose() if rest.area() > _SPECK] if thin.area() > _SPECK else []
+        if area > 0.0:
+            rests += [
+                each for each in local.decompose() if each.area() < area and _is_inside(each, end, half)
+            ]
+        found += [rest for rest in rests if not is_kept(rest)]
+    return found
+
+
+def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
+    """Return what reaches beyond the discs of a width that fit into a region, farther than corners do."""
+    from manifold3d import JoinType
+
+    discs = region.offset(-width / 2.0)
+    return region - discs.offset((0.5 + _CORNER) * width, JoinType.Round, 2.0, _SEGMENTS)
+
+
+def narrow_ends(region: "CrossSection", width: float, area: float = 0.0) -> Floats:
+    """Return the points ``(k, 2)`` mm at which the outline of a region turns back within a width.
+
+    Those of pieces that are smaller than an area (mm2) are among them.
+
+    Parameters
+    ----------
+    region
+        A region, whose outlines have it to their left.
+    width, area
+        Length (mm) of the outline within which it turns, and area (mm2).
+    """
+    contours = [np.asarray(contour) for contour in region.simplify(_SMOOTH).to_polygons()]
+    if not contours:
+        return np.empty((0, 2))
+    points = np.concatenate(contours)
+    sizes = np.array([len(contour) for contour in contours])
+    first = np.repeat(np.cumsum(sizes) - sizes, sizes)
+    after = np.arange(1, len(points) + 1)
+    after = np.where(after == first + np.repeat(sizes, sizes), first, after)
+    side = points[after] - points
+    length = np.hypot(side[:, 0], side[:, 1])
+    heading = np.arctan2(side[:, 1], side[:, 0])
+    turn = np.empty(len(points))
+    turn[after] = (heading[after] - heading + np.pi) % (2.0 * np.pi) - np.pi
+    cross = points[:, 0] * points[after, 1] - points[:, 1] * points[after, 0]
+    enclosed = np.add.reduceat(cross, np.cumsum(sizes) - sizes) / 2.0
+    is_small = np.repeat((enclosed > 0.0) & (enclosed < area), sizes)
+    return points[_turns_back(turn, length, after, width) | is_small]
+
+
+def _turns_back(turn: Floats, length: Floats, after: np.ndarray, width: float) -> Bools:
+    """Tell at which vertices a short stretch begins that turns back, ``(n,)``."""
+    last = np.arange(len(turn))
+    total, span = turn.copy(), np.zeros(len(turn))
+    back = total > _TURN
+    for _ in range(_VERTICES - 1):
+        span += length[last]
+        last = after[last]
+        total += turn[last]
+        back |= ((total > _TURN) & (span < width)) | ((total > _WEDGE) & (span < _WEDGE_SPAN * width))
+    return np.asarray(back)
+
+
+def _near(ends: Floats, pieces: "Sequence[CrossSection]", width: float) -> Bools:
+    """Tell which points are in or near the boxes of pieces."""
+    near = np.zeros(len(ends), np.bool_)
+    for piece in pieces:
+        box = np.asarray(piece.bounds())
+        near |= ((ends > box[:2] - width) & (ends < box[2:] + width)).all(axis=1)
+    return near
+
+
+def _is_inside(piece: "CrossSection", centre: Floats, half: float) -> bool:
+    """Tell whether a piece is clearly inside a square."""
+    box = np.asarray(piece.bounds())
+    return bool((box[:2] > centre - 0.99 * half).all() and (box[2:] < centre + 0.99 * half).all())
+
+
+def _square(centre: Floats, half: float) -> "CrossSection":
+    from manifold3d import CrossSection
+
+    return CrossSection.square((2.0 * half, 2.0 * half)).translate((centre - half).tolist())

@@ -1,0 +1,67 @@
+"""Thin rests of sections, against shapes of known width."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import CrossSection, OpType
+from tests.shared.examples import examples
+
+from amprep.geometry.supports.thin_rests import find_thin_rests, narrow_ends
+
+WIDTH, AREA = 0.28, 0.07
+
+
+def rests(region, is_kept=lambda _: False):
+    """The rests, which may overlap, as one region."""
+    return CrossSection.batch_boolean(find_thin_rests(region, WIDTH, AREA, is_kept), OpType.Add)
+
+
+def rectangle(width, length, turn=0.0, at=(0.0, 0.0)):
+    return CrossSection.square((length, width)).rotate(turn).translate(at)
+
+
+@given(
+    width=st.floats(0.02, 1.0).filter(lambda width: abs(width - WIDTH) > 0.02),
+    length=st.floats(1.5, 12.0),
+    turn=st.floats(0.0, 360.0),
+)
+@examples(40)
+def test_a_strip_is_a_rest_exactly_if_it_is_narrower_than_the_width(width, length, turn):
+    found = rests(rectangle(width, length, turn))
+    assert found.area() == pytest.approx(width * length if width < WIDTH else 0.0, rel=0.05)
+
+
+@given(width=st.floats(0.03, 0.2), length=st.floats(1.0, 9.0), turn=st.floats(0.0, 360.0))
+@examples(30)
+def test_of_a_block_with_a_fin_only_the_fin_is_a_rest(width, length, turn):
+    block = CrossSection.square((3.0, 3.0)).translate((-3.0, -1.0))
+    fin = rectangle(width, length + 0.1, at=(-0.1, 0.0))
+    left = (block + fin).rotate(turn)
+    left -= rests(left)
+    assert left.area() >= 9.0 - 1e-3
+    assert left.area() <= 9.0 + width * 2.0 * WIDTH + 1e-2
+
+
+def test_a_wedge_whose_end_is_a_little_wider_than_the_width_has_a_narrow_end():
+    wedge = CrossSection([np.array([[0.0, 0.0], [0.29, 0.0], [0.2, 3.0], [0.05, 3.0]])])
+    assert len(narrow_ends(wedge, WIDTH))
+
+
+@pytest.mark.parametrize("sides", [3, 4, 6, 40])
+def test_wide_shapes_with_and_without_holes_have_no_rests(sides):
+    region = CrossSection.circle(2.0, sides) - CrossSection.circle(0.4, sides)
+    assert rests(region).is_empty()
+
+
+def test_a_piece_that_is_wide_enough_but_too_small_is_a_rest():
+    region = CrossSection.square((0.29, 0.29)) + rectangle(1.0, 1.0, at=(2.0, 0.0))
+    (found,) = find_thin_rests(region, WIDTH, 0.09, lambda _: False)
+    assert found.area() == pytest.approx(0.29**2)
+
+
+def test_rests_that_may_stay_are_left_out():
+    strips = rectangle(0.1, 2.0) + rectangle(0.1, 2.0, at=(0.0, 5.0))
+    found = rests(strips, lambda piece: piece.bounds()[1] > 4.0)
+    assert found.area() == pytest.approx(0.2)
+    assert found.bounds()[3] < 1.0
