@@ -13,6 +13,9 @@ from amprep.model import Build, Mesh, SupportBody
 _OFFSET = 0.31
 """Height of a plane above a plane of the support grid, in slab thicknesses: cells end at the planes of the grid."""
 
+_BEND = 3
+"""Slabs in which a leg must be wider to count as wider: one that leads sideways has a wide hull in two slabs."""
+
 
 class MeasuredLeg(NamedTuple):
     """A leg, or the stretch of it that is narrowest for its length.
@@ -59,7 +62,8 @@ def measure_legs(build: Build, thickness: float) -> tuple[BodyLegs, ...]:
     A body is cut by horizontal planes into slabs. A leg is a chain of pieces of neighbouring slabs, each with
     exactly one piece above and one below. It ends where pieces branch, at parts, and at the plate. A piece is as
     wide as its convex hull in plan. So windows in walls do not divide a leg, and neither do ends of struts in the
-    air. A stretch of a leg is as wide as its widest piece, and the ratio of a leg is that of its worst stretch.
+    air. A stretch of a leg is as wide as its widest piece, and the ratio of a leg is that of its worst stretch. Bends,
+    whose hulls are wide in one or two slabs, do not count.
 
     Parameters
     ----------
@@ -145,7 +149,7 @@ def _chains(pieces: SlabPieces) -> Iterator[list[int]]:
 
 def _measured(chain: list[int], pieces: SlabPieces, thickness: float) -> MeasuredLeg:
     """Return the stretch of a leg with the greatest ratio of length to width."""
-    widths, centres = pieces.width[chain], pieces.centre[chain]
+    widths, centres = _without_bends(pieces.width[chain]), pieces.centre[chain]
     ends = np.diff(centres[:, :2], axis=0, prepend=centres[:1, :2])
     lengths = np.hypot(thickness, np.minimum(np.hypot(*ends.T), thickness))
     best = MeasuredLeg(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
@@ -158,6 +162,15 @@ def _measured(chain: list[int], pieces: SlabPieces, thickness: float) -> Measure
                 x, y, z = centres[first:last].mean(axis=0).tolist()
                 best = MeasuredLeg(length / float(width), length, float(width), (x, y, z))
     return best
+
+
+def _without_bends(widths: Floats) -> Floats:
+    """Return widths of slabs without places inside that are wider in one or two slabs only, such as bends."""
+    from scipy.ndimage import grey_opening
+
+    beyond = np.full(_BEND - 1, np.inf)
+    opened = grey_opening(np.concatenate([beyond, widths, beyond]), (_BEND,), mode="nearest")
+    return np.asarray(opened[_BEND - 1 : -_BEND + 1])
 
 
 def _runs(chosen: Bools) -> Iterator[tuple[int, int]]:

@@ -66,6 +66,13 @@ def test_a_wide_foot_does_not_excuse_a_narrow_top():
     assert found.too_long[1].length_mm == pytest.approx(18, abs=2)
 
 
+def test_a_bend_makes_no_leg_wider():
+    bend = block((-1, 0, 14), (3, 3, 1.5))
+    _, length, width, _ = worst(table(bend))
+    assert (length, width) == pytest.approx((28, 1), abs=2)
+    assert worst(table(bend)).ratio > 20
+
+
 def test_a_limit_of_zero_is_none_and_a_solid_without_legs_has_no_worst():
     assert legs_of(mesh_of(table()), 1.0, 0.0).too_long == ()
     assert legs_of(mesh_of(block((0, 0, 0), (3, 3, 1.2))), 1.0, 10.0) == (0, None, ())

@@ -22,8 +22,12 @@ _MOST_PLANES = 400
 _GRANT = 1.02
 """Factor that is granted on the ratio."""
 
-_SAME_WIDTH = 0.05
-"""Widths (mm) that differ by less are judged together."""
+_WIDER, _LAYERS = 1.05, 2
+"""Girth of a contour, in usual ones, from which a brace is beside it, and the layers of the grid that a brace takes
+until it is clear of the leg."""
+
+_HIGH = 2.0
+"""Height, in its widths, from which a wider place inside a leg divides it; a bend or the end of a brace is lower."""
 
 _TOUCH = 0.1
 """Horizontal distance (mm) up to which a support touches a wall of a part."""
@@ -35,7 +39,7 @@ class Leg(NamedTuple):
     Attributes
     ----------
     length_mm, width_mm
-        Length between the lowest and the highest plane that cuts it, and greatest width between them.
+        Length between the lowest and the highest plane that cuts it, and its greatest width.
     position_mm
         ``(3,)`` middle of the lowest contour.
     """
@@ -72,10 +76,10 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     """Return the legs of a support with a ratio of length to width above a limit.
 
     Strategy. Horizontal planes cut the solid into contours. A leg is a chain of contours of which each has exactly one
-    above and one below; at a brace, a fork or an end it ends. It may be wider at its foot, in proportion to the length
-    above: a stretch of it is as wide as its widest contour, and the worst stretch counts. What is no higher than one
-    cell, such as the posts beside its windows, is a detail of the cell. Long chains are cut where they touch a part,
-    and end where their tips begin.
+    above and one below; at a brace, a fork or an end it ends. Contours there that still hold the brace are not free.
+    Of the stretches of a chain, each as wide as its widest contour, the one counts that is longest for its width.
+    What is no higher than one cell, such as the posts beside its windows, is a detail of the cell. Long chains are cut
+    where they touch a part, and end where their tips begin.
     """
     low, high = (float(corner[2]) for corner in body.mesh.bounds)
     step = max(STEP, (high - low) / _MOST_PLANES)
@@ -84,10 +88,10 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
     legs = []
     for chain in _long_enough(slices, _chains(slices), limit, cell):
-        if _is_long(slices, chain, limit):
-            touches = _touches(slices, chain, build)
-            legs += [_leg(slices, own) for own in _runs(chain, ~touches) if _is_long(slices, own, limit)]
-    return [leg for leg in legs if leg.length_mm > cell]
+        if _worst(slices, chain).ratio > limit * _GRANT:
+            free = ~_touches(slices, chain, build) & ~_beside_braces(slices, chain, _LAYERS * cell)
+            legs += [_worst(slices, own) for own in _runs(chain, free)]
+    return [leg for leg in legs if leg.length_mm > cell and leg.ratio > limit * _GRANT]
 
 
 def _chains(slices: Slices) -> list[Int64s]:
@@ -119,22 +123,47 @@ def _long_enough(slices: Slices, chains: list[Int64s], limit: float, cell: float
     return [chains[row] for row in np.flatnonzero(long)]
 
 
-def _is_long(slices: Slices, chain: Int64s, limit: float) -> bool:
-    leg = _leg(slices, chain)
-    return leg.length_mm > limit * _GRANT * leg.width_mm
+def _beside_braces(slices: Slices, chain: Int64s, longest: float) -> Bools:
+    """Tell which contours at the ends of a chain hold a brace, too, at most so many mm; none does on the plate."""
+    heights = slices.heights[slices.plane[chain]]
+    girth = _girths(slices, chain)
+    wide = girth > _WIDER * np.median(girth)
+    below = np.logical_and.accumulate(wide & (heights < heights[0] + longest))
+    above = np.logical_and.accumulate((wide & (heights > heights[-1] - longest))[::-1])[::-1]
+    return np.asarray((below & (slices.plane[chain[0]] > 0)) | above)
 
 
-def _leg(slices: Slices, chain: Int64s) -> Leg:
-    """Return the figures of the worst stretch of a chain: consecutive contours, as wide as the widest of them."""
+def _girths(slices: Slices, chain: Int64s) -> Floats:
+    """Return the mean width of the hull of each contour of a chain, mm."""
+    angles = np.arange(8) * np.pi / 8.0
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.array(
+        [np.ptp(slices.points_of(int(each))[:, :2] @ directions.T, axis=0).mean() for each in chain]
+    )
+
+
+def _worst(slices: Slices, chain: Int64s) -> Leg:
+    """Return the stretch of a chain that is longest for its width."""
     heights, widths = slices.heights[slices.plane[chain]], slices.width[chain]
-    worst = Leg(0.0, 1.0, slices.points_of(int(chain[0])).mean(axis=0))
-    for width in np.unique(np.ceil(widths / _SAME_WIDTH)) * _SAME_WIDTH:
-        for run in _runs(np.arange(len(chain)), widths <= width + 1e-9):
-            length, own = float(heights[run[-1]] - heights[run[0]]), float(widths[run].max())
-            if length * worst.width_mm > worst.length_mm * own:
-                lowest = slices.points_of(int(chain[run[0]]))
-                worst = Leg(length, own, lowest.mean(axis=0))
-    return worst
+    first, last, best = 0, 0, 0.0
+    for width in np.unique(np.round(widths, 2)) + 0.005:
+        for own in _stretches(heights, widths, width):
+            ratio = (heights[own[-1]] - heights[own[0]]) / width
+            if ratio > best:
+                first, last, best = int(own[0]), int(own[-1]), float(ratio)
+    length, lowest = float(heights[last] - heights[first]), slices.points_of(int(chain[first]))
+    return Leg(length, length / best if best else float(widths[0]), lowest.mean(axis=0))
+
+
+def _stretches(heights: Floats, widths: Floats, width: float) -> list[Int64s]:
+    """Return the stretches at most so wide, over wider places that are low for their width."""
+    narrow = widths <= width
+    index = np.arange(len(narrow))
+    for wider in _runs(index, ~narrow):
+        low, high = int(wider[0]) - 1, int(wider[-1]) + 1
+        if low >= 0 and high < len(index) and heights[high] - heights[low] < _HIGH * widths[wider].max():
+            narrow[wider] = True
+    return _runs(index, narrow)
 
 
 def _runs(chain: Int64s, free: Bools) -> list[Int64s]:

@@ -1,5 +1,6 @@
 """Find legs on the sections of the supports, and how long they are for their width."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,8 @@ class RoutedLeg:
     lengths
         Length (mm) of the link above each section but the last.
     widths
-        Width (mm) of each section.
+        Width (mm) of each section; places inside that are wider in one or two sections only, such as bends,
+        do not count.
     touching
         Length (widths) along which a strut or branch touches a leg that ends there, without dividing it.
     held
@@ -60,6 +62,13 @@ class RoutedLeg:
         return worst
 
 
+def without_bends(widths: tuple[float, ...]) -> tuple[float, ...]:
+    """Return widths of sections without places inside that are wider in one or two sections only."""
+    padded = (math.inf, math.inf, *widths[1:-1], math.inf, math.inf)
+    lows = [min(padded[k : k + 3]) for k in range(len(padded) - 2)]
+    return (widths[0], *(max(lows[k : k + 3]) for k in range(len(widths) - 2)), widths[-1])
+
+
 def find_legs(sections: Sections, touching: float = 0.0) -> list[RoutedLeg]:
     """Return the legs of all supports that have sections between their ends, in the order of their upper ends.
 
@@ -89,7 +98,7 @@ def find_legs(sections: Sections, touching: float = 0.0) -> list[RoutedLeg]:
             RoutedLeg(
                 tuple(chain),
                 tuple(lengths[each] for each in reversed(links)),
-                tuple(widths[each] for each in chain),
+                without_bends(tuple(widths[each] for each in chain)),
                 touching,
                 (held[chain[0]], held[chain[-1]]),
             )

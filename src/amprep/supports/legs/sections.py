@@ -30,7 +30,7 @@ class Sections(NamedTuple):
     part
         ``(n,)`` int32, part of each square.
     section
-        ``(n,)`` int32, section of each square.
+        ``(n,)`` int64, section of each square; some numbers are not used.
     width
         ``(m,)`` mm, least width of the convex hull of each section.
     held
@@ -43,7 +43,7 @@ class Sections(NamedTuple):
 
     square: Ints
     part: Ints
-    section: Ints
+    section: Int64s
     width: Floats
     held: Bools
     link: Int64s
@@ -78,17 +78,47 @@ def find_sections(grid: Grid, edges: SupportEdges, held: Ints, cell: Floats) -> 
     square, part = ends[first], np.concatenate([edges.part, edges.part])[first]
     a, b = _touching(square, part, keys)
     graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(len(keys), len(keys)))
-    count, section = connected_components(graph, directed=False) if len(keys) else (0, np.empty(0, np.int32))
+    count, pieces = connected_components(graph, directed=False) if len(keys) else (0, np.empty(0, np.int32))
     is_held = np.zeros(count, np.bool_)
-    is_held[section[np.isin(keys, square_keys(held)) | (square[:, 0] == 0)]] = True
-    upper, lower = section[number[: len(edges)]], section[number[len(edges) :]]
-    link, pair = np.unique(np.column_stack([upper, lower]).astype(np.int64), axis=0, return_inverse=True)
+    is_held[pieces[np.isin(keys, square_keys(held)) | (square[:, 0] == 0)]] = True
+    pairs = number.reshape(2, -1)
+    section = _without_short_loops(pieces.astype(np.int64), pairs, is_held)
+    upper, lower = section[pairs]
+    link, pair = np.unique(np.column_stack([upper, lower]), axis=0, return_inverse=True)
     length = np.full(len(link), np.inf)
     across = np.where(edges.direction > 0, grid.pitch, 0.0)
     np.minimum.at(length, pair.ravel(), np.hypot(grid.step, across))
     return Sections(
         square, part, section, _widths(square, section, count, grid.pitch, cell), is_held, link, length
     )
+
+
+def _without_short_loops(section: Int64s, pairs: Int64s, held: Bools) -> Int64s:
+    """Return sections in which columns that part for at most two planes, as in a bend, are one.
+
+    Parameters
+    ----------
+    section
+        ``(n,)`` section of each square.
+    pairs
+        ``(2, e)`` upper and lower square of each edge.
+    held
+        ``(m,)`` whether a section is held.
+    """
+    upper, lower = np.unique(section[pairs], axis=1)
+    count = len(held)
+    above, below = np.bincount(lower, minlength=count), np.bincount(upper, minlength=count)
+    inner = np.append((above == 1) & (below == 1) & ~held, False)
+    up, down = np.full((2, count + 1), -1)
+    up[lower], down[upper] = upper, lower
+    same = np.arange(count)
+    for planes in (1, 2):
+        low = np.flatnonzero(inner & (inner[up] | (planes == 1)))
+        high = low if planes == 1 else up[low]
+        ends = np.column_stack([down[low], up[high]])
+        _, first, loop = np.unique(ends, axis=0, return_index=True, return_inverse=True)
+        same[low], same[high] = low[first[loop.ravel()]], high[first[loop.ravel()]]
+    return np.asarray(same[section])
 
 
 def _touching(square: Ints, part: Ints, keys: Int64s) -> tuple[Int64s, Int64s]:

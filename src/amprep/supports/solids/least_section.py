@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import Bools
+from amprep.arrays import Bools, Int64s
 from amprep.geometry.connectors.least_width import LeastSection, Posts, find_posts, find_wide
 from amprep.geometry.connectors.tips import grid_prisms
 from amprep.model.supports import CONNECTOR_BLOCKED
@@ -44,12 +44,17 @@ def without_narrow(
 
 
 def without_columns(layout: SupportLayout, lost: Bools) -> SupportLayout:
-    """Return a layout in which the red squares `lost` ``(m,)`` are unconnected, without edges to them alone."""
+    """Return a layout in which the red squares `lost` ``(m,)`` are unconnected, without edges to them alone.
+
+    Where a strut leads from a support that stays up to one that would go, that one stays below the strut.
+    """
     if not lost.any():
         return layout
     connected = layout.connected & ~lost
     ends = square_keys(layout.red.square[connected])
     used = _leads_to(layout, ends)
+    braces = _braces(layout, used)
+    used = _leads_to(layout, np.concatenate([ends, braces]))
     edges = layout.edges[used]
     stood_on = np.concatenate([square_keys(edges.lower), ends])
     reasons = tuple(
@@ -77,6 +82,22 @@ def _leads_to(layout: SupportLayout, ends: np.ndarray) -> Bools:
         used[own] = True
         above = lower[own]
     return used
+
+
+def _braces(layout: SupportLayout, used: Bools) -> Int64s:
+    """Return the squares from which unused edges lead down two ways, one of them a strut to edges in use."""
+    upper, lower = square_keys(layout.edges.upper), square_keys(layout.edges.lower)
+    in_use = np.unique(np.concatenate([upper[used], lower[used]]))
+    unused = np.flatnonzero(~used)
+    square, count = np.unique(upper[unused], return_counts=True)
+    forks = square[count > 1]
+    leads_down = in_use[in_use >= square_keys(np.array([[1, 0, 0]], np.int32))[0]]
+    for plane in np.unique(
+        layout.edges.plane[unused]
+    ):  # from below, over the struts that lead to edges in use
+        own = unused[layout.edges.plane[unused] == plane]
+        leads_down = np.append(leads_down, upper[own[np.isin(lower[own], leads_down)]])
+    return np.asarray(forks[np.isin(forks, leads_down)])
 
 
 def post_solids(

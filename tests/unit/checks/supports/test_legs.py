@@ -91,6 +91,28 @@ def test_a_short_wide_place_does_not_divide_a_leg():
     assert legs(narrow, 15.0) == [], "a short narrow place is none that the whole leg is measured by"
 
 
+def test_a_narrow_stretch_counts_with_its_own_length_and_a_bend_makes_no_leg_wider():
+    waist = box((2, 2, 15), (5, 5, 0)) - box((2, 4, 2), (5.8, 4, 7))
+    assert legs(waist, 15.0) == [], "0.8 mm wide for 2 mm, 2 mm wide for 15 mm"
+    foot = box((2, 2, 30), (5, 5, 0)) + box((4, 4, 12), (4, 4, 0))
+    assert legs(foot, 30.0) == [], "18 mm at 2 mm, 30 mm at 4 mm"
+    (leg,) = legs(box((2, 2, 30), (5, 5, 0)) + box((4, 4, 6), (4, 4, 0)), 30.0)
+    assert (leg.length_mm, leg.width_mm) == pytest.approx((24, 2), abs=1.0)
+    bend = box((2, 2, 30), (5, 5, 0)) + box((4, 4, 4), (4, 4, 13))
+    (leg,) = legs(bend, 30.0)
+    assert (leg.length_mm, leg.width_mm) == pytest.approx((30, 2), abs=1.0)
+
+
+def test_where_a_brace_is_still_beside_the_leg_it_is_not_free():
+    """The struts are 12.2 mm apart and 1.4 mm high; in plan each leaves its leg over 1 mm more."""
+    posts = two_posts(18, [3.0, 15.2])
+    for square in (1.0, 2.0):
+        free = legs(posts, 18.0, limit=6.0, sizes=SupportSizes(square_mm=square))
+        assert [leg.length_mm for leg in free] == pytest.approx([10.0, 10.0], abs=0.5)
+    assert legs(posts, 18.0, sizes=SupportSizes(square_mm=1.0)) == []
+    assert max(leg.length_mm for leg in legs(posts, 18.0, limit=6.0)) > 11
+
+
 def test_ends_that_the_part_cuts_and_tips_set_no_width():
     slope = box((2, 2, 17), (5, 5, 0)) - box((6, 6, 6), (0, 0, 0)).rotate((0, -45, 0)).translate((7.2, 4, 15))
     assert legs(slope, 16.0) == []

@@ -11,7 +11,9 @@ from tests.shared.legs import sliced_legs
 from amprep.model import Grid, SupportEdges, Voxel
 from amprep.model.supports.edges import DIRECTIONS
 from amprep.supports.legs.cell import square_cell
+from amprep.supports.legs.find import find_legs
 from amprep.supports.legs.room import OpenVoxels
+from amprep.supports.legs.sections import find_sections
 from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
 
 RULES = LegRules(10.0, square_cell(1.0))
@@ -114,6 +116,34 @@ def test_short_legs_and_walls_beside_each_other_stay_as_they_are():
     legs = shorten(grid, voxels, block, [(36, 3, 3)])
     assert len(legs.edges) == 0
     assert words_of(legs, 10.0) == ()
+
+
+def bent_wall(low, high, top):
+    """Two columns beside each other that step aside at two planes."""
+    rows = []
+    for x, at in ((3, low), (4, high)):
+        rows += column(8, x, top, bottom=at) + [[at, 8, x, 4, 1, 1, 0]] + column(7, x, at - 1)
+    return SupportEdges.from_rows(rows)
+
+
+@pytest.mark.parametrize(("low", "high"), [(7, 7), (7, 8), (7, 9)])
+def test_two_columns_with_a_bend_are_one_leg_that_is_no_wider_there(low, high):
+    grid, _ = empty_grid()
+    edges = bent_wall(low, high, 20)
+    sections = find_sections(grid, edges, np.array([(20, 8, 3), (20, 8, 4)], np.int32), RULES.cell)
+    (leg,) = find_legs(sections)
+    assert len(leg.lengths) == 20
+    assert leg.ratio() == pytest.approx(20.4, abs=0.5)
+
+
+def test_no_strut_leads_to_a_column_that_touches_along_an_edge():
+    edges = SupportEdges.from_rows(column(7, 7, 18) + column(8, 8, 18))
+    grid, voxels = empty_grid()
+    held = [(18, 7, 7), (18, 8, 8)]
+    legs = shorten(grid, voxels, edges, held)
+    assert legs.left == ()
+    used = {(y, x) for _, y, x in legs.edges.voxels.tolist()}
+    assert used - {(7, 7), (8, 8), (7, 8), (8, 7)}, "further columns, not struts between both"
 
 
 def test_struts_keep_to_the_open_voxels_of_their_part_and_out_of_other_supports():

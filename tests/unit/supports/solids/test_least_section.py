@@ -1,5 +1,6 @@
 """Connectors that would be too narrow are left out with the supports that carry nothing else."""
 
+from dataclasses import replace
 from functools import cache
 
 import networkx as nx
@@ -12,9 +13,10 @@ from amprep.checks.supports.least_section import check_least_section
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
-from amprep.model import Build, BuildSettings, BuildVolume, Stop, silent
+from amprep.model import Build, BuildSettings, BuildVolume, Grid, Stop, SupportEdges, silent
 from amprep.model.contacts import ConnectorRules
 from amprep.model.supports.rules import SupportRules
+from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.plan import plan_supports
 from amprep.supports.rules import PlanningRules
 from amprep.supports.solids.build import SolidRules, build_supports
@@ -109,3 +111,20 @@ def test_edges_that_lead_only_to_squares_without_a_connector_are_left_out(seed):
     assert all(node in ends for node in up if up.out_degree(node) == 0)
     assert all(any(down[0] == 0 for down in [*nx.ancestors(up, end), end]) for end in ends)
     assert set(less.red_group[less.connected].tolist()) <= set(layout.red_group[layout.connected].tolist())
+
+
+def test_a_support_stays_below_a_strut_that_holds_another():
+    """Two columns, a strut from the lower end at x = 3 up to x = 6: the column at x = 6 stays up to the strut."""
+    grid = Grid(np.zeros(3), 1.0, 1.0, (20, 5, 12))
+    columns = [[plane, 2, x, 0, 1, 1, 0] for x in (3, 6) for plane in range(1, 16)]
+    strut = [[8 - k, 2, 6 - k, 2, 1, 1, 0] for k in range(3)]
+    none = np.zeros(2, np.int32)
+    red = RedSquares(np.array([(15, 2, 3), (15, 2, 6)], np.int32), none, none, none)
+    edges = SupportEdges.from_rows(columns + strut)
+    layout = replace(scene("ball")[1], grid=grid, edges=edges, red=red, connected=np.ones(2, np.bool_),
+                     reasons=("", ""), red_group=none, feet=np.empty((0, 4), np.int32))  # fmt: skip
+    less = without_columns(layout, np.array([False, True]))
+    left = less.edges[less.edges.x == 6]
+    assert sorted(left.plane.tolist()) == [1, 2, 3, 4, 5, 6, 7, 8, 8]
+    bare = replace(layout, edges=SupportEdges.from_rows(columns))
+    assert not (without_columns(bare, np.array([False, True])).edges.x == 6).any()
