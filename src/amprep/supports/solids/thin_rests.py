@@ -12,13 +12,13 @@ from amprep.geometry.supports.thin_rests import find_thin_rests
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
-_STEP = 0.5
+_STEP = 0.25
 """Distance (mm) of sections."""
 
 _MOST_TRIANGLES = 4e6
 """Largest product of the numbers of triangles and sections of one support."""
 
-_SECTIONS = (40, 160)
+_SECTIONS = (40, 240)
 """Least and largest value of the number of sections to which that leads."""
 
 _FINE = 0.15
