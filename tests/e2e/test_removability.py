@@ -36,7 +36,9 @@ def test_x_walls_without_gaps_trap_powder_which_is_not_a_fault(amprep, fixtures,
 @pytest.mark.parametrize("name", ["ball", "two-balls"])
 def test_x_walls_with_gaps_trap_no_powder_and_joined_ones_do(amprep, fixtures, tmp_path, name):
     gap, done = supports(amprep, tmp_path / "gap", fixtures / f"{name}.stl")
-    assert gap["trapped_powder_mm3"] == 0.0
+    assert (
+        gap["trapped_powder_mm3"] < 0.01
+    )  # at most one voxel of the measurement, beside a rest that was cut away
     assert done.code == 0
     joined, _ = supports(amprep, tmp_path / "joined", fixtures / f"{name}.stl", "cells.params.join_every=1")
     assert joined["trapped_powder_mm3"] > 100.0

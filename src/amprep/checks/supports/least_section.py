@@ -4,8 +4,9 @@ Strategy. Horizontal planes cut each finished solid. A connected piece of a sect
 it when its border moves inwards by half the least wall: no disc of that size fits in it. A fin is too thin if it
 reaches far beyond what such discs cover; near the discs are the corners, which no disc fills. A piece beside a wall of
 a part is one with the part there, and is judged together with it. Contours of a shape that is known to be right need no
-further judge (`amprep.checks.supports.shapes`). Ends that taper on purpose, of teeth, points and
-necks, may be as narrow as 0.1 mm, or as they are wide if that is less, up to their height below the part.
+further judge (`amprep.checks.supports.shapes`). What is thin in one section, but not in those a least wall above and
+below it, is a burr and no wall. Ends that taper on purpose, of teeth, points and necks, may be as narrow as 0.1 mm, or
+as they are wide if that is less, up to their height below the part.
 """
 
 from collections.abc import Sequence
@@ -160,11 +161,35 @@ class _SectionJudge:
         places: list[ThinPlace] = []
         heights = _heights(body)
         for height in heights.tolist():
-            region, around = self.shapes.undecided(solid.slice(height))
-            if not region.is_empty():
-                section = _Section(region, around, height, self.settings, self.parts)
-                places += [*section.small_pieces(), *section.fins()]
+            found = self._places_at(solid, height)
+            if found:
+                beside = [
+                    place
+                    for step in (-1.0, 1.0)
+                    for place in self._places_at(solid, height + step * self.burr)
+                ]
+                places += [place for place in found if _continues(place, beside, 3.0 * self.burr)]
         return ThinPlaces(places, len(heights))
+
+    @property
+    def burr(self) -> float:
+        """Height (mm) up to which what is too thin is a burr, and no wall: the least wall."""
+        return max(self.settings.rules.least_wall_mm, _SLIVER)
+
+    def _places_at(self, solid: "Manifold", height: float) -> list[ThinPlace]:
+        region, around = self.shapes.undecided(solid.slice(height))
+        if region.is_empty():
+            return []
+        section = _Section(region, around, height, self.settings, self.parts)
+        return [*section.small_pieces(), *section.fins()]
+
+
+def _continues(place: ThinPlace, others: Sequence[ThinPlace], distance: float) -> bool:
+    """Tell whether one of `others` is of the same kind and horizontally within a distance (mm) of a thin place."""
+    return any(
+        other.promise == place.promise and np.hypot(*(other.position_mm - place.position_mm)[:2]) <= distance
+        for other in others
+    )
 
 
 def _heights(body: SupportBody) -> Floats:

@@ -86,12 +86,13 @@ def test_what_is_one_with_a_wall_of_the_part_is_judged_with_the_part():
 
 
 def test_points_have_their_own_least_size_only_below_the_part():
-    cone = post(1, height=9) + Manifold.cylinder(1.1, 0.5, 0.1, 24).translate((5.5, 5.5, 9))
-    sizes = SupportSizes(tip_width_mm=0.2, tip_height_mm=1.0)
+    cone = post(1, height=8) + Manifold.cylinder(2.1, 0.5, 0.1, 24).translate((5.5, 5.5, 8))
+    sizes = SupportSizes(tip_width_mm=0.2, tip_height_mm=2.0)
     assert promises(cone, least_wall_mm=0.6) != set()
     assert promises(cone, sizes=sizes, least_wall_mm=0.6) == set()
     low = post(1, height=5) + Manifold.cylinder(5.1, 0.5, 0.1, 24).translate((5.5, 5.5, 5))
-    assert promises(low, sizes=sizes, least_wall_mm=0.6) != set()
+    short = SupportSizes(tip_width_mm=0.2, tip_height_mm=1.0)
+    assert promises(low, sizes=short, least_wall_mm=0.6) != set()
 
 
 def test_without_rules_nothing_is_judged():
