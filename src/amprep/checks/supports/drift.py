@@ -37,7 +37,8 @@ def check_drift(build: Build, stop: Stop) -> list[Violation]:
 
     A point may be away by the smaller of `drift_mm` and `drift_ratio` times the height up to the overhang, and by one
     square of the support grid more, because drift is planned in squares; at the foot the margin of the base comes on
-    top. Supports that parts share may be below the overhangs of any of them.
+    top. Supports that parts share may be below the overhangs of any of them. Supports below
+    surfaces that enclose no solid are not judged, because their needs are not certain: faces without area have edges.
     """
     rules = build.settings.rules
     found: list[Violation] = []
@@ -47,6 +48,8 @@ def check_drift(build: Build, stop: Stop) -> list[Violation]:
     for body in build.supports:
         if stop.cancelled.is_set():
             return found
+        if not all(build.parts[part].part.is_solid for part in body.parts):
+            continue
         for part in body.parts:
             if part not in targets:
                 targets[part] = _targets(build.parts[part], build)
