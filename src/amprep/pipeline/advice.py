@@ -29,7 +29,8 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
     pitch
         Horizontal voxel size of the support grid, mm.
     """
-    usual, rules = usual_pitch(build.parts), job.supports
+    rules = job.supports
+    usual = usual_pitch(build.parts, rules.least_wall_mm)
     if rules.pitch_mm is None and pitch > usual:
         yield (
             f"the pitch of the support grid was raised from {usual:g} to {pitch:g} mm, so that the grid fits into "

@@ -15,6 +15,9 @@ from amprep.supports.rules import PlanningRules
 FINEST_PITCH, USUAL_PITCH = 0.8, 2.0
 """Bounds (mm) of the automatic pitch, before the memory limit is applied."""
 
+PITCH_PER_WALL = 8.0 / 3.0
+"""Smallest automatic pitch over the least wall: thicker walls would close the cells."""
+
 _SQUARES_PER_PART = 12
 """Number of voxels along the mean extent of the median part."""
 
@@ -22,16 +25,18 @@ _BYTES_PER_VOXEL = 40
 """Peak memory of a voxel, measured with the exact routers; `shortest-paths` takes half."""
 
 
-def usual_pitch(parts: Sequence[PlacedPart]) -> float:
+def usual_pitch(parts: Sequence[PlacedPart], least_wall: float = 0.0) -> float:
     """Return the pitch (mm) at which the median part has 12 voxels along its mean extent, within 0.8 to 2.0 mm.
 
-    The mean extent of a part is the geometric mean of the three sides of its bounding box.
+    The mean extent of a part is the geometric mean of the three sides of its bounding box. The pitch is at least
+    `PITCH_PER_WALL` times the least wall (mm).
     """
+    finest = max(FINEST_PITCH, float(np.ceil(10.0 * PITCH_PER_WALL * least_wall - 1e-9)) / 10.0)
     bounds = [placed.mesh.bounds for placed in parts]
     if not bounds:
-        return USUAL_PITCH
+        return max(USUAL_PITCH, finest)
     sizes = [float(np.prod(hi - lo)) ** (1 / 3) for lo, hi in bounds]
-    return min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), FINEST_PITCH), USUAL_PITCH)
+    return min(max(round(float(np.median(sizes)) / _SQUARES_PER_PART, 1), finest), max(USUAL_PITCH, finest))
 
 
 def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, rules: PlanningRules) -> float:
@@ -51,7 +56,7 @@ def choose_pitch(parts: Sequence[PlacedPart], space: BuildVolume, rules: Plannin
     """
     if rules.pitch_mm is not None:
         return rules.pitch_mm
-    pitch = usual_pitch(parts)
+    pitch = usual_pitch(parts, rules.least_wall_mm)
     while estimated_megabytes(parts, space, pitch, rules.strut_angle_deg) > rules.memory_mb:
         pitch = round(pitch * 1.05 + 0.05, 1)
     return pitch

@@ -50,8 +50,9 @@ def test_parts_get_room_for_supports_that_stand_beside_them(packer):
 
 
 def test_with_room_more_red_squares_are_connected():
-    given = amprep.plan_supports(packed(BLOCK_BELOW).builds[0])
-    tight = amprep.plan_supports(packed(BLOCK_BELOW, size=(54, 54, 60), copies=4).builds[0])
+    every = {"contact_spacing_mm": 0.0}  # every red square is to be connected
+    given = amprep.plan_supports(packed(BLOCK_BELOW, **every).builds[0])
+    tight = amprep.plan_supports(packed(BLOCK_BELOW, size=(54, 54, 60), copies=4, **every).builds[0])
     count = [
         sum(int(layout.connected.sum()) / len(build.build.parts) for layout in build.layouts)
         for build in (given, tight)

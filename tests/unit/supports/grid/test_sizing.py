@@ -35,7 +35,8 @@ def cube(side, at=(10.0, 10.0, 5.0)):
 
 def test_the_median_part_has_twelve_voxels_along_its_mean_extent():
     assert usual_pitch([cube(12.0), cube(18.0), cube(50.0)]) == 1.5
-    assert usual_pitch([cube(1.0)]) == FINEST_PITCH
+    assert usual_pitch([cube(1.0)]) == usual_pitch([cube(1.0)], 0.3) == FINEST_PITCH
+    assert usual_pitch([cube(1.0)], 0.6) == 1.6, "walls of 0.6 mm would close finer cells"
     assert usual_pitch([cube(90.0)]) == usual_pitch([]) == USUAL_PITCH
 
 
