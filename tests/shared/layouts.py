@@ -32,6 +32,6 @@ def route(problem, stop, progress):
 
 
 def layout(parts, space=SPACE, **settings):
-    given = {name: settings.pop(name) for name in ("route", "choose", "stop") if name in settings}
+    given = {name: settings.pop(name) for name in ("route", "stop") if name in settings}
     rules = PlanningRules(**{"pitch_mm": 1.0, "escalation": "none"} | settings)
     return plan_supports(parts, space, rules, **{"route": route, "stop": Stop(), "progress": silent} | given)

@@ -26,7 +26,8 @@ from amprep.model import (
 from amprep.pipeline.reading import expand_inputs, read_all
 from amprep.pipeline.resolve import cell_named
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.plan import PlanningRules, Route, plan_supports
+from amprep.supports.legs.cell import CellProperties
+from amprep.supports.plan import PassScope, PlanningRules, Route, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 
 if TYPE_CHECKING:
@@ -188,9 +189,9 @@ def _volume(
         (part,),
         SPACE,
         PlanningRules(pitch_mm=pitch),
-        material=emitter.material(pitch, pitch),
         route=route,
-        choose=free_below,
+        cell=CellProperties(emitter.material(pitch, pitch)),
+        scope=PassScope(choose=free_below),
         stop=stop,
         progress=silent,
     )

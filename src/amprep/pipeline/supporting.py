@@ -28,8 +28,8 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
-from amprep.supports.legs.cell import measure_cell
-from amprep.supports.plan import SupportLayout, plan_supports
+from amprep.supports.legs.cell import CellProperties, measure_cell
+from amprep.supports.plan import PassScope, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 
 LARGEST_REACH = 5.0
@@ -331,10 +331,11 @@ def _layout(
         build.parts,
         job.printer.space,
         rules,
-        overhangs=overhangs,
-        earlier=earlier,
-        material=resolved.cell.material(pitch, step),
-        extents=measure_cell(resolved.cell.emit, pitch, step) if rules.leg_ratio else None,
+        cell=CellProperties(
+            resolved.cell.material(pitch, step),
+            measure_cell(resolved.cell.emit, pitch, step) if rules.leg_ratio else None,
+        ),
+        scope=PassScope(overhangs, earlier=earlier),
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress
         ),

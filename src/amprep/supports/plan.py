@@ -1,13 +1,13 @@
 """Plan the supports of a build: overhangs, grid, red squares, routing, groups (thesis 3.2)."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Ints
+from amprep.arrays import Bools, Ints
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
@@ -19,7 +19,7 @@ from amprep.supports.grid.spacing import are_beside, space_contacts, steps_withi
 from amprep.supports.grid.taken import close_taken, taken_by
 from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
-from amprep.supports.legs.cell import square_cell
+from amprep.supports.legs.cell import CellProperties
 from amprep.supports.legs.room import OpenVoxels
 from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
@@ -27,7 +27,30 @@ from amprep.supports.routes.network import Route, SupportNetwork
 from amprep.supports.routes.on_part import stand_on_parts
 from amprep.supports.rules import PlanningRules
 
-__all__ = ["Choose", "PlanningRules", "Route", "SupportLayout", "plan_supports"]
+__all__ = ["Choose", "PassScope", "PlanningRules", "Route", "SupportLayout", "plan_supports"]
+
+
+@dataclass(frozen=True, eq=False)
+class PassScope:
+    """What one pass of planning supports, and what it has to keep out of.
+
+    Attributes
+    ----------
+    overhangs
+        The overhangs of each part that are to be supported; None for all that the rules find.
+    choose
+        Chooses the red squares to connect; None chooses all.
+    earlier
+        Layouts of earlier passes, whose voxels are closed.
+    """
+
+    overhangs: Sequence[PartOverhangs] | None = None
+    choose: Choose | None = None
+    earlier: Sequence[SupportLayout] = ()
+
+
+EVERYTHING = PassScope()
+"""The scope of a single pass: all overhangs that the rules find."""
 
 
 class _Supports(NamedTuple):
@@ -45,11 +68,8 @@ def plan_supports(
     rules: PlanningRules,
     *,
     route: Route,
-    overhangs: Sequence[PartOverhangs] | None = None,
-    material: tuple[float, float] = (1.0, 1.0),
-    extents: Floats | None = None,
-    choose: Choose | None = None,
-    earlier: Sequence[SupportLayout] = (),
+    cell: CellProperties | None = None,
+    scope: PassScope = EVERYTHING,
     stop: Stop,
     progress: Progress,
 ) -> SupportLayout:
@@ -65,16 +85,10 @@ def plan_supports(
         Rules for overhangs, grid, routing and bracing.
     route
         The router; it may be called once for each part.
-    overhangs
-        The overhangs of each part that are to be supported; None for all that the rules find.
-    material
-        Material of a vertical and of an oblique edge in the chosen cell, mm3.
-    extents
-        Extents (mm) of one cell, see `amprep.supports.legs.cell.measure_cell`; None for a cell that fills its square.
-    choose
-        Chooses the red squares to connect; None chooses all.
-    earlier
-        Layouts of earlier passes, whose voxels are closed.
+    cell
+        The cell that replaces the edges; None for one that fills its square and takes as much material on any edge.
+    scope
+        The overhangs and red squares of this pass, and the layouts of earlier passes.
     stop
         Ends the routing; red squares not routed by then are listed as unconnected.
     progress
@@ -87,18 +101,18 @@ def plan_supports(
     PluginError
         If the router returns a plan that `amprep.checks.supports.plan.check_plan` rejects.
     """
-    if overhangs is None:
-        overhangs = [overhangs_of(placed, rules) for placed in parts]
+    cell = CellProperties() if cell is None else cell
+    overhangs = [overhangs_of(each, rules) for each in parts] if scope.overhangs is None else scope.overhangs
     progress(0.05, "overhangs found")
-    close_voxels = partial(close_taken, taken=taken_by(earlier)) if earlier else None
-    laid = make_grid(parts, overhangs, space, rules, choose, close_voxels)
+    close_voxels = partial(close_taken, taken=taken_by(scope.earlier)) if scope.earlier else None
+    laid = make_grid(parts, overhangs, space, rules, scope.choose, close_voxels)
     progress(0.15, "grid laid")
     territories = find_territories(parts, laid, rules)
-    every = SupportNetwork(laid, rules, material, route, stop, territories)
+    every = SupportNetwork(laid, rules, cell.material, route, stop, territories)
     network, routed, close = _route_spaced(every, overhangs, rules, progress)
     laid, territories = network.laid, tuple(network.territories)
     notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
-    supports = _shorten_legs(laid, territories, _ground(laid, territories, routed, rules), rules, extents)
+    supports = _shorten_legs(laid, territories, _ground(laid, territories, routed, rules), rules, cell)
     supports = supports._replace(notes=(*notes, *supports.notes))
     layout = _layout(parts, overhangs, laid, supports, routed.reasons)
     return replace(layout, territories=territories, contact_spacing=rules.contact_spacing_mm, close=close)
@@ -159,19 +173,18 @@ def _shorten_legs(
     territories: Sequence[PartTerritory],
     supports: _Supports,
     rules: PlanningRules,
-    extents: Floats | None,
+    cell: CellProperties,
 ) -> _Supports:
     """Brace or thicken legs that are too long for their width, if the rules limit that."""
     if not rules.leg_ratio or not len(supports.edges):
         return supports
-    cell = square_cell(laid.grid.pitch) if extents is None else extents
     held = np.concatenate([laid.red.square[supports.connected], supports.feet[:, :3]])
     opened = [OpenVoxels(laid.voxels, each.first, each.opened) for each in territories]
     legs = shorten_legs(
         laid.grid,
         supports.edges,
         held,
-        LegRules(rules.leg_ratio, cell),
+        LegRules(rules.leg_ratio, cell.extents_in(laid.grid.pitch)),
         opened.__getitem__ if opened else lambda _: OpenVoxels(laid.voxels),
     )
     edges = SupportEdges.concatenate([supports.edges, legs.edges]).merged()

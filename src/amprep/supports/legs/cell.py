@@ -1,10 +1,10 @@
-"""Measure how wide a lone column of a lattice cell is."""
+"""State what planning needs to know of a lattice cell, and measure how wide a lone column of it is."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, frozen
 from amprep.cells.answers import Emit
 from amprep.cells.samples import single_column
 from amprep.model import CellRequest, Cells
@@ -12,6 +12,31 @@ from amprep.supports.legs.sections import directions
 
 _NEAR = 0.05
 """Fraction of a cell's height up to which its points belong to its lower or upper square."""
+
+
+@dataclass(frozen=True, eq=False)
+class CellProperties:
+    """What planning needs to know of the lattice cell that replaces the edges.
+
+    Attributes
+    ----------
+    material
+        Material of a vertical and of an oblique edge, mm3.
+    extents
+        Extents (mm) of one cell in the horizontal directions, see `measure_cell`; None for a cell that fills its
+        square.
+    """
+
+    material: tuple[float, float] = (1.0, 1.0)
+    extents: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if self.extents is not None:
+            object.__setattr__(self, "extents", frozen(self.extents, np.float64))
+
+    def extents_in(self, pitch: float) -> Floats:
+        """Return the extents (mm) of one cell in a grid of this pitch (mm)."""
+        return square_cell(pitch) if self.extents is None else self.extents
 
 
 def measure_cell(emit: Emit, pitch: float, step: float) -> Floats:

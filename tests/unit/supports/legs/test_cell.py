@@ -7,7 +7,7 @@ from amprep.errors import JobError
 from amprep.host import Host
 from amprep.job import job_from_inputs, override
 from amprep.pipeline.resolve import resolve
-from amprep.supports.legs.cell import measure_cell, square_cell
+from amprep.supports.legs.cell import CellProperties, measure_cell, square_cell
 
 
 @pytest.fixture
@@ -25,6 +25,14 @@ def test_a_square_is_as_wide_as_its_shadow_in_every_direction():
     extents = square_cell(2.0)
     assert extents.min() == pytest.approx(2.0)
     assert extents.max() == pytest.approx(2.0 * np.sqrt(2.0))
+
+
+def test_a_cell_fills_its_square_unless_it_states_extents_of_its_own():
+    assert np.array_equal(CellProperties().extents_in(2.0), square_cell(2.0))
+    measured = square_cell(0.5)
+    stated = CellProperties(extents=measured)
+    measured[:] = 9.0
+    assert np.array_equal(stated.extents_in(2.0), square_cell(0.5))
 
 
 @pytest.mark.parametrize("key", ["cross_bracing", "slenderness_ratio"])
