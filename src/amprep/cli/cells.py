@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
+from amprep.cli.options import AsJson
 
 if TYPE_CHECKING:
     from amprep.pipeline.check_cell import CellReport
     from amprep.pipeline.resolve import ChosenCell
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Modules = Annotated[
     list[str] | None,
     typer.Option(

@@ -1,57 +1,24 @@
 """``amprep materials``: list the materials that a job can name, with their limits and the sources of these."""
 
-import json
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from amprep.cli.printers import AsJson
+from amprep.cli.profiles import ProfileCommands
 
 if TYPE_CHECKING:
     from amprep.materials.catalogue import Material
 
-app = typer.Typer(help="List the materials that a job can name, or show one of them.")
 
-
-@app.callback(invoke_without_command=True)
-def _main(context: typer.Context) -> None:
-    """List the materials if no command is given."""
-    if context.invoked_subcommand is None:
-        list_all()
-
-
-@app.command("list")
-def list_all(as_json: AsJson = False) -> None:
-    """List all materials with their limits for overhangs, density, layer height and speed."""
+def _listed() -> "tuple[list[Material], list[str]]":
     from amprep.materials.catalogue import list_materials
 
-    materials, warnings = list_materials()
-    for warning in warnings:
-        typer.echo(f"amprep: warning: {warning}", err=True)
-    if as_json:
-        typer.echo(json.dumps([_record(material) for material in materials], indent=2))
-    else:
-        _print_table(materials)
+    return list_materials()
 
 
-@app.command("show")
-def show(
-    name: Annotated[
-        str, typer.Argument(metavar="MATERIAL", help="Name of a material, or path of a profile (.toml).")
-    ],
-    as_json: AsJson = False,
-) -> None:
-    """Show one material as a profile that can be saved to a file and changed."""
+def _find(name: str) -> "Material":
     from amprep.materials.catalogue import material_called
 
-    record = _record(material_called(name))
-    if as_json:
-        typer.echo(json.dumps(record, indent=2))
-        return
-    for key, value in record.items():
-        if key not in ("origin", "based_on") and value is not None:  # every key is stated
-            typer.echo(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return material_called(name)
 
 
 def _record(material: "Material") -> dict[str, Any]:
@@ -92,3 +59,14 @@ def _limit(value: float) -> str:
     from amprep.model.supports.rules import LARGEST_LIMIT
 
     return "any" if value >= LARGEST_LIMIT else f"{value:g}"
+
+
+app = ProfileCommands(
+    kind="material",
+    about="List all materials with their limits for overhangs, density, layer height and speed.",
+    listed=_listed,
+    find=_find,
+    record=_record,
+    unstated=("origin", "based_on"),  # every key is stated, also what comes from the base
+    print_table=_print_table,
+).app()

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
+from amprep.cli.options import AsJson
 
 if TYPE_CHECKING:
     from amprep.hookspecs import Offer
     from amprep.host import Host, Listed
     from amprep.testing.conformance import OfferReport
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Modules = Annotated[
     list[str] | None,
     typer.Option(

@@ -1,56 +1,23 @@
 """``amprep printers``: list the printers that a job can name, with the sources of their sizes."""
 
-import json
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
+from amprep.cli.profiles import ProfileCommands
 
 if TYPE_CHECKING:
     from amprep.printers.catalogue import Printer
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
-app = typer.Typer(help="List the printers that a job can name, or show one of them.")
-
-
-@app.callback(invoke_without_command=True)
-def _main(context: typer.Context) -> None:
-    """List the printers if no command is given."""
-    if context.invoked_subcommand is None:
-        list_all()
-
-
-@app.command("list")
-def list_all(as_json: AsJson = False) -> None:
-    """List all printers with their build volumes and the sources of their sizes."""
+def _listed() -> "tuple[list[Printer], list[str]]":
     from amprep.printers.catalogue import list_printers
 
-    printers, warnings = list_printers()
-    for warning in warnings:
-        typer.echo(f"amprep: warning: {warning}", err=True)
-    if as_json:
-        typer.echo(json.dumps([_record(printer) for printer in printers], indent=2))
-    else:
-        _print_table(printers)
+    return list_printers()
 
 
-@app.command("show")
-def show(
-    name: Annotated[
-        str, typer.Argument(metavar="PRINTER", help="Name of a printer, or path of a profile (.toml).")
-    ],
-    as_json: AsJson = False,
-) -> None:
-    """Show one printer as a profile that can be saved to a file and changed."""
+def _find(name: str) -> "Printer":
     from amprep.printers.catalogue import find_printer
 
-    printer = find_printer(name)
-    if as_json:
-        typer.echo(json.dumps(_record(printer), indent=2))
-        return
-    for key, value in _record(printer).items():
-        if key != "origin" and value is not None:
-            typer.echo(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return find_printer(name)
 
 
 def _record(printer: "Printer") -> dict[str, Any]:
@@ -92,3 +59,14 @@ def _size(printer: "Printer") -> str:
     zones = len(printer.space.zone_lo)
     shape = f"{x} x {y} x {z}" if printer.space.shape == "box" else f"diameter {x}, height {z}"
     return shape + (f", {zones} forbidden zone{'s' if zones > 1 else ''}" if zones else "")
+
+
+app = ProfileCommands(
+    kind="printer",
+    about="List all printers with their build volumes and the sources of their sizes.",
+    listed=_listed,
+    find=_find,
+    record=_record,
+    unstated=("origin",),
+    print_table=_print_table,
+).app()

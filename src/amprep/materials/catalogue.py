@@ -42,38 +42,19 @@ class Material:
 def find_material(
     name: str, folder: Path | None = None, env: Mapping[str, str] = os.environ
 ) -> MaterialProfile:
-    """Return the material profile called `name`; case, spaces and punctuation do not matter.
-
-    Parameters
-    ----------
-    name
-        Name of a profile, or path of one (.toml).
-    folder
-        The project's folder: the base of relative paths, and the parent of its ``materials`` folder, which is
-        searched first.
-    env
-        Environment variables that determine the user's configuration folder.
-
-    Raises
-    ------
-    JobError
-        If there is no such profile (with the most similar name), or it is invalid.
-    """
+    """Return the material profile called `name`, or at this path; see `amprep.profiles.Catalogue.find`."""
     return material_called(name, folder, env).profile
 
 
 def material_called(name: str, folder: Path | None = None, env: Mapping[str, str] = os.environ) -> Material:
-    """Return the material called `name` with its origin; see `find_material`."""
+    """Return the material called `name` with its origin; see `amprep.profiles.Catalogue.find`."""
     return _catalogue(folder, env).find(name)
 
 
 def list_materials(
     folder: Path | None = None, env: Mapping[str, str] = os.environ
 ) -> tuple[list[Material], list[str]]:
-    """Return all materials and warnings: those of the project, of the user, and built-in ones, in this order.
-
-    The first profile of a name hides later ones. An invalid profile gives a warning.
-    """
+    """Return all materials and warnings; see `amprep.profiles.Catalogue.listed`."""
     return _catalogue(folder, env).listed()
 
 

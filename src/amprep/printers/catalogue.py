@@ -114,45 +114,15 @@ class Printer:
 
 
 def find_printer(name: str, folder: Path | None = None, env: Mapping[str, str] = os.environ) -> Printer:
-    """Return the printer called `name`; case, spaces and punctuation do not matter.
-
-    Parameters
-    ----------
-    name
-        Name of a printer, or path of a profile (.toml).
-    folder
-        The project's folder: the base of relative paths, and the parent of its ``printers`` folder, which is
-        searched first.
-    env
-        Environment variables that determine the user's configuration folder.
-
-    Raises
-    ------
-    JobError
-        If there is no such printer (with the most similar name), or its profile is invalid.
-    """
+    """Return the printer called `name`, or at this path; see `amprep.profiles.Catalogue.find`."""
     return _catalogue(folder, env).find(name)
 
 
 def list_printers(
     folder: Path | None = None, env: Mapping[str, str] = os.environ
 ) -> tuple[list[Printer], list[str]]:
-    """Return all printers and warnings: those of the project, of the user, and built-in ones, in this order.
-
-    The first printer of a name hides later ones. An invalid profile gives a warning.
-    """
+    """Return all printers and warnings; see `amprep.profiles.Catalogue.listed`."""
     return _catalogue(folder, env).listed()
-
-
-def read_printer(path: Path, origin: Origin) -> Printer:
-    """Read a profile.
-
-    Raises
-    ------
-    JobError
-        If the file is not a printer profile.
-    """
-    return _shipped(path) if origin == "built-in" else _read(path, origin)
 
 
 def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: Origin = "job") -> Printer:
@@ -189,14 +159,18 @@ def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: 
 
 
 def _catalogue(folder: Path | None, env: Mapping[str, str]) -> Catalogue[Printer]:
-    return Catalogue("printer", SHIPPED, read_printer, folder, env)
+    return Catalogue("printer", SHIPPED, _read, folder, env)
 
 
 def _read(path: Path, origin: Origin) -> Printer:
+    return _shipped(path) if origin == "built-in" else _read_own(path, origin)
+
+
+def _read_own(path: Path, origin: Origin) -> Printer:
     return printer_from_table(read_table(path, "printer"), str(path), path.stem, origin)
 
 
 @cache
 def _shipped(path: Path) -> Printer:
     """Read a built-in profile; the result is cached, because the file does not change."""
-    return _read(path, "built-in")
+    return _read_own(path, "built-in")

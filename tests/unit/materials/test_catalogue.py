@@ -1,6 +1,7 @@
 """Materials are found by name among the built-in profiles and those of the project and the user."""
 
 import pytest
+from tests.shared.profiles import Places, assert_refused
 
 from amprep.errors import JobError
 from amprep.materials.catalogue import DEFAULT_MATERIALS, densities_of, find_material, list_materials
@@ -9,10 +10,7 @@ from amprep.profiles import user_folder
 
 @pytest.fixture
 def places(tmp_path):
-    """A project folder, and an environment whose configuration folder is empty."""
-    for name in ("project/materials", "config/amprep/materials"):
-        (tmp_path / name).mkdir(parents=True)
-    return tmp_path / "project", {"XDG_CONFIG_HOME": str(tmp_path / "config"), "HOME": str(tmp_path)}
+    return Places("material", tmp_path)
 
 
 def limits(profile):
@@ -64,14 +62,8 @@ def test_a_profile_of_the_project_hides_and_may_extend_the_built_in_one_of_its_n
     ],
 )
 def test_an_invalid_profile_is_refused_by_name_and_gives_a_warning_in_the_list(places, text, message):
-    folder, env = places
-    path = folder / "materials" / "broken.toml"
-    path.write_text(text)
-    with pytest.raises(JobError, match=message) as caught:
-        find_material("broken", folder, env)
-    assert str(path) in str(caught.value)
-    assert len(list_materials(folder, env)[1]) == 1
-    assert find_material("metal", folder, env).name == "metal"
+    assert_refused(places, find_material, list_materials, text, message)
+    assert find_material("metal", *places).name == "metal"
 
 
 def test_profiles_that_are_based_on_each_other_are_refused(places):

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from tests.shared.profiles import Places, assert_refused
 from typer.testing import CliRunner
 
 from amprep.cli.printers import app
@@ -16,10 +17,7 @@ PROFILE = 'name = "My Printer"\nsize_mm = [10, 20, 30]\n'
 
 @pytest.fixture
 def places(tmp_path):
-    """A project folder, and an environment whose configuration folder is empty."""
-    for name in ("project/printers", "config/amprep/printers"):
-        (tmp_path / name).mkdir(parents=True)
-    return tmp_path / "project", {"XDG_CONFIG_HOME": str(tmp_path / "config"), "HOME": str(tmp_path)}
+    return Places("printer", tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -96,14 +94,8 @@ def test_a_profile_is_found_by_path_and_zones_are_kept(places):
     ],
 )
 def test_an_invalid_profile_is_refused_by_name_and_gives_a_warning_in_the_list(places, text, message):
-    folder, env = places
-    path = folder / "printers" / "broken.toml"
-    path.write_text(text)
-    with pytest.raises(JobError, match=message) as caught:
-        find_printer("broken", folder, env)
-    assert str(path) in str(caught.value)
-    assert len(list_printers(folder, env)[1]) == 1
-    assert find_printer("prusa mk4", folder, env).name == "Prusa MK4"
+    assert_refused(places, find_printer, list_printers, text, message)
+    assert find_printer("prusa mk4", *places).name == "Prusa MK4"
 
 
 @pytest.mark.parametrize(
@@ -135,19 +127,6 @@ def test_an_unknown_printer_is_refused_with_the_nearest(places):
         find_printer("xyzzy", *places)
     with pytest.raises(JobError, match="expected a printer file, found nothing"):
         find_printer("nowhere.toml", *places)
-
-
-@pytest.mark.parametrize(
-    ("platform", "env", "expected"),
-    [
-        ("linux", {"HOME": "/h"}, "/h/.config/amprep/printers"),
-        ("linux", {"HOME": "/h", "XDG_CONFIG_HOME": "/x"}, "/x/amprep/printers"),
-        ("darwin", {"HOME": "/h"}, "/h/Library/Application Support/amprep/printers"),
-        ("win32", {"USERPROFILE": "/h", "APPDATA": "/r"}, "/r/amprep/printers"),
-    ],
-)
-def test_the_users_folder_follows_the_custom_of_the_platform(platform, env, expected):
-    assert user_folder(env, "printers", platform).as_posix() == expected
 
 
 def test_the_command_lists_and_shows_printers(tmp_path):
