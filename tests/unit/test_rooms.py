@@ -144,6 +144,7 @@ def test_an_algorithm_cites_its_own_section(place):
 TESTS_OF_SEVERAL = {
     "cli/test_help.py": "all commands",
     "host/test_choosing.py": "choice by the manager, with its mismatches and offers",
+    "job/test_mistakes.py": "what a job file must not say, in whichever section",
     "job/test_properties.py": "any job file, whichever section it has",
     "plugins/cells/test_built_in.py": "all built-in cells",
     "plugins/packers/integer_program/test_model.py": "variables and constraints, which one program holds",
