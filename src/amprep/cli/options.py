@@ -25,7 +25,6 @@ NoPlugins = Annotated[
     bool, typer.Option("--no-plugins", help="Use the built-in plugins only.", rich_help_panel=_PLUGINS)
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 
 
 job_option = partial(typer.Option, rich_help_panel=_JOB)

@@ -29,11 +29,6 @@ class DriftLimits(NamedTuple):
     limit: float
 
     @property
-    def any(self) -> bool:
-        """Whether there is a limit."""
-        return self.ratio > 0.0 or self.limit > 0.0
-
-    @property
     def most(self) -> float:
         """The largest distance at any height, mm; infinite without a limit."""
         return max(self.limit, self.pitch) if self.limit > 0.0 else np.inf

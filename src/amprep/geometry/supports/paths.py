@@ -5,7 +5,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 
 DIRECTIONS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
-"""``(dy, dx)`` from a square to the one below it, as in `amprep.model.supports.edges`."""
+"""``(dy, dx)`` from a square to the one below it: straight, +x, -x, +y, -y."""
 
 
 def cheapest_path(prices: Floats, start: tuple[int, int], goal: tuple[int, int] | None) -> list[int] | None:

@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 
 from amprep.arrays import Bytes, Int64s, Ints, frozen
+from amprep.geometry.supports.paths import DIRECTIONS
 
-DIRECTIONS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
-"""``(dy, dx)`` from a square to the one below it: straight, +x, -x, +y, -y."""
+__all__ = ["DIRECTIONS", "Square", "SupportEdges", "square_keys"]
+
+Square = tuple[int, int, int]
+"""Plane, y, x."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,11 @@ class SupportEdges:
         """Return the edges of all blocks, one block after the other."""
         columns = zip(*(block.columns for block in (cls.from_rows([]), *blocks)), strict=True)
         return cls(*(np.concatenate(each) for each in columns))
+
+    def rows(self) -> list[list[int]]:
+        """Return rows of plane, y, x, direction, flow, capacity, part, as `from_rows` reads them."""
+        rows: list[list[int]] = np.column_stack([each.astype(np.int64) for each in self.columns[:7]]).tolist()
+        return rows
 
     def __len__(self) -> int:
         return len(self.plane)

@@ -7,11 +7,8 @@ import numpy as np
 
 from amprep.arrays import Bools, Bytes
 from amprep.model.supports import Voxel
-from amprep.model.supports.edges import DIRECTIONS, SupportEdges
+from amprep.model.supports.edges import DIRECTIONS, Square, SupportEdges
 from amprep.supports.legs.sections import Sections
-
-Square = tuple[int, int, int]
-"""Plane, y, x."""
 
 DIRECTION_OF = {step: number for number, step in enumerate(DIRECTIONS)}
 """Number of each direction ``(dy, dx)``."""

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from amprep.supports.legs.room import Room, Square, Strut
+from amprep.model.supports.edges import Square
+from amprep.supports.legs.room import Room, Strut
 
 PROP_DISTANCES = (2, 3, 4)
 """Squares from a leg to a further column beside it; with one square between them, their cells do not touch."""

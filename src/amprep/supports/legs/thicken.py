@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.model.supports.edges import DIRECTIONS
+from amprep.model.supports.edges import DIRECTIONS, Square
 from amprep.supports.legs.find import RoutedLeg
-from amprep.supports.legs.room import Room, Square, Strut
+from amprep.supports.legs.room import Room, Strut
 from amprep.supports.legs.sections import PLANES_TO_TOUCH, directions
 
 LARGEST_WIDTH = 5

@@ -1,6 +1,7 @@
 """Reroute paths that drift farther from the overhangs above them than allowed."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -117,11 +118,8 @@ class _UnitFlow:
 
     def edges(self) -> SupportEdges:
         """Return the edges that carry flow."""
-        kept = self._flow > 0
-        edges = self._edges
-        columns = (edges.plane, edges.y, edges.x, edges.direction, self._flow, self._flow, edges.part)
-        old = np.column_stack([np.asarray(each, np.int64)[kept] for each in columns])
-        return SupportEdges.from_rows([*old.tolist(), *self._added]).merged()
+        old = replace(self._edges, flow=self._flow, capacity=self._flow)[self._flow > 0]
+        return SupportEdges.concatenate([old, SupportEdges.from_rows(self._added)]).merged()
 
     def _cone(self, shape: tuple[int, ...], red: Ints) -> Bools:
         """Tell which voxels of a block are within the drift of a red square at the top of it."""

@@ -8,12 +8,10 @@ import numpy as np
 from amprep.arrays import Bools, Int64s
 from amprep.geometry.supports.paths import cheapest_path, edge_prices
 from amprep.model.supports import SupportProblem, Voxel
-from amprep.model.supports.edges import DIRECTIONS, SupportEdges, square_keys
+from amprep.model.supports.edges import DIRECTIONS, Square, SupportEdges, square_keys
 
 MORE_MATERIAL = 1.1
 """Largest ratio of the material of an upright and of an oblique edge at which upright edges replace oblique ones."""
-
-Square = tuple[int, int, int]
 
 
 class _Chain(NamedTuple):
@@ -51,7 +49,7 @@ def straighten(problem: SupportProblem, edges: SupportEdges) -> SupportEdges:
     if not chains:
         return edges
     free = problem.voxels == Voxel.FREE
-    rows = _rows_of(edges)
+    rows = edges.rows()
     used = {(plane, y, x) for plane, y, x in np.concatenate([edges.upper, edges.lower, problem.red]).tolist()}
     clear = np.logical_and.accumulate(free, axis=0)
     for chain in chains:
@@ -138,9 +136,3 @@ def _below(square: Square, direction: int) -> Square:
     """Return the square to which an edge leads."""
     dy, dx = DIRECTIONS[direction]
     return square[0] - 1, square[1] + dy, square[2] + dx
-
-
-def _rows_of(edges: SupportEdges) -> list[list[int]]:
-    """Return rows of plane, y, x, direction, flow, capacity, part."""
-    columns = (edges.plane, edges.y, edges.x, edges.direction, edges.flow, edges.capacity, edges.part)
-    return np.column_stack([each.astype(np.int64) for each in columns]).tolist()  # type: ignore[no-any-return]

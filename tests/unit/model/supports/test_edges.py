@@ -25,6 +25,12 @@ def test_routers_leave_part_and_group_open():
     assert edges.voxels.tolist() == [[1, 0, 0], [1, 0, 1], [0, 0, 1], [0, 0, 1]]
 
 
+@pytest.mark.parametrize("count", [0, 60])
+def test_rows_are_those_that_edges_were_made_from(count):
+    edges, rows = random_edges(0, count)
+    assert edges.rows() == rows
+
+
 def test_arrays_of_different_length_are_refused():
     with pytest.raises(ValueError, match="equally long"):
         SupportEdges([2, 1], [0, 0], [0, 1], [1, 0], [1], [1, 1])

@@ -53,6 +53,7 @@ def test_supports_keep_out_of_the_shadow_of_another_part_but_may_use_their_own()
     low = box((30, 10, 4), (10, 20, 0))
     high = box((10, 20, 4), (20, 10, 20)) + box((4, 4, 24), (23, 12, 0))
     plan = layout(placed(high, low), territory_margin_mm=2.0, **OWN)
+    assert plan.connected.any()
     for y, x in columns_in_use(plan):
         assert not (10 <= x < 40 and 20 <= y < 30) or 20 <= x < 30
 
