@@ -39,6 +39,7 @@ class MaterialProfile(OverhangRules, SectionRules):
     def __post_init__(self) -> None:
         OverhangRules.__post_init__(self)
         SectionRules.__post_init__(self)
+        self.require_noncritical()
         require_bounds(self, "density_g_cm3", "scan_mm2_s", above=0)
         require_bounds(self, "recoating_s", at_least=0)
 

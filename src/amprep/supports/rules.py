@@ -55,6 +55,7 @@ class PlanningRules(SupportRules):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self.require_noncritical()
         require_bounds(self, "pitch_mm", above=0)
         require_bounds(self, "memory_mb", at_least=1, at_most=LARGEST_COUNT)
         require_bounds(self, "edge_capacity", "node_capacity", at_least=0, at_most=LARGEST_COUNT)

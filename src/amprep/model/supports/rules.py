@@ -66,6 +66,17 @@ class OverhangRules:
         require_bounds(self, "layer_mm", at_least=0.005, at_most=2.0)
         require_bounds(self, "min_area_mm2", "min_length_mm", at_least=0)
 
+    def require_noncritical(self) -> None:
+        """Raise `ValueError` if the second angle is below the overhang angle, where it would do nothing.
+
+        Build files of earlier releases may record such an angle, so only jobs and profiles are checked.
+        """
+        require(
+            self.noncritical_angle_deg == 0 or self.noncritical_angle_deg >= self.overhang_angle_deg,
+            f"noncritical_angle_deg must be 0 or at least overhang_angle_deg = {self.overhang_angle_deg:g}",
+            f"{self.noncritical_angle_deg:g}",
+        )
+
     @property
     def has_limits(self) -> bool:
         """Whether overhangs that the part itself carries need no support."""
