@@ -2,7 +2,7 @@
 
 import math
 import types
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -42,7 +42,7 @@ def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
     ------
     JobError
         For an unknown key, a key that `REPLACED_KEYS` of the class lists with its successor, a value of the wrong
-        type, or a value out of bounds.
+        type (`EXPECTED` of the class may say in words what a key expects), or a value out of bounds.
     """
     wanted = field_types(cls)
     replaced = getattr(cls, "REPLACED_KEYS", {})
@@ -53,19 +53,45 @@ def make(cls: type[T], table: Mapping[str, Any], where: str) -> T:
             )
         if key not in wanted:
             raise JobError(f"{where}: unknown key {key!r}{nearest_hint(key, wanted)}")
-    values = {key: convert(value, wanted[key], f"{where}: {key}") for key, value in table.items()}
+    expected = getattr(cls, "EXPECTED", {})
+    values = {
+        key: convert(value, wanted[key], f"{where}: {key}", expected.get(key)) for key, value in table.items()
+    }
     try:
         return cls(**values)
     except ValueError as error:
         raise JobError(f"{where}: {error}") from error
 
 
-def convert(value: Any, wanted: Any, where: str) -> Any:
-    """Return the value converted to a type; raise `JobError` if this is impossible."""
+def convert(value: Any, wanted: Any, where: str, expected: str | None = None) -> Any:
+    """Return the value converted to a type; raise `JobError` if this is impossible.
+
+    The message describes the type by `expected`, if that is given, and suggests the nearest word of a choice.
+    """
     converted, fits = _attempt(value, wanted)
     if not fits:
-        raise JobError(f"{where}: expected {expectation(wanted, where)}, got {_shown(value)}")
+        words = expected or expectation(wanted, where)
+        raise JobError(f"{where}: expected {words}, got {_shown(value)}{_nearest_choice(value, wanted)}")
     return converted
+
+
+def _nearest_choice(value: Any, wanted: Any) -> str:
+    """Return ``(did you mean 'x'?)`` for the first text that is none of the choices but like one; else nothing."""
+    known = {choice for choice in _choices(wanted) if isinstance(choice, str)}
+    texts = [
+        each for each in (value if isinstance(value, list | tuple) else [value]) if isinstance(each, str)
+    ]
+    hints = (nearest_hint(text, known) for text in texts if text not in known)
+    return next((hint for hint in hints if "did you mean" in hint), "")
+
+
+def _choices(wanted: Any) -> Iterator[Any]:
+    """Yield the values of all choices in a type."""
+    if get_origin(wanted) is Literal:
+        yield from get_args(wanted)
+        return
+    for each in get_args(wanted):
+        yield from _choices(each)
 
 
 def expectation(wanted: Any, where: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from amprep.cells import cell_offer, read_cell
-from amprep.errors import InputError, JobError, MeshError
+from amprep.errors import InputError, JobError, MeshError, PluginError
 from amprep.hookspecs import CellEmitter, Packer, SupportRouter, VolumeMaker
 from amprep.host import Chosen, Host, Listed, choose
 from amprep.job import Job, PackingSettings, apply_sets, as_names, job_from_inputs, override
@@ -113,7 +113,7 @@ def resolve(job: Job, host: Host) -> ResolvedJob:
         packer=packer,
         router=choose(host, "router", supports.strategy, supports.params),
         cell=choose_cell(host, job),
-        rule_cells=tuple(choose_cell(host, job.for_rule(number)) for number, _ in enumerate(job.rules, 1)),
+        rule_cells=tuple(_rule_cell(host, job, number) for number, _ in enumerate(job.rules, 1)),
         volumes=choose_volumes(host, job, as_names(packing.volumes or packer.listed.offer.volumes)),
     )
 
@@ -174,6 +174,14 @@ def choose_cell(host: Host, job: Job) -> ChosenCell:
         When a parameter is unknown or has a wrong value.
     """
     return ChosenCell.of(host, _listed(host, job), job.cells.params)
+
+
+def _rule_cell(host: Host, job: Job, number: int) -> ChosenCell:
+    """Return the cell of a ``[[rule]]`` entry; messages about it name the entry."""
+    try:
+        return choose_cell(host, job.for_rule(number))
+    except (PluginError, InputError, JobError) as error:
+        raise type(error)(f"{job.source}: [[rule]] {number}: {error}") from error
 
 
 def cell_named(host: Host, cell: str, sets: Sequence[str] = ()) -> ChosenCell:

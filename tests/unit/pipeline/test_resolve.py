@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from amprep.checks.cells.templates import check_cells
-from amprep.errors import JobError, MeshError
+from amprep.errors import JobError, MeshError, PluginError
 from amprep.host import Host
-from amprep.job import PackingSettings, apply_sets, job_from_inputs
+from amprep.job import PackingSettings, apply_sets, job_from_inputs, override
 from amprep.model import CellRequest, Grid, Mesh, SupportEdges
-from amprep.pipeline.resolve import cell_named, choose_cell, choose_packer
+from amprep.pipeline.resolve import cell_named, choose_cell, choose_packer, resolve
 from amprep.testing.problems import box_mesh
 
 POST = box_mesh(np.array([0.25, 0.25, 0.0]), np.array([0.75, 0.75, 1.0]))
@@ -124,3 +124,16 @@ def test_every_level_of_every_packer_is_a_set_of_valid_parameters(host):
 def test_a_packer_without_the_level_is_refused_with_what_to_do(host):
     with pytest.raises(JobError, match=r"'sweep' knows normal only, got 'fast'.*\[packing.params\]"):
         choose_packer(host, PackingSettings(strategy="sweep", effort="fast"))
+
+
+@pytest.mark.parametrize(
+    ("rule", "error", "message"),
+    [
+        ({"cell": "prisn"}, PluginError, r"\[\[rule\]\] 2: .*'prisn' .*did you mean 'prism'"),
+        ({"cell": "prism", "params": {"windw": 1}}, JobError, r"\[\[rule\]\] 2: .*windw"),
+    ],
+)
+def test_a_message_about_the_cell_of_a_rule_names_the_entry(host, rule, error, message):
+    job = override(job_from_inputs(["part.stl"]), {"rule": [{"cell": "prism"}, rule]})
+    with pytest.raises(error, match=message):
+        resolve(job, host)
