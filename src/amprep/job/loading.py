@@ -117,7 +117,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
     packing = _section(PackingSettings, table, "packing", source, **printer.packing_defaults)
     parts = tuple(
         make(PartSettings, _is_table(entry, f"{source}: [[part]] {number}"), f"{source}: [[part]] {number}")
-        for number, entry in enumerate(convert(table.get("part", []), tuple[Any, ...], f"{source}: part"), 1)
+        for number, entry in enumerate(_entries(table, "part", source), 1)
     )
     supports = _section(
         SupportSettings, table, "supports", source, **_support_defaults(table, printer, material, packing)
@@ -188,17 +188,28 @@ def _rules(
 ) -> tuple[RuleSettings, ...]:
     """Return the settings of overhang regions, each of which must fit the settings of the job."""
     rules = []
-    for number, entry in enumerate(convert(table.get("rule", []), tuple[Any, ...], f"{source}: rule"), 1):
+    for number, entry in enumerate(_entries(table, "rule", source), 1):
         where = f"{source}: [[rule]] {number}"
         rule = make(RuleSettings, _is_table(entry, where), where)
         if rule.cell is not None:
             rule = replace(rule, cell=_cell_file(rule.cell, folder, f"{where}: cell"))
         try:
             rule.cells(cells), rule.supports(supports)
+            rule.require_kinds(supports.rules)
         except ValueError as error:
             raise JobError(f"{where}: {error}") from error
         rules.append(rule)
     return tuple(rules)
+
+
+def _entries(table: Mapping[str, Any], key: str, source: str) -> tuple[Any, ...]:
+    """Return the entries of a list of tables; one table is no list."""
+    value, where = table.get(key, []), f"{source}: {key}"
+    if isinstance(value, Mapping):
+        raise JobError(
+            f"{where}: expected entries [[{key}]], got one table; write [[{key}]] in place of [{key}]"
+        )
+    return tuple(convert(value, tuple[Any, ...], where))
 
 
 def _is_table(value: Any, where: str) -> Mapping[str, Any]:

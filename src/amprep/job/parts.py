@@ -11,9 +11,10 @@ from amprep.errors import JobError, nearest_hint
 from amprep.job.settings.job import Job
 from amprep.job.settings.packing import as_names
 from amprep.job.settings.parts import PartSettings
+from amprep.job.settings.rules import RuleSettings
 from amprep.model.counting import counted
 from amprep.model.part import Part
-from amprep.overhangs.conditions import is_named
+from amprep.overhangs.conditions import colours_of, is_named
 
 
 def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
@@ -24,13 +25,11 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
     Raises
     ------
     JobError
-        When an entry, or the condition `part` of a ``[[rule]]`` entry, names no part; the message suggests a similar
-        file or name.
+        When an entry, or the condition `part` of a ``[[rule]]`` entry, names no part, or its condition `colour` no
+        colour and no region of these parts; the message suggests a similar name.
     """
     for number, rule in enumerate(job.rules, start=1):
-        if rule.part is not None and not any(is_named(part, rule.part) for part in parts):
-            near = nearest_hint(rule.part, [part.name for part in parts])
-            raise JobError(f"{job.source}: [[rule]] {number}: no part is called {rule.part!r}{near}")
+        _check_rule(rule, parts, f"{job.source}: [[rule]] {number}")
     result = list(parts)
     for number, entry in enumerate(job.parts, start=1):
         chosen = [index for index, part in enumerate(parts) if names_part(entry, part, job)]
@@ -39,6 +38,20 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
         for index in chosen:
             result[index] = _with_settings(result[index], entry)
     return result
+
+
+def _check_rule(rule: RuleSettings, parts: Sequence[Part], where: str) -> None:
+    """Raise `JobError` if no part has the name and the colour that a rule asks for."""
+    named = [part for part in parts if rule.part is None or is_named(part, rule.part)]
+    if rule.part is not None and not named:
+        near = nearest_hint(rule.part, [part.name for part in parts])
+        raise JobError(f"{where}: no part is called {rule.part!r}{near}")
+    if rule.colour is None:
+        return
+    known = frozenset().union(*(colours_of(part) for part in named))
+    if (rule.paint or rule.colour) not in known:
+        near = nearest_hint(rule.paint or rule.colour, known) or " (no part has colours or regions)"
+        raise JobError(f"{where}: no part has the colour or the region {rule.colour!r}{near}")
 
 
 def names_part(entry: PartSettings, part: Part, job: Job) -> bool:

@@ -1,10 +1,13 @@
 """Conditions on overhang regions, by which the ``[[rule]]`` entries of a job choose them."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import PurePath
+from typing import ClassVar
+
+import numpy as np
 
 from amprep.geometry.overhangs.regions import NOT_FACES, Kind, OverhangRegion
 from amprep.model.part import Part
@@ -38,6 +41,11 @@ class RegionConditions:
         Colour that its faces are painted in, ``#RRGGBB``, or the name of a marked region of the part that they are in.
     """
 
+    EXPECTED: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("angle", "size", "area", "height"), "[least, greatest] or [least]"
+    )
+    """What ranges look like, for messages."""
+
     kind: Kind | tuple[Kind, ...] | None = None
     angle: Range | None = None
     size: Range | None = None
@@ -61,6 +69,11 @@ class RegionConditions:
         """The colour as ``#rrggbb``; None for the name of a region and without a colour."""
         return self.colour.lower() if self.colour and _COLOUR.fullmatch(self.colour) else None
 
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """The kinds that are named."""
+        return (self.kind,) if isinstance(self.kind, str) else self.kind or ()
+
     def are_met(self, region: OverhangRegion, part: Part, paint: Collection[str]) -> bool:
         """Tell whether a region of a part meets all conditions.
 
@@ -73,7 +86,6 @@ class RegionConditions:
         paint
             Colours of the region as ``#rrggbb``, and the names of the marked regions that it is in.
         """
-        kinds = (self.kind,) if isinstance(self.kind, str) else self.kind
         area = 0.0 if region.kind in NOT_FACES else region.measure
         measured = (
             (self.angle, region.angle_deg),
@@ -82,7 +94,7 @@ class RegionConditions:
             (self.height, region.lowest_mm),
         )
         return (
-            (kinds is None or region.kind in kinds)
+            (self.kind is None or region.kind in self.kinds)
             and all(_is_within(value, limits) for limits, value in measured)
             and (self.part is None or is_named(part, self.part))
             and (self.colour is None or (self.paint or self.colour) in paint)
@@ -97,3 +109,13 @@ def is_named(part: Part, pattern: str) -> bool:
     """Tell whether a pattern with ``*`` and ``?`` names the part, its file, or its file without the suffix."""
     file = PurePath(part.source)
     return any(fnmatchcase(name, pattern) for name in (part.name, file.name, file.stem) if name)
+
+
+def colours_of(part: Part) -> frozenset[str]:
+    """Return the colours of a part and of its triangles as ``#rrggbb``, and the names of its marked regions."""
+    look = part.appearance
+    corners = np.asarray([] if look.triangle_colours is None else look.triangle_colours, np.int64)
+    own = np.unique(corners.reshape(-1, 3)[:, 0])
+    painted = {f"#{value >> 8:06x}" for value in own.tolist() if value >= 0}
+    whole = {look.colour[:7].lower()} if look.colour else set()
+    return frozenset(painted | whole | {region.name for region in part.regions if region.name})

@@ -59,6 +59,30 @@ from amprep.job import load_job
             "[[rule]]\nkind = 'hole'\nsupport = false",
             r"\[\[rule\]\] 1: kind: expected one of 'face', 'ledge'",
         ),
+        ("[[rule]]\nkind = 'bor'\nsupport = false", r"got the text 'bor' \(did you mean 'bore'\?\)"),
+        ("[[rule]]\nkind = ['edge', 'tipp']\nsupport = false", r"\(did you mean 'tip'\?\)"),
+        ("[[rule]]\nangle = 3\nsupport = false", r"angle: expected \[least, greatest\] or \[least\], got 3"),
+        (
+            "[rule]\nsupport = false",
+            r"rule: expected entries \[\[rule\]\], got one table; write \[\[rule\]\]",
+        ),
+        ("[part]\nname = 'a'", r"part: expected entries \[\[part\]\], got one table; write \[\[part\]\]"),
+        (
+            "supports.rules = 'thesis'\n[[rule]]\nkind = 'bore'\nsupport = false",
+            r"\[\[rule\]\] 1: with rules = 'thesis' kind must be one of 'face', 'edge', 'tip', got 'bore'",
+        ),
+        (
+            "supports.rules = 'thesis'\n[[rule]]\nsize = [1]\nsupport = false",
+            "size must be left out with rules = 'thesis'",
+        ),
+        (
+            "[[rule]]\nkind = 'face'\nsupport = false",
+            "with rules = 'limits' kind must be one of 'ledge', .*got 'face'",
+        ),
+        (
+            "supports.overhang_angle_deg = 45\nsupports.noncritical_angle_deg = 30",
+            "noncritical_angle_deg must be 0 or at least overhang_angle_deg = 45, got 30",
+        ),
         ("[[rule]]\nkind = []\nsupport = false", "kind must name at least one kind"),
         (
             "[[rule]]\nangle = [9, 3]\nsupport = false",

@@ -2,15 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, get_args
 
+from amprep.geometry.overhangs.regions import Kind
 from amprep.job.settings.cells import CellSettings
 from amprep.job.settings.supports import SupportSettings
 from amprep.model.contacts import ConnectorKind, ConnectorRules
+from amprep.model.supports.rules import OverhangJudgement
 from amprep.overhangs.conditions import RegionConditions
 from amprep.validation import require
 
 _CONDITIONS = tuple(each.name for each in fields(RegionConditions))
+_OF_THESIS: tuple[Kind, ...] = ("face", "edge", "tip")
 _CONNECTOR = tuple(each.name for each in fields(ConnectorRules))
 
 
@@ -57,6 +60,22 @@ class RuleSettings(RegionConditions):
             ", ".join(name for name in given if name != "support"),
         )
         require(bool(given), "a [[rule]] entry must have a setting beside its conditions", "none")
+
+    def require_kinds(self, rules: OverhangJudgement) -> None:
+        """Raise `ValueError` if no overhang can be of a kind, or of a size, that the rule asks for.
+
+        With the rules of the thesis overhangs are faces, edges and tips without a size; with limits none is a ``face``.
+        """
+        thesis = rules == "thesis"
+        possible = [kind for kind in get_args(Kind) if (kind in _OF_THESIS if thesis else kind != "face")]
+        fits = not self.kinds or any(kind in possible for kind in self.kinds)
+        known = ", ".join(repr(kind) for kind in possible)
+        require(fits, f"with rules = {rules!r} kind must be one of {known}", ", ".join(map(repr, self.kinds)))
+        require(
+            not thesis or self.size is None,
+            "size must be left out with rules = 'thesis', because overhangs have no size there",
+            self.size and list(self.size),
+        )
 
     def cells(self, job: CellSettings) -> CellSettings:
         """Return the cell settings of the job with those of the rule; another cell starts from its own parameters."""
