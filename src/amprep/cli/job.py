@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -76,13 +77,13 @@ def build_and_report(
 
 
 def explain_and_report(inputs: list[str], part: str, options: BuildOptions, *, center: bool) -> NoReturn:
-    """Print the overhang regions of a part and exit."""
+    """Print the overhang regions of a part and exit; the table is the result, so `--quiet` prints it, too."""
     own = {"part": part, "center": center, "allow_surface": options.allow_surface}
     record = call_api("explain_regions", inputs, options, {}, **own)
 
     from amprep.report.regions import summary, to_json
 
-    finish(record, to_json, summary, options)
+    finish(record, to_json, summary, replace(options, quiet=False))
 
 
 def output_options(inputs: list[str], options: JobOptions) -> dict[str, Any]:
