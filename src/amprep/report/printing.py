@@ -8,6 +8,9 @@ from amprep.model.counting import counted
 
 GRAMS_IN_KG = 1000.0
 
+HOW_TO_GET_MASS = "no density: choose an alloy by --material"
+"""What to do where the mass is unknown."""
+
 
 def printing_words(estimates: Sequence[PrintingEstimate]) -> str:
     """Return what the builds of a run take in one line; empty without builds."""
@@ -61,6 +64,6 @@ def _masses(estimates: Sequence[PrintingEstimate]) -> str:
     """Return the mass of parts and supports, or that the density of the material is unknown."""
     total = total_mass_g(estimates)
     if total is None:
-        return "mass unknown (no density: choose an alloy by --material)"
+        return f"mass unknown ({HOW_TO_GET_MASS})"
     supports = sum(each.supports_g or 0.0 for each in estimates)
     return f"mass {' '.join(mass_words(total))} (supports {' '.join(mass_words(supports))})"

@@ -18,6 +18,7 @@ from tests.shared.examples import examples
 from tests.shared.optional import present
 
 from amprep.checks.violation import Violation
+from amprep.measures.printing.estimate import PrintingEstimate
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh
 from amprep.report.page.geometry import GeometryPack
 from amprep.report.page.html import html_text, write_html
@@ -185,6 +186,13 @@ def test_a_run_without_builds_has_a_page():
     text = html_text(record)
     assert "crane" in text
     assert json.loads(Tags(text).raw_text("model"))["builds"] == []
+
+
+def test_a_page_with_an_unknown_mass_says_how_to_get_it(make_build):
+    run = run_of(make_build())
+    unknown = replace(run.builds[0], printing=PrintingEstimate(800.0, None))
+    text = html_text(replace(run, builds=(unknown,)))
+    assert "unknown <small>no density: choose an alloy by --material</small>" in text
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder"])
