@@ -1,8 +1,10 @@
 """Advise on settings that would support more of a build."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 
+from amprep.errors import JobError
 from amprep.job import Job
 from amprep.model import Build
 from amprep.model.supports import (
@@ -14,7 +16,12 @@ from amprep.model.supports import (
     TERRITORY,
     Grounding,
 )
-from amprep.supports.grid.sizing import estimated_megabytes, usual_pitch
+from amprep.pipeline.resolve import ResolvedJob
+from amprep.supports.grid.sizing import estimated_megabytes, least_pitch, usual_pitch
+from amprep.supports.solids.thin_cells import has_thin_walls
+
+_MOST_STEPS = 20
+"""Steps of 0.1 mm by which a larger pitch is looked for."""
 
 
 def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
@@ -40,8 +47,8 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
     narrow = counts[NO_FREE_VOXEL_BELOW] + counts[CONNECTOR_BLOCKED]
     if narrow:
         yield (
-            f"{_have(narrow)} no free voxel below {'it' if narrow == 1 else 'them'} at a pitch of {pitch:g} mm; a "
-            f"finer pitch may reach those outside the part: {_finer(job, build, pitch)}"
+            f"{_have(narrow)} no free voxel below {'it' if narrow == 1 else 'them'} at a pitch of {pitch:g} mm; "
+            f"{_finer(job, build, pitch)}"
         )
     if counts[ENCLOSED] and rules.grounding == "plate-only":
         yield (
@@ -72,12 +79,37 @@ def _have(count: int) -> str:
 
 
 def _finer(job: Job, build: Build, pitch: float) -> str:
-    """Return the options for half the pitch and the memory that it takes."""
-    finer = round(pitch / 2, 1) if pitch >= 0.4 else pitch / 2
+    """Return the options for half the pitch and the memory that it takes, or that no finer pitch suits the walls."""
+    least = least_pitch(job.supports.least_wall_mm)
+    finer = max(round(pitch / 2, 1) if pitch >= 0.4 else pitch / 2, least)
+    if finer >= pitch:
+        return f"a finer one is no remedy, because walls of {job.supports.least_wall_mm:g} mm would close its cells"
     options = f"--set supports.pitch_mm={finer:g}"
     needed = estimated_megabytes(build.parts, job.printer.space, finer, job.supports.strut_angle_deg)
-    return (
-        options
-        if needed <= job.supports.memory_mb
-        else f"{options} --set supports.memory_mb={int(needed) + 1}"
+    if needed > job.supports.memory_mb:
+        options += f" --set supports.memory_mb={int(needed) + 1}"
+    return f"a finer pitch may reach those outside the part: {options}"
+
+
+def wall_advice(resolved: ResolvedJob) -> Iterator[str]:
+    """Yield a sentence if the walls of the cell are thinner than the least wall at the pitch that the job gives."""
+    rules, name = resolved.job.supports, resolved.job.cells.strategy
+    if rules.pitch_mm is None or not _is_thin(resolved, rules.pitch_mm):
+        return
+    larger = (math.ceil(10.0 * rules.pitch_mm) / 10.0 + number / 10.0 for number in range(_MOST_STEPS))
+    pitch = next((each for each in larger if _is_thin(resolved, each) is False), None)
+    remedy = "thicker walls" if pitch is None else f"a larger pitch: --set supports.pitch_mm={pitch:g}"
+    yield (
+        f"at a pitch of {rules.pitch_mm:g} mm walls of the cell {name} are thinner than the least wall of "
+        f"{rules.least_wall_mm:g} mm and are left out; choose {remedy}"
     )
+
+
+def _is_thin(resolved: ResolvedJob, pitch: float) -> bool | None:
+    """Tell whether the walls of the cell are too thin at a pitch; None if the cell refuses the pitch."""
+    rules = resolved.job.supports
+    step = pitch * math.tan(math.radians(rules.strut_angle_deg))
+    try:
+        return has_thin_walls(resolved.cell.emit, pitch, step, rules.least_wall_mm)
+    except JobError:
+        return None

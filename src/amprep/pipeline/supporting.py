@@ -23,7 +23,7 @@ from amprep.model.supports import EXCEPTED
 from amprep.model.supports.sizes import SupportSizes
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.unsupported import find_unsupported
-from amprep.pipeline.advice import advice_for
+from amprep.pipeline.advice import advice_for, wall_advice
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
 from amprep.pipeline.stages import Clock
@@ -214,8 +214,13 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         unsupported = _unsupported(planned, planned.taken, bodies, settings)
         build = Build(replace(settings[0], reach=reach), parts, tuple(bodies), unsupported)
         removal = removal_of(job, build)
-    advice = tuple(advice_for(job, build, planned.pitch_mm))
-    return SupportedBuild(build, planned.layouts, planned.taken.overhangs, advice, removal)
+    advice = [
+        *advice_for(job, build, planned.pitch_mm),
+        *(words for each in planned.passes for words in wall_advice(resolved.for_rule(each.rules[0]))),
+    ]
+    return SupportedBuild(
+        build, planned.layouts, planned.taken.overhangs, tuple(dict.fromkeys(advice)), removal
+    )
 
 
 def _bodies(

@@ -25,13 +25,18 @@ _BYTES_PER_VOXEL = 40
 """Peak memory of a voxel, measured with the exact routers; `shortest-paths` takes half."""
 
 
+def least_pitch(least_wall: float) -> float:
+    """Return the smallest pitch (mm, in tenths) whose cells walls of the least wall (mm) do not close."""
+    return float(np.ceil(10.0 * PITCH_PER_WALL * least_wall - 1e-9)) / 10.0
+
+
 def usual_pitch(parts: Sequence[PlacedPart], least_wall: float = 0.0) -> float:
     """Return the pitch (mm) at which the median part has 12 voxels along its mean extent, within 0.8 to 2.0 mm.
 
     The mean extent of a part is the geometric mean of the three sides of its bounding box. The pitch is at least
     `PITCH_PER_WALL` times the least wall (mm).
     """
-    finest = max(FINEST_PITCH, float(np.ceil(10.0 * PITCH_PER_WALL * least_wall - 1e-9)) / 10.0)
+    finest = max(FINEST_PITCH, least_pitch(least_wall))
     bounds = [placed.mesh.bounds for placed in parts]
     if not bounds:
         return max(USUAL_PITCH, finest)
