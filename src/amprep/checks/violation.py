@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from amprep.arrays import Floats
+
 
 @dataclass(frozen=True)
 class Violation:
@@ -24,3 +26,8 @@ class Violation:
     def __str__(self) -> str:
         """Return the violation in one line."""
         return f"{self.promise}: {self.subject}: {self.message}"
+
+
+def place_words(point: Floats, digits: int = 2) -> str:
+    """Return the coordinates of a point as all messages and reports state them: ``(12.5, -3, 0.04)``."""
+    return f"({', '.join(f'{round(value, digits) + 0.0:.9g}' for value in point.tolist())})"

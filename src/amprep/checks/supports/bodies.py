@@ -10,7 +10,7 @@ from amprep.arrays import Bools, Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.checks.supports import beams
 from amprep.checks.supports.solids import KnownSolids
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
@@ -118,7 +118,9 @@ def _zones(body: JudgedBody, space: BuildVolume) -> list[Violation]:
     for lo, hi in zip(space.zone_lo + TOLERANCE, space.zone_hi - TOLERANCE, strict=True):
         lattice = body.support.lattice
         if _volume_in_box(body, lo, hi) or (lattice is not None and beams.enters_box(lattice, lo, hi)):
-            found.append(Violation(INSIDE, body.name, f"reaches into the forbidden zone at {lo.tolist()} mm"))
+            found.append(
+                Violation(INSIDE, body.name, f"reaches into the forbidden zone at {place_words(lo)} mm")
+            )
     return found
 
 
@@ -161,7 +163,7 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
     if not floating:
         return []
     first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
-    place = np.round(first, 2).tolist()
+    place = place_words(first)
     message = f"floats: {floating} of {counted(count, 'component')} not on the plate, one at {place} mm"
     return [Violation(STANDING, body.name, message)]
 
@@ -216,7 +218,7 @@ def _penetration(
     lattice = body.support.lattice
     place = None if lattice is None else beams.deepest_place(lattice, placed.mesh, depth)
     if place is not None:
-        message = f"enters {placed.label}: a beam at {np.round(place, 2).tolist()} mm is more than {depth:.4g} mm deep"
+        message = f"enters {placed.label}: a beam at {place_words(place)} mm is more than {depth:.4g} mm deep"
         return [Violation(PENETRATION, body.name, message)]
     if not len(body.support.mesh.triangles):
         return []

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model.build import Build, SupportBody
 from amprep.model.mesh import Mesh
@@ -44,7 +44,7 @@ def check_contacts(build: Build, lo: Floats, hi: Floats, part: Ints) -> list[Vio
         for number in own.tolist():
             box = lo[number], hi[number] + (0.0, 0.0, build.settings.overlap)
             if _volume(common, *box) <= 0.0 and not any(_within(points, *box).any() for points in listed):
-                where = np.round(lo[number], 3).tolist()
+                where = place_words(lo[number], 3)
                 message = f"no connector touches the part above the end of the support at {where} mm"
                 found.append(Violation(PROMISE, placed.label, message))
     return found

@@ -6,7 +6,7 @@ from amprep.arrays import Int64s
 from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
 from amprep.checks.overhangs.samples import KINDS, JudgedSamples, judged_overhangs
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.model.build import Build
 from amprep.overhangs.contacts import NUDGE, find_held, is_near, sample_spacing
 
@@ -49,9 +49,8 @@ def _left_over(build: Build, part: int, samples: JudgedSamples, spacing: float) 
 
 def _violation(build: Build, part: int, kind: int, samples: JudgedSamples, left: Int64s) -> Violation:
     label = build.parts[part].label
-    x, y, z = samples.points[left[0]]
     message = (
         f"an overhanging {KINDS[kind]} of {label} has {len(left)} sample points over {build.settings.reach:g} mm from "
-        f"any contact and is not listed, first at ({x:.2f}, {y:.2f}, {z:.2f}) mm"
+        f"any contact and is not listed, first at {place_words(samples.points[left[0]])} mm"
     )
     return Violation(PROMISE, label, message)

@@ -6,7 +6,7 @@ from amprep.arrays import Floats, Int64s
 from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
 from amprep.checks.overhangs.samples import judged_overhangs
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.sampling import sample_segments
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
@@ -75,7 +75,7 @@ def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) ->
     if not len(far):
         return []
     worst = far[excess[far].argmax()]
-    place = np.round(points[worst], 2).tolist()
+    place = place_words(points[worst])
     message = f"the point at {place} mm is {excess[worst]:.2f} mm too far sideways of all overhangs that it can carry"
     if np.isinf(excess[worst]):
         message = f"above the point at {place} mm no overhang needs support"

@@ -18,7 +18,7 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.supports.shapes import KnownShapes
 from amprep.checks.supports.solids import KnownSolids
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model.build import Build, BuildSettings, SupportBody
 from amprep.model.control import Stop
@@ -121,7 +121,7 @@ def _violations(body: SupportBody, settings: BuildSettings, places: Sequence[Thi
             what = "a fin of" if worst.is_fin else "a section of"
             message = (
                 f"{what} {worst.size:.3f} {unit}, expected at least {limit:g} {unit}, at "
-                f"{np.round(worst.position_mm, 2).tolist()} mm ({len(own)} such sections)"
+                f"{place_words(worst.position_mm)} mm ({len(own)} such sections)"
             )
             found.append(Violation(promise, body.name, message))
     return found

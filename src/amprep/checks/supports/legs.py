@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.supports.slices import Slices, slices_of
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.containment import inside
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
@@ -66,7 +66,7 @@ def check_legs(build: Build, stop: Stop) -> list[Violation]:
             worst = max(legs, key=lambda leg: leg.ratio)
             message = (
                 f"a leg of {worst.length_mm:.1f} mm is {worst.width_mm:.2f} mm wide, {worst.ratio:.1f} to 1, expected "
-                f"at most {limit:g} to 1; at {np.round(worst.position_mm, 2).tolist()} mm ({len(legs)} such legs)"
+                f"at most {limit:g} to 1; at {place_words(worst.position_mm)} mm ({len(legs)} such legs)"
             )
             found.append(Violation(PROMISE, body.name, message))
     return found

@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
-from amprep.checks.violation import Violation
+from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.sampling import sample_triangles
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, wall_distance, walls_of
@@ -58,7 +58,7 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     if not len(close):
         return []
     worst = close[away[close].argmin()]
-    place = np.round(points[worst], 2).tolist()
+    place = place_words(points[worst])
     message = (
         f"is {away[worst]:.3f} mm from a wall of {placed.label} at {place} mm, the XY distance is "
         f"{build.settings.rules.gap_mm:g} mm ({len(close)} of {len(points)} points)"

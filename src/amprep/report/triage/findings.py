@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.checks.supports import legs
 from amprep.model import Unsupported
 from amprep.report.record import BuildRecord, OverhangRecord, RunRecord
 from amprep.report.removal_order import hindrances_of
 from amprep.report.triage.classes import CHECK, MUST_FIX, Triage
 
-_PLACE = re.compile(r"at [(\[](-?[\d.]+), (-?[\d.]+), (-?[\d.]+)[)\]]")
+_PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)")
 """How messages of judges state a point in build coordinates, mm."""
 
 Position = tuple[float, float, float]
@@ -83,7 +84,7 @@ def build_findings(entry: BuildRecord, number: int = 1, *, locks_are_faults: boo
     """
     names = {placed.label: placed.part.name for placed in entry.build.parts}
     return [
-        *_violations(entry, number, names),
+        *(each for each in _violations(entry, number, names) if not _is_leg(each, entry)),
         *_regions(entry, number, names),
         *_legs(entry, number),
         *_pockets(entry, number),
@@ -156,16 +157,26 @@ def _marks(patches: Sequence[Unsupported], triage: Triage) -> tuple[Floats, floa
     return np.concatenate([each.points for each in chosen]), max(each.radius for each in chosen)
 
 
+def _is_leg(found: Finding, entry: BuildRecord) -> bool:
+    """Tell whether a violation is about legs that `_legs` lists one by one."""
+    measured = {
+        body.name for body, own in zip(entry.build.supports, entry.legs, strict=False) if own.too_long
+    }
+    return found.words.startswith(f"{legs.PROMISE}:") and found.name in measured
+
+
 def _legs(entry: BuildRecord, number: int) -> Iterator[Finding]:
-    """Yield the legs that are longer for their width than the rules allow."""
+    """Yield the legs that are longer for their width than the rules allow: must fix where the judge finds one, too."""
     limit = entry.build.settings.rules.leg_ratio
-    for body, legs in zip(entry.build.supports, entry.legs, strict=False):
+    broken = {each.subject for each in entry.verification or () if each.promise == legs.PROMISE}
+    for body, own in zip(entry.build.supports, entry.legs, strict=False):
         part = entry.build.parts[body.parts[0]].part.name if body.parts else body.name
-        for leg in legs.too_long:
+        triage = MUST_FIX if body.name in broken else CHECK
+        for leg in own.too_long:
             size = f"{leg.length_mm:.1f} mm long, {leg.width_mm:.2f} mm wide"
             words = f"{size}: {leg.ratio:.1f} times as long as wide, limit {limit:g}"
             points = np.array([leg.position_mm])
-            yield Finding(CHECK, number, part, "long leg", body.name, words, leg.position_mm, points=points)
+            yield Finding(triage, number, part, "long leg", body.name, words, leg.position_mm, points=points)
 
 
 def _pockets(entry: BuildRecord, number: int) -> Iterator[Finding]:

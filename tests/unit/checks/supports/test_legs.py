@@ -131,4 +131,4 @@ def test_the_message_names_length_width_and_place():
     (violation,) = check_legs(build, Stop())
     assert "1.00 mm wide" in violation.message
     assert "to 1" in violation.message
-    assert np.isin(["5.5", "7.5"], violation.message.replace(",", " ").replace("[", " ").split()).all()
+    assert np.isin(["5.5", "7.5"], violation.message.replace(",", " ").replace("(", " ").split()).all()

@@ -76,6 +76,24 @@ def test_legs_that_are_too_long_are_worth_a_check(entry):
     assert found.words == "24.0 mm long, 2.00 mm wide: 12.0 times as long as wide, limit 10"
 
 
+def test_a_leg_that_the_judge_finds_is_listed_once_and_must_be_fixed(entry):
+    leg = MeasuredLeg(12.0, 24.0, 2.0, (1.0, 2.0, 3.0))
+    build = replace(entry.build, unsupported=())
+    legs = (BodyLegs(4, leg, (leg, leg)), BodyLegs(1, leg, (leg,)))
+    broken = tuple(
+        Violation(promise, build.supports[0].name, "a leg of 24.0 mm; at (1, 2, 3) mm (2 such legs)")
+        for promise in ("legs", "least wall")
+    )
+    found = build_findings(replace(entry, build=build, legs=legs, verification=broken))
+    assert [(each.triage, each.kind) for each in found] == [
+        ("must fix", "violation"),
+        *[("must fix", "long leg")] * 2,
+        ("worth a check", "long leg"),
+    ]
+    unmeasured = build_findings(replace(entry, build=build, verification=broken))
+    assert [each.kind for each in unmeasured] == ["violation"] * 2
+
+
 def test_a_violation_has_the_place_that_its_message_states(entry):
     message = "a face has 11 sample points over 3 mm from any contact, first at (128.55, -3, 14.5) mm"
     placed, without = (
