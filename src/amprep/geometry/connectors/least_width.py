@@ -8,6 +8,7 @@ from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import ConnectorColumns
 from amprep.geometry.connectors.connect import label_surfaces
 from amprep.geometry.connectors.sites import find_sites, squares_in_cells
+from amprep.geometry.supports.footprints import box
 from amprep.kernels.meshes.patches import Patches
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def _is_wide(
         return np.zeros(len(own), np.bool_)
     for index in np.flatnonzero(~whole).tolist():
         lo, hi = columns.lo[column[index], :2], columns.hi[column[index], :2]
-        whole[index] = (opened ^ _rectangle(lo, hi)).area() > 0.25 * least.width**2
+        whole[index] = (opened ^ box(lo, hi)).area() > 0.25 * least.width**2
     return np.asarray(whole[which])
 
 
@@ -116,12 +117,6 @@ def _opening(outline: "CrossSection", width: float) -> "CrossSection":
     half = width / 2.0
     shrunk = outline.offset(_SEAM, JoinType.Miter).offset(-half - _SEAM, JoinType.Miter)
     return shrunk.offset(half, JoinType.Miter)
-
-
-def _rectangle(lo: Floats, hi: Floats) -> "CrossSection":
-    from manifold3d import CrossSection
-
-    return CrossSection.square((hi - lo).tolist()).translate(lo.tolist())
 
 
 def plan_areas(patches: Patches) -> Floats:

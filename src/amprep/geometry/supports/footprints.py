@@ -1,4 +1,4 @@
-"""Shapes in plan of flanges and rafts."""
+"""Shapes in plan: rectangles, unions, flanges and rafts."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

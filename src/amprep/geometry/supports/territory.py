@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools
 from amprep.geometry.plates.shadow import SEGMENTS
+from amprep.geometry.supports.footprints import union_of
 from amprep.geometry.voxels.grid import Grid
 from amprep.geometry.voxels.voxelise import centred_voxels, met_voxels
 
@@ -48,14 +49,14 @@ def territory_region(
     margin
         mm.
     """
-    from manifold3d import CrossSection, JoinType, OpType
+    from manifold3d import JoinType
 
     own = own.simplify(SIMPLE)
     wider = own.offset(margin, JoinType.Round, 2.0, SEGMENTS) if margin > 0.0 else own
     if others:
-        wider -= CrossSection.batch_boolean(list(others), OpType.Add) - own
+        wider -= union_of(others) - own
     if boxes:
-        wider -= CrossSection.batch_boolean(list(boxes), OpType.Add)
+        wider -= union_of(boxes)
     return wider.simplify(SIMPLE)
 
 

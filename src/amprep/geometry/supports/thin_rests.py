@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Bools, Floats
+from amprep.geometry.supports.footprints import box, union_of
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -65,8 +66,6 @@ def find_thin_rests(
     is_kept
         Tells whether a piece may stay though it is thin.
     """
-    from manifold3d import CrossSection, OpType
-
     found: list[CrossSection] = []
     ends = narrow_ends(region, width, area)
     for _ in range(_ROUNDS):
@@ -74,7 +73,7 @@ def find_thin_rests(
         if not cut:
             break
         found += cut
-        region -= CrossSection.batch_boolean(cut, OpType.Add).offset(_SMOOTH)
+        region -= union_of(cut).offset(_SMOOTH)
         ends = narrow_ends(region, width, area)
         ends = ends[_near(ends, cut, width)]
     return found
@@ -95,8 +94,9 @@ def _rests_at(
         if len(seen) and (np.abs(seen - end) < half / 2.0).all(axis=1).any():
             continue
         seen = np.concatenate([seen, end[None]])
-        local = region ^ _square(end, half)
-        thin = _beyond_discs(local, width) ^ _square(end, half - _BORDER * width)
+        local = region ^ box(end - half, end + half)
+        judged = half - _BORDER * width
+        thin = _beyond_discs(local, width) ^ box(end - judged, end + judged)
         rests = [rest for rest in thin.decompose() if rest.area() > _SPECK] if thin.area() > _SPECK else []
         if area > 0.0:
             rests += [
@@ -162,18 +162,12 @@ def _near(ends: Floats, pieces: "Sequence[CrossSection]", width: float) -> Bools
     """Tell which points are in or near the boxes of pieces."""
     near = np.zeros(len(ends), np.bool_)
     for piece in pieces:
-        box = np.asarray(piece.bounds())
-        near |= ((ends > box[:2] - width) & (ends < box[2:] + width)).all(axis=1)
+        bounds = np.asarray(piece.bounds())
+        near |= ((ends > bounds[:2] - width) & (ends < bounds[2:] + width)).all(axis=1)
     return near
 
 
 def _is_inside(piece: "CrossSection", centre: Floats, half: float) -> bool:
     """Tell whether a piece is clearly inside a square."""
-    box = np.asarray(piece.bounds())
-    return bool((box[:2] > centre - 0.99 * half).all() and (box[2:] < centre + 0.99 * half).all())
-
-
-def _square(centre: Floats, half: float) -> "CrossSection":
-    from manifold3d import CrossSection
-
-    return CrossSection.square((2.0 * half, 2.0 * half)).translate((centre - half).tolist())
+    bounds = np.asarray(piece.bounds())
+    return bool((bounds[:2] > centre - 0.99 * half).all() and (bounds[2:] < centre + 0.99 * half).all())

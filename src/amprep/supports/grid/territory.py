@@ -8,7 +8,7 @@ import numpy as np
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
 from amprep.geometry.plates.shadow import shadow_of
 from amprep.geometry.supports.drift import DriftLimits, have_path_within, within_drift
-from amprep.geometry.supports.footprints import box
+from amprep.geometry.supports.footprints import box, union_of
 from amprep.geometry.supports.territory import Columns, columns_of, territory_region
 from amprep.geometry.voxels.grid import Grid
 from amprep.model.build import PlacedPart
@@ -158,11 +158,8 @@ def _territory_of(
 
 def _squares(red: Ints, grid: Grid) -> "CrossSection":
     """Return the columns of red squares in plan."""
-    from manifold3d import CrossSection, OpType
-
     corners = grid.origin[:2] + np.unique(red[:, :0:-1], axis=0) * grid.pitch
-    square = CrossSection.square((grid.pitch, grid.pitch))
-    return CrossSection.batch_boolean([square.translate(each) for each in corners.tolist()], OpType.Add)
+    return union_of([box(corner, corner + grid.pitch) for corner in corners])
 
 
 def _open_voxels(

@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
+from amprep.geometry.supports.footprints import box, union_of
 from amprep.geometry.supports.thin_rests import find_thin_rests
 
 if TYPE_CHECKING:
@@ -164,8 +165,6 @@ class _RestFinder:
 
         None for nothing.
         """
-        from manifold3d import CrossSection, OpType
-
         region = solid.slice(height)
         if around is not None:
             region ^= _boxes(around, _WINDOW * self._width)
@@ -173,7 +172,7 @@ class _RestFinder:
         if found and around is not None:
             inner = _boxes(around, _WINDOW / 2.0 * self._width)
             found = [rest ^ inner for rest in found]
-        whole = CrossSection.batch_boolean(found, OpType.Add)
+        whole = union_of(found)
         return None if whole.is_empty() else whole
 
     def _is_kept(self, rest: "CrossSection", height: float) -> bool:
@@ -195,23 +194,13 @@ class _RestFinder:
         boxes = ((part, part.bounding_box()) for part in self._parts)
         return [
             part
-            for part, box in boxes
-            if box[0] <= right + _TOUCH and box[3] >= left - _TOUCH
-            and box[1] <= back + _TOUCH and box[4] >= front - _TOUCH
+            for part, bounds in boxes
+            if bounds[0] <= right + _TOUCH and bounds[3] >= left - _TOUCH
+            and bounds[1] <= back + _TOUCH and bounds[4] >= front - _TOUCH
         ]  # fmt: skip
 
 
 def _boxes(region: "CrossSection", margin: float) -> "CrossSection":
     """Return the boxes of the pieces of a region, larger by a margin (mm)."""
-    from manifold3d import CrossSection, OpType
-
     boxes = [np.asarray(piece.bounds()) for piece in region.decompose()]
-    return CrossSection.batch_boolean(
-        [
-            CrossSection.square((box[2:] - box[:2] + 2.0 * margin).tolist()).translate(
-                (box[:2] - margin).tolist()
-            )
-            for box in boxes
-        ],
-        OpType.Add,
-    )
+    return union_of([box(each[:2] - margin, each[2:] + margin) for each in boxes])
