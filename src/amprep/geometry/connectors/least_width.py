@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import ConnectorColumns
 from amprep.geometry.connectors.connect import label_surfaces
-from amprep.geometry.connectors.sites import find_sites, squares_in_cells
+from amprep.geometry.connectors.sites import areas_in_plan, fans_of, find_sites, squares_in_cells
 from amprep.geometry.supports.footprints import box
 from amprep.kernels.meshes.patches import Patches
 
@@ -75,7 +75,7 @@ def find_wide(patches: Patches, columns: ConnectorColumns, least: LeastSection) 
     label = label_surfaces(patches, level[patches.owner[:, 0]])
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1) if len(order) else []
-    area = plan_areas(patches)
+    area = areas_in_plan(patches)[0]
     wide = np.zeros(len(label), np.bool_)
     for own in groups:
         wide[own] = _is_wide(patches, own, area, columns, least)
@@ -119,17 +119,6 @@ def _opening(outline: "CrossSection", width: float) -> "CrossSection":
     return shrunk.offset(half, JoinType.Miter)
 
 
-def plan_areas(patches: Patches) -> Floats:
-    """Return the area of each patch in plan, ``(n,)`` mm2."""
-    here = np.arange(len(patches.points))
-    patch = np.repeat(np.arange(len(patches.owner)), np.diff(patches.start))
-    after = np.where(here + 1 == patches.start[1:][patch], patches.start[:-1][patch], here + 1)
-    first = patches.points[patches.start[:-1]][patch, :2]
-    one, other = patches.points[here, :2] - first, patches.points[after, :2] - first
-    turn = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    return np.abs(np.bincount(patch, turn, len(patches.owner))) / 2.0
-
-
 def find_posts(patches: Patches, wide: Bools, columns: ConnectorColumns, least: LeastSection) -> Posts:
     """Return posts below the surfaces of which no patch is wide enough: one in each column.
 
@@ -149,8 +138,8 @@ def find_posts(patches: Patches, wide: Bools, columns: ConnectorColumns, least: 
     lost = ~np.isin(surface, surface[wide])
     narrow = patches.chosen(lost)
     size = min(max(least.width, float(np.sqrt(least.area))) + _MARGIN, float(columns.grid[2]))
-    sites = find_sites(_fans(narrow), columns, 1, size)
-    share = np.bincount(narrow.owner[:, 0], plan_areas(narrow), len(columns.lo))[sites.column]
+    sites = find_sites(_triangles(narrow), columns, 1, size)
+    share = np.bincount(narrow.owner[:, 0], areas_in_plan(narrow)[0], len(columns.lo))[sites.column]
     most = np.zeros(len(columns.lo))
     np.maximum.at(most, narrow.owner[:, 0], _most(surface[lost], narrow))
     keep = share >= np.minimum(0.25 * least.area, most[sites.column])
@@ -162,16 +151,14 @@ def _most(surface: Int64s, patches: Patches) -> Floats:
     """Return for each patch the largest area that its surface has in one column, ``(n,)`` mm2."""
     pairs = surface * (len(patches.of_column) + 1) + patches.owner[:, 0]
     _, pair = np.unique(pairs, return_inverse=True)
-    share = np.bincount(pair, plan_areas(patches))[pair] if len(pair) else np.empty(0)
+    share = np.bincount(pair, areas_in_plan(patches)[0])[pair] if len(pair) else np.empty(0)
     most = np.zeros(int(surface.max(initial=-1)) + 1)
     np.maximum.at(most, surface, share)
     return np.asarray(most[surface])
 
 
-def _fans(patches: Patches) -> Floats:
+def _triangles(patches: Patches) -> Floats:
     """Return patches as triangles ``(t, 3, 3)`` that face down."""
-    patch = np.repeat(np.arange(len(patches.owner)), np.diff(patches.start))
-    here = np.arange(len(patches.points))
-    inner = np.flatnonzero((here > patches.start[:-1][patch]) & (here + 1 < patches.start[1:][patch]))
-    first = patches.points[patches.start[:-1][patch[inner]]]
-    return np.stack([first, patches.points[inner + 1], patches.points[inner]], axis=1)
+    patch, second, third = fans_of(patches)
+    first = patches.points[patches.start[patch]]
+    return np.stack([first, patches.points[third], patches.points[second]], axis=1)

@@ -105,7 +105,7 @@ class _CellContacts(NamedTuple):
 
 def _measured(patches: Patches, fine: ConnectorColumns) -> _CellContacts:
     count = len(fine.lo)
-    area, middle = _plan(patches)
+    area, middle = areas_in_plan(patches)
     cell = patches.owner[:, 0]
     total = np.asarray(np.bincount(cell, area, count), np.float64)
     safe = np.where(total > 0.0, total, 1.0)
@@ -117,9 +117,9 @@ def _measured(patches: Patches, fine: ConnectorColumns) -> _CellContacts:
     return _CellContacts(total, np.column_stack(moments[:2]), moments[2], lowest, highest)
 
 
-def _plan(patches: Patches) -> tuple[Floats, Floats]:
+def areas_in_plan(patches: Patches) -> tuple[Floats, Floats]:
     """Return the area in plan of each patch, ``(n,)``, and its centroid, ``(n, 3)``."""
-    patch, inner, following = _fans(patches)
+    patch, inner, following = fans_of(patches)
     first = patches.points[patches.start[patch]]
     b, c = patches.points[inner], patches.points[following]
     area = np.abs(_turn(b - first, c - first)) / 2.0
@@ -135,7 +135,7 @@ def _turn(one: Floats, other: Floats) -> Floats:
     return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
 
 
-def _fans(patches: Patches) -> tuple[Int64s, Int64s, Int64s]:
+def fans_of(patches: Patches) -> tuple[Int64s, Int64s, Int64s]:
     """Divide patches into triangles from their first corner; return the patch, second and third corner of each."""
     patch = np.repeat(np.arange(len(patches.owner)), np.diff(patches.start))
     here = np.arange(len(patches.points))
@@ -149,7 +149,7 @@ def _spots(patches: Patches, fine: ConnectorColumns, cells: _CellContacts, width
     It is the centre of the cell if contact is there, otherwise the centroid of the contact, otherwise the centroid of
     the patch nearest to that. If the contact has a lowest point inside the cell, it is next to that point instead.
     """
-    area, middle = _plan(patches)
+    area, middle = areas_in_plan(patches)
     owner = patches.owner[:, 0]
     away = np.linalg.norm(middle[:, :2] - cells.centroid[owner], axis=1)
     order = np.lexsort((away, owner))

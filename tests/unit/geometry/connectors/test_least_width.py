@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from tests.shared.examples import examples
 
 from amprep.geometry.connectors.columns import ConnectorColumns, clip_to_columns
-from amprep.geometry.connectors.least_width import LeastSection, find_posts, find_wide, plan_areas
+from amprep.geometry.connectors.least_width import LeastSection, find_posts, find_wide
+from amprep.geometry.connectors.sites import areas_in_plan
 
 PITCH, SHAPE = 2.0, (8, 8)
 LEAST = LeastSection(0.3, 0.09)
@@ -34,7 +35,7 @@ def clipped(where, *rectangles):
 
 
 def wide_area(patches, where):
-    return float(plan_areas(patches)[find_wide(patches, where, LEAST)].sum())
+    return float(areas_in_plan(patches)[0][find_wide(patches, where, LEAST)].sum())
 
 
 def test_a_strip_that_crosses_into_a_row_of_squares_by_less_than_the_least_wall_is_left_out_there():
