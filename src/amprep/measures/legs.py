@@ -7,14 +7,12 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.meshes.containment import inside
+from amprep.geometry.supports.bends import without_bends
 from amprep.geometry.supports.slabs import SlabPieces, pieces_of_slabs
 from amprep.model import Build, Mesh, SupportBody
 
 _OFFSET = 0.31
 """Height of a plane above a plane of the support grid, in slab thicknesses: cells end at the planes of the grid."""
-
-_BEND = 3
-"""Slabs in which a leg must be wider to count as wider: one that leads sideways has a wide hull in two slabs."""
 
 
 class MeasuredLeg(NamedTuple):
@@ -149,7 +147,8 @@ def _chains(pieces: SlabPieces) -> Iterator[list[int]]:
 
 def _measured(chain: list[int], pieces: SlabPieces, thickness: float) -> MeasuredLeg:
     """Return the stretch of a leg with the greatest ratio of length to width."""
-    widths, centres = _without_bends(pieces.width[chain]), pieces.centre[chain]
+    widths = np.array(without_bends(pieces.width[chain].tolist()))
+    centres = pieces.centre[chain]
     ends = np.diff(centres[:, :2], axis=0, prepend=centres[:1, :2])
     lengths = np.hypot(thickness, np.minimum(np.hypot(*ends.T), thickness))
     best = MeasuredLeg(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
@@ -162,15 +161,6 @@ def _measured(chain: list[int], pieces: SlabPieces, thickness: float) -> Measure
                 x, y, z = centres[first:last].mean(axis=0).tolist()
                 best = MeasuredLeg(length / float(width), length, float(width), (x, y, z))
     return best
-
-
-def _without_bends(widths: Floats) -> Floats:
-    """Return widths of slabs without places inside that are wider in one or two slabs only, such as bends."""
-    from scipy.ndimage import grey_opening
-
-    beyond = np.full(_BEND - 1, np.inf)
-    opened = grey_opening(np.concatenate([beyond, widths, beyond]), (_BEND,), mode="nearest")
-    return np.asarray(opened[_BEND - 1 : -_BEND + 1])
 
 
 def _runs(chosen: Bools) -> Iterator[tuple[int, int]]:

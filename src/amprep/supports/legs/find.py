@@ -1,10 +1,10 @@
 """Find legs on the sections of the supports, and how long they are for their width."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from amprep.geometry.supports.bends import without_bends
 from amprep.supports.legs.sections import Sections
 
 
@@ -62,13 +62,6 @@ class RoutedLeg:
         return worst
 
 
-def without_bends(widths: tuple[float, ...]) -> tuple[float, ...]:
-    """Return widths of sections without places inside that are wider in one or two sections only."""
-    padded = (math.inf, math.inf, *widths[1:-1], math.inf, math.inf)
-    lows = [min(padded[k : k + 3]) for k in range(len(padded) - 2)]
-    return (widths[0], *(max(lows[k : k + 3]) for k in range(len(widths) - 2)), widths[-1])
-
-
 def find_legs(sections: Sections, touching: float = 0.0) -> list[RoutedLeg]:
     """Return the legs of all supports that have sections between their ends, in the order of their upper ends.
 
@@ -94,11 +87,12 @@ def find_legs(sections: Sections, touching: float = 0.0) -> list[RoutedLeg]:
         while is_inner[after[links[-1]]]:
             links.append(below_of[after[links[-1]]])
         chain = [*(after[each] for each in reversed(links)), int(upper[link])]
+        inner_widths = without_bends([widths[each] for each in chain[1:-1]])
         legs.append(
             RoutedLeg(
                 tuple(chain),
                 tuple(lengths[each] for each in reversed(links)),
-                without_bends(tuple(widths[each] for each in chain)),
+                (widths[chain[0]], *inner_widths, widths[chain[-1]]),
                 touching,
                 (held[chain[0]], held[chain[-1]]),
             )
