@@ -162,7 +162,7 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
     floating = int((lowest > TOLERANCE).sum())
     if not floating:
         return []
-    first = points[triangles[shell == int(lowest.argmax())][0, 0]].tolist()
+    first = points[triangles[shell == int(lowest.argmax())][0, 0]]
     place = place_words(first)
     message = f"floats: {floating} of {counted(count, 'component')} not on the plate, one at {place} mm"
     return [Violation(STANDING, body.name, message)]
