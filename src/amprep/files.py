@@ -1,11 +1,17 @@
-"""Atomic file writing."""
+"""Atomic file writing, and temporary folders that show whether their process lives."""
 
 import os
+import re
+import shutil
+import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from amprep.errors import AmprepError
+
+PREFIX = ".amprep-"
+_OWNER = re.compile(re.escape(PREFIX) + r"(\d+)-(\d+)-\w+")
 
 
 @contextmanager
@@ -24,4 +30,91 @@ def replacing(path: Path) -> Iterator[Path]:
     except OSError as error:
         raise AmprepError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def make_temporary_folder(folder: Path) -> tuple[Path, int | None]:
+    """Make a hidden folder inside `folder`; its name holds the number of this process and when it began.
+
+    Returns
+    -------
+    The path, and a file descriptor that holds a lock on it as long as the process lives; None where locks do not exist.
+    """
+    pid = os.getpid()
+    path = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-{_began(pid)}-", dir=folder))
+    return path, _lock(path)
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove the temporary folders inside `folder` whose processes ended without removing them.
+
+    A folder is kept if its process lives, by its number and the time it began, or if someone holds its lock: a number
+    says nothing about processes of other machines and containers.
+    """
+    for path in folder.glob(f"{PREFIX}*"):
+        owner = _OWNER.fullmatch(path.name)
+        if owner is None or path.is_symlink() or is_running(int(owner[1]), int(owner[2])):
+            continue
+        lock = _lock(path)
+        if lock is not None:
+            shutil.rmtree(path, ignore_errors=True)
+            os.close(lock)
+
+
+def is_running(pid: int, began: int) -> bool:
+    """Tell whether the process of a number runs that began at a time, as `_began` returns it."""
+    if not hasattr(os, "fork"):
+        return True  # on Windows nothing tells without ending the process
+    try:
+        os.kill(pid, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return _began(pid) in (began, 0)
+
+
+def _began(pid: int) -> int:
+    """Return when a process began, in clock ticks since the start of the machine; 0 if the system does not say."""
+    try:
+        text = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+        return int(text.rpartition(")")[2].split()[19])
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+def _lock(path: Path) -> int | None:
+    """Return a file descriptor that holds the only lock on a folder; None if another process has it."""
+    try:
+        import fcntl
+    except ImportError:
+        return None
+    try:
+        descriptor = os.open(path, os.O_RDONLY)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
+@contextmanager
+def taking_turns(folder: Path) -> Iterator[None]:
+    """Let no other process be in such a block for the same folder; where locks do not exist, do nothing."""
+    try:
+        import fcntl
+
+        descriptor = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):
+        yield
+        return
+    try:
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)

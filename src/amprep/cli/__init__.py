@@ -5,43 +5,61 @@ import signal
 import sys
 from typing import NoReturn
 
+from amprep import interruption
 from amprep.errors import AmprepError, Interrupted
 
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
-"""Exit codes: done; done, but something is unplaced, unsupported or broken; wrong input or usage; interrupted."""
+"""Exit codes: done; done, but something is unplaced, unsupported or broken; wrong input or usage; ended by Ctrl-C."""
 
 
 def _say(line: str) -> None:
     sys.stderr.write(f"amprep: {line}\n")
 
 
-def _end_interrupted() -> NoReturn:
+def _end_interrupted(error: BaseException) -> NoReturn:
     """Say that the run was interrupted, and end at once."""
-    _say("interrupted; nothing was written")
+    _say(_line_of(error) if isinstance(error, Interrupted) else "interrupted; nothing was written")
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(INTERRUPTED)  # Python may crash when it unloads compiled libraries that were interrupted
+    os._exit(
+        interruption.exit_code()
+    )  # Python may crash when it unloads compiled libraries that were interrupted
+
+
+def _line_of(error: BaseException) -> str:
+    return " ".join(str(error).split())
+
+
+def _say_late() -> None:
+    """Tell the user that a signal came too late to stop the run."""
+    late = interruption.came_late()
+    if late is not None:
+        _say(f"{signal.Signals(late).name} came when the files appeared; all of them are complete")
 
 
 def main() -> NoReturn:
     """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
     debug = "--debug" in sys.argv
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends a run in the same way as Ctrl-C
+    interruption.watch()
     try:
         from amprep.cli.app import app
 
         app()
+        _say_late()
         sys.exit(DONE)
-    except (KeyboardInterrupt, Interrupted):
-        _end_interrupted()
+    except (KeyboardInterrupt, Interrupted) as error:
+        _end_interrupted(error)
     except SystemExit as end:
-        if end.code == INTERRUPTED:  # typer makes this of a KeyboardInterrupt
-            _end_interrupted()
+        if (
+            end.code == INTERRUPTED and interruption.came_late() is None
+        ):  # typer makes this of a KeyboardInterrupt
+            _end_interrupted(end)
+        _say_late()
         raise
     except AmprepError as error:
         if debug:
             raise
-        _say(" ".join(str(error).split()))
+        _say(_line_of(error))
         sys.exit(WRONG)
     except MemoryError:
         if debug:
@@ -51,5 +69,7 @@ def main() -> NoReturn:
     except Exception as error:
         if debug:
             raise
-        _say(f"internal error, {type(error).__name__}: {error}; run again with --debug and report it")
+        _say(
+            f"internal error, {type(error).__name__}: {_line_of(error)}; run again with --debug and report it"
+        )
         sys.exit(WRONG)

@@ -73,7 +73,8 @@ def lattice(
     NAME.lattice.report.json, and a picture of the parts cut open.
 
     Exit codes: 0 if done, 1 if the result fails verification, 2 for wrong
-    input (nothing written), 130 if interrupted (nothing written).
+    input (nothing written), 130 or 143 if Ctrl-C or SIGTERM ended it (nothing
+    written).
     """
     record = call_api(
         "fill_parts",

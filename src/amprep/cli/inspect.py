@@ -81,7 +81,8 @@ def inspect(
     of each volume.
 
     Exit codes: 0 if nothing is wrong, 1 if a part is not a solid, fits no
-    printer or is not inside its bounding volume, 2 for wrong input.
+    printer or is not inside its bounding volume, 2 for wrong input, 130 or 143
+    if Ctrl-C or SIGTERM ended it (nothing written).
     """
     record = _inspected(inputs, volumes or [], options)
 

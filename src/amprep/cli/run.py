@@ -49,7 +49,7 @@ def run(
 
     Exit codes: 0 if done, 1 if something is unplaced, unsupported, locked
     although that is forbidden, or fails verification, 2 for wrong input
-    (nothing written), 130 if interrupted (nothing written).
+    (nothing written), 130 or 143 if Ctrl-C or SIGTERM ended it (nothing written).
     """
     named = None if volumes is None else [name.strip() for name in volumes.split(",")]
     changes = {"packing.strategy": packer, "packing.volumes": named, "packing.effort": effort}

@@ -50,7 +50,8 @@ def support(
     NAME.supported.report.json, and a picture.
 
     Exit codes: 0 if done, 1 if something is unsupported or fails verification,
-    2 for wrong input (nothing written), 130 if interrupted (nothing written).
+    2 for wrong input (nothing written), 130 or 143 if Ctrl-C or SIGTERM ended
+    it (nothing written).
     """
     if explain is not None:
         explain_and_report(inputs, explain, options, center=center)

@@ -1,11 +1,13 @@
 """The command line turns every error into one line and an exit code; with --debug the error itself appears."""
 
 import signal
+import sys
 
 import pytest
 
 import amprep.cli.app
-from amprep.cli import DONE, WRONG, main
+from amprep import interruption
+from amprep.cli import DONE, INCOMPLETE, WRONG, main
 from amprep.errors import InputError
 
 
@@ -24,9 +26,10 @@ def run(monkeypatch, capsys):
             main()
         return end.value.code, capsys.readouterr().err
 
-    before = signal.getsignal(signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in interruption.SIGNALS}
     yield call
-    signal.signal(signal.SIGTERM, before)
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 def test_a_command_that_ends_without_an_error_is_done(run):
@@ -50,6 +53,38 @@ def test_an_error_of_the_program_says_how_to_report_it(run):
         "amprep: internal error, ZeroDivisionError: division by zero; run again with --debug"
     )
     assert text.count("\n") == 1
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_before_files_appear_ends_with_its_own_code(run, monkeypatch, number, code, capsys):
+    def end(code):
+        raise SystemExit(code)
+
+    monkeypatch.setattr("os._exit", end)
+
+    monkeypatch.setattr(amprep.cli.app, "app", lambda: signal.raise_signal(number))
+    monkeypatch.setattr("sys.argv", ["amprep"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == code
+    assert capsys.readouterr().err == "amprep: interrupted; nothing was written\n"
+
+
+def test_a_signal_when_files_appear_ends_with_the_code_of_the_run(run, monkeypatch, capsys):
+    def app():
+        with interruption.held():
+            signal.raise_signal(signal.SIGTERM)
+            interruption.files_appeared()
+        sys.exit(INCOMPLETE)
+
+    monkeypatch.setattr(amprep.cli.app, "app", app)
+    monkeypatch.setattr("sys.argv", ["amprep"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == INCOMPLETE
+    assert (
+        capsys.readouterr().err == "amprep: SIGTERM came when the files appeared; all of them are complete\n"
+    )
 
 
 @pytest.mark.parametrize("error", [InputError("wrong"), MemoryError(), ZeroDivisionError()])

@@ -1,0 +1,104 @@
+"""Signals that end a run: all files of a run appear, or none.
+
+A signal belongs to the process, hence so does the state of this module. The command line calls `watch`; a program that
+uses the API keeps its own handlers, which then wait while files appear.
+"""
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGHUP", "SIGTERM", "SIGINT") if hasattr(signal, name))
+
+REPEATED_AFTER_S = 0.5
+"""A terminal and a supervisor may send the same signal at once; a later one is sent again by the user."""
+
+
+@dataclass
+class _State:
+    watching: bool = False
+    received: int | None = None
+    received_at: float = 0.0
+    appeared: bool = False
+    late: int | None = None
+
+
+_STATE = _State()
+
+
+def watch() -> None:
+    """End the run at a signal until its files appear; note a signal that comes later.
+
+    The first signal raises `KeyboardInterrupt`. Another one after `REPEATED_AFTER_S` ends the process at once, because
+    the code that runs may catch every exception.
+    """
+    _STATE.__dict__.update(vars(_State(watching=True)))
+    for number in SIGNALS:
+        signal.signal(number, _handle)
+
+
+def received() -> int | None:
+    """Return the signal that ends the run, or None."""
+    return _STATE.received
+
+
+def came_late() -> int | None:
+    """Return the signal that came when files had appeared, or None."""
+    return _STATE.late
+
+
+def is_raised_by_code() -> bool:
+    """Tell whether a `KeyboardInterrupt` that was caught comes from code, since no signal came."""
+    return _STATE.watching and _STATE.received is None
+
+
+def exit_code() -> int:
+    """Return the exit code of a run that a signal ended: 128 and the number of the signal, 130 for Ctrl-C."""
+    return 128 + (_STATE.received or signal.SIGINT)
+
+
+def files_appeared() -> None:
+    """Note that all files of the run are in place; from now on a signal changes nothing of the result."""
+    _STATE.appeared = True
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Let signals wait until the block ends; then the handlers that were set before get them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # other threads get no signals
+        return
+    came: list[int] = []
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        for number in SIGNALS:
+            signal.signal(number, lambda number, _: came.append(number))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        for number in dict.fromkeys(came):
+            signal.raise_signal(number)
+
+
+def _handle(number: int, _frame: FrameType | None) -> None:
+    if _STATE.appeared:
+        _STATE.late = number
+        signal.signal(
+            number, signal.SIG_DFL
+        )  # a second one ends the process although its table is not printed
+        return
+    if _STATE.received is None:
+        _STATE.received, _STATE.received_at = number, time.monotonic()
+        raise KeyboardInterrupt
+    if time.monotonic() - _STATE.received_at >= REPEATED_AFTER_S:
+        os.write(
+            sys.__stderr__.fileno() if sys.__stderr__ else 2, b"amprep: interrupted; nothing was written\n"
+        )
+        os._exit(exit_code())
