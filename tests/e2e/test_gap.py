@@ -8,7 +8,7 @@ from manifold3d import Manifold
 
 from amprep.checks.supports.xy_distance import PROMISE
 from amprep.model.supports.rules import SupportRules
-from amprep.pipeline.verify import verify_build
+from amprep.pipeline.verifying.build import verify_build
 from amprep.threemf import read_build
 
 

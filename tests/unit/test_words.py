@@ -58,7 +58,7 @@ ALLOWED = {
     ("docs/map.md", "black cubes"): "the thesis's word",
     ("src/amprep/checks/supports/bodies.py", "standing"): "the promise that supports stand on the plate",
     ("src/amprep/checks/supports/bodies.py", "STANDING"): "the promise that supports stand on the plate",
-    ("src/amprep/pipeline/verify.py", "STANDING"): "the promise that supports stand on the plate",
+    ("src/amprep/pipeline/verifying/build.py", "STANDING"): "the promise that supports stand on the plate",
     (
         "src/amprep/plugins/cells/hatch/__init__.py",
         "THINNING",

@@ -5,7 +5,7 @@ millimetres and angles in degrees (names end in ``_mm`` and ``_deg``). Records a
 new ones.
 """
 
-from amprep.api.build_file import Verification, verify, write
+from amprep.api.build_file import verify, write
 from amprep.api.inspection import explain_regions, inspect
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
@@ -14,6 +14,7 @@ from amprep.job import Job
 from amprep.pipeline.packing import PackedBuild, PackedParts
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
+from amprep.pipeline.verifying.build import Verification
 from amprep.report.infill import InfillRecord
 from amprep.report.inspection.record import InspectionRecord
 from amprep.report.record import RunRecord

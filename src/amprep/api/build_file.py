@@ -1,45 +1,15 @@
 """Write a build job and verify it."""
 
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from amprep.api.arguments import require_record
-from amprep.checks.packing.pairs import PairCounts
-from amprep.checks.violation import Violation
+from amprep.api.job import job_and_host
 from amprep.errors import InputError
+from amprep.job import Job
 from amprep.model import Build, Progress, Stop, silent
 from amprep.pipeline.supporting import SupportedBuild
-from amprep.pipeline.verify import verify_build, verify_file
-
-
-@dataclass(frozen=True)
-class Verification:
-    """Result of verifying a build against every promise.
-
-    Attributes
-    ----------
-    violations
-        The broken promises; empty when all hold.
-    pairs
-        How many pairs of parts were judged by which method: their enclosing boxes, the distance of their triangles, or
-        the intersection of their solids.
-    extent
-        For promises on supports that depend on the rules of the build: limit, tolerance, and what was judged.
-    """
-
-    violations: tuple[Violation, ...]
-    pairs: PairCounts = field(default_factory=PairCounts)
-    extent: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def ok(self) -> bool:
-        """Whether every promise holds."""
-        return not self.violations
-
-    def __str__(self) -> str:
-        """One line per broken promise."""
-        lines = map(str, self.violations)
-        return "\n".join(lines) or "every promise holds"
+from amprep.pipeline.verifying.build import Verification, verify_build
+from amprep.pipeline.verifying.file import Demands, verify_file
 
 
 def write(build: SupportedBuild | Build, path: str | Path) -> Path:
@@ -79,14 +49,30 @@ def write(build: SupportedBuild | Build, path: str | Path) -> Path:
 
 
 def verify(
-    build: str | Path | SupportedBuild | Build, *, stop: Stop | None = None, progress: Progress = silent
+    build: str | Path | SupportedBuild | Build,
+    *,
+    job: str | Path | Job | None = None,
+    printer: str | None = None,
+    report: str | Path | None = None,
+    key: str | Path | None = None,
+    stop: Stop | None = None,
+    progress: Progress = silent,
 ) -> Verification:
-    """Verify a build against every promise: from its file alone, or as it is in memory.
+    """Verify a build against every promise: from its file alone, as it is in memory, or against what was ordered.
 
     Parameters
     ----------
     build
         Path of a build job that amprep wrote, or a build from `emit_cells`.
+    job
+        The job that ordered the build: a job file, or a `Job`. The build is judged by its settings and its parts,
+        instead of those that the file states.
+    printer
+        Name of the printer that will print the build, or path of its profile.
+    report
+        JSON report of the run, which states the SHA-256 of the file.
+    key
+        Key file of the seal beside the file; see `amprep seal`.
     stop
         Ends the work early.
     progress
@@ -95,7 +81,10 @@ def verify(
     Raises
     ------
     InputError
-        When the file is not a build job that amprep wrote.
+        When the file is not a build job that amprep wrote, or the report, seal or key cannot be read; or when a build
+        in memory is to be verified against a job, a printer, a report or a key.
+    AmprepError
+        When the job or the printer is wrong, or an input of the job cannot be read.
 
     Examples
     --------
@@ -103,7 +92,17 @@ def verify(
     every promise holds
     """
     if isinstance(build, str | Path):
-        return Verification(*verify_file(Path(build), stop=stop, progress=progress))
+        return verify_file(Path(build), _demands(job, printer, report, key), stop=stop, progress=progress)
     require_record(build, (SupportedBuild, Build), "verify", "pass a path or the result of emit_cells")
+    if any(each is not None for each in (job, printer, report, key)):
+        raise InputError("job, printer, report and key apply to a build file; pass its path")
     judged = build.build if isinstance(build, SupportedBuild) else build
-    return Verification(*verify_build(judged, stop=stop, progress=progress))
+    return verify_build(judged, stop=stop, progress=progress)
+
+
+def _demands(
+    job: str | Path | Job | None, printer: str | None, report: str | Path | None, key: str | Path | None
+) -> Demands:
+    ordered = None if job is None else job_and_host((job,), {}, ())
+    paths = (None if each is None else Path(each) for each in (report, key))
+    return Demands(ordered, printer, *paths)

@@ -5,9 +5,10 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, cells, materials, plugins, printers, run, support, verify
+from amprep.cli import bench, cells, plugins, run, seal, support, verify
 from amprep.cli import infill as lattice
 from amprep.cli import inspect as inspection
+from amprep.cli.catalogues import materials, printers
 
 app = typer.Typer(
     name="amprep",
@@ -21,6 +22,7 @@ app.command("run")(run.run)
 app.command("support")(support.support)
 app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
+app.command("seal")(seal.seal)
 app.command("inspect")(inspection.inspect)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")

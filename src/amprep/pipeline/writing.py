@@ -8,8 +8,9 @@ from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.record import build_record
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.supporting import SupportedBuild
-from amprep.pipeline.verify import verify_build
+from amprep.pipeline.verifying.build import verify_build
 from amprep.report.record import BuildRecord, RunRecord
+from amprep.sealing.seal import file_digest
 
 
 def finish_build(
@@ -96,7 +97,8 @@ def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool)
     name = outputs.of_build(number, "3mf")
     write_build(record.build, outputs.path(name))
     stl_files = _write_stl(record.build, number, outputs) if stl else ()
-    return replace(record, file=outputs.name(name), stl_files=stl_files)
+    sha256 = file_digest(outputs.staged(name))
+    return replace(record, file=outputs.name(name), sha256=sha256, stl_files=stl_files)
 
 
 def _write_stl(build: Build, number: int, outputs: OutputFolder) -> tuple[str, ...]:

@@ -89,6 +89,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
     return {
         "id": build.settings.build_id,
         "file": entry.file,
+        "sha256": entry.sha256,
         "picture": entry.picture,
         "stl_files": list(entry.stl_files),
         "build_volume_mm": build.settings.space.size,

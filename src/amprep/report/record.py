@@ -130,6 +130,8 @@ class BuildRecord:
     ----------
     file, picture, stl_files
         Names of its files, relative to the report; empty if not written.
+    sha256
+        SHA-256 of its build file; empty if not written.
     density, height_mm, support_volume_mm3
         See `amprep.measures.density`.
     demand_squares
@@ -164,6 +166,7 @@ class BuildRecord:
 
     build: Build
     file: str = ""
+    sha256: str = ""
     picture: str = ""
     density: float = 0.0
     height_mm: float = 0.0

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from amprep.cli.materials import app
+from amprep.cli.catalogues.materials import app
 from amprep.job import make_job
 from amprep.materials.catalogue import find_material, list_materials
 from amprep.materials.profile import MaterialProfile

@@ -6,7 +6,7 @@ import pytest
 from tests.shared.profiles import Places, assert_refused
 from typer.testing import CliRunner
 
-from amprep.cli.printers import app
+from amprep.cli.catalogues.printers import app
 from amprep.errors import JobError
 from amprep.job import find_printer, list_printers
 from amprep.printers.catalogue import DEFAULT_PRINTER

@@ -7,7 +7,8 @@ from tests.shared.supported import box, build_of, table
 
 from amprep.checks.supports.limits import NOT_JUDGED, PROMISES
 from amprep.model.supports.sizes import SupportSizes
-from amprep.pipeline.verify import verify_build, verify_file
+from amprep.pipeline.verifying.build import verify_build
+from amprep.pipeline.verifying.file import verify_file
 from amprep.threemf import write_build
 
 LIMITS = {"rules": "limits", "ledge_mm": 1.0, "bridge_mm": 2.0, "bore_mm": 8.0}

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from amprep.cli.profiles import ProfileCommands
+from amprep.cli.catalogues.profiles import ProfileCommands
 
 if TYPE_CHECKING:
     from amprep.materials.catalogue import Material

@@ -1,8 +1,7 @@
 """Judge a build against every promise, whether it was just made or read from a file."""
 
 from collections.abc import Callable
-from pathlib import Path
-from typing import NamedTuple
+from dataclasses import dataclass, field
 
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.packing.parts_placed import judge_placed
@@ -34,25 +33,41 @@ PROMISES = (
 """Names of all promises, in the order in which they are judged."""
 
 
-class JudgedBuild(NamedTuple):
-    """The result of judging a build.
+@dataclass(frozen=True)
+class Verification:
+    """Result of verifying a build against every promise.
 
     Attributes
     ----------
     violations
-        Every broken promise.
+        The broken promises; empty when all hold.
     pairs
-        How many pairs of parts were judged by which method.
+        How many pairs of parts were judged by which method: their enclosing boxes, the distance of their triangles, or
+        the intersection of their solids.
     extent
-        For promises on supports that depend on the rules of the build: limit, tolerance, and what was judged.
+        For promises that depend on the rules of the build or on what it is verified against: limit, tolerance, and
+        what was judged.
+    weaker
+        Settings in the file that are weaker than usual, in words; empty for a build in memory.
     """
 
     violations: tuple[Violation, ...]
-    pairs: PairCounts
-    extent: dict[str, str]
+    pairs: PairCounts = field(default_factory=PairCounts)
+    extent: dict[str, str] = field(default_factory=dict)
+    weaker: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether every promise holds."""
+        return not self.violations
+
+    def __str__(self) -> str:
+        """One line per broken promise."""
+        lines = map(str, self.violations)
+        return "\n".join(lines) or "every promise holds"
 
 
-def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:
+def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress = silent) -> Verification:
     """Return every broken promise: of parts, of supports, of overhangs without support, and of limits of supports.
 
     Parameters
@@ -78,24 +93,4 @@ def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress =
     progress(1.0 - 1.0 / (len(judges) + 2), "limits")
     judged = limits.check_limits(build, stop, solids)
     progress(1.0, "verified")
-    return JudgedBuild((*found, *judged.violations), pairs, judged.extent)
-
-
-def verify_file(path: Path, *, stop: Stop | None = None, progress: Progress = silent) -> JudgedBuild:
-    """Read a build file and judge the build from the file alone.
-
-    Parameters
-    ----------
-    path
-        The build file.
-    stop, progress
-        See `verify_build`.
-
-    Raises
-    ------
-    InputError
-        If the file is not a build that amprep wrote.
-    """
-    from amprep.threemf import read_build
-
-    return verify_build(read_build(path), stop=stop, progress=progress)
+    return Verification((*found, *judged.violations), pairs, judged.extent)

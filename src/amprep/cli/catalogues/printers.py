@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from amprep.cli.profiles import ProfileCommands
+from amprep.cli.catalogues.profiles import ProfileCommands
 
 if TYPE_CHECKING:
     from amprep.printers.catalogue import Printer

@@ -1,0 +1,69 @@
+"""State what was ordered: the settings and parts of a job, or a printer, by which a build file is judged."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from amprep.checks.ordered.order import Order
+from amprep.errors import JobError
+from amprep.host import Host
+from amprep.job import Job, job_from_inputs, override
+from amprep.model import Build, BuildSettings
+from amprep.pipeline.reading import read_job
+from amprep.pipeline.resolve import resolve
+from amprep.pipeline.stages import Clock, Watcher
+from amprep.pipeline.supporting import build_settings
+from amprep.supports.grid.sizing import choose_pitch
+
+
+def usual_settings(build: Build) -> BuildSettings:
+    """Return the settings that a build with the same parts, printer and target has by default.
+
+    A printer that is not in the catalogue counts as the default printer with the build volume of the file.
+    """
+    job = job_from_inputs(["part.stl"])
+    try:
+        job = override(job, {"printer": build.settings.printer or None})
+    except JobError:
+        job = override(job, {})
+    printer = replace(job.printer, space=build.settings.space)
+    return settings_for(replace(job, printer=printer, target=build.settings.target), build)
+
+
+def settings_for(job: Job, build: Build) -> BuildSettings:
+    """Return the settings that a job gives to a build with these placed parts; with the reach of its widest pass."""
+    passes = [
+        build_settings(
+            own, build.settings.build_id, choose_pitch(build.parts, own.printer.space, own.supports)
+        )
+        for own in (job.for_rule(number) for number in range(len(job.rules) + 1))
+    ]
+    return replace(passes[0], reach=max(each.reach for each in passes))
+
+
+def order_of_printer(build: Build, printer: str) -> Order:
+    """Return an order of a printer alone: the settings are those of the build, with the printer's build volume.
+
+    Raises
+    ------
+    JobError
+        When there is no such printer.
+    """
+    job = override(job_from_inputs(["part.stl"]), {"printer": printer})
+    settings = replace(build.settings, space=job.printer.space, printer=job.printer.name)
+    return Order(job.printer.name, settings)
+
+
+def order_of_job(
+    build: Build, job: Job, host: Host, watcher: Watcher, *, allow_surface: bool = False
+) -> Order:
+    """Return the order of a job: its settings for a build with these placed parts, and its parts.
+
+    Raises
+    ------
+    AmprepError
+        When the job is wrong or its inputs cannot be read.
+    """
+    loaded = read_job(resolve(job, host), Clock(watcher), allow_surface=allow_surface)
+    return Order(
+        job.source if job.folder is None else Path(job.source).name, settings_for(job, build), loaded.parts
+    )
