@@ -37,7 +37,7 @@ class BuildSettings:
     overlap
         Depth to which connectors enter the parts, mm.
     reach
-        Largest distance of a supported overhang from a contact, mm.
+        Largest distance of a supported overhang from a contact, mm, for bodies that state none.
     rules
         Rules for the supports; a part's own overhang angle is recorded with the part.
     supported
@@ -45,7 +45,7 @@ class BuildSettings:
     supports_as
         Type that a generic file gives to solid supports.
     sizes
-        Sizes of supports that judges need.
+        Sizes of supports that judges need, for bodies that state none.
     """
 
     build_id: str
@@ -60,6 +60,14 @@ class BuildSettings:
     supported: bool = True
     supports_as: SupportsAs = "support"
     sizes: SupportSizes = field(default_factory=SupportSizes)
+
+    def reach_of(self, body: "SupportBody") -> float:
+        """Return the largest distance (mm) of a supported overhang from a contact of a body."""
+        return self.reach if body.reach is None else body.reach
+
+    def sizes_of(self, body: "SupportBody") -> SupportSizes:
+        """Return the sizes that a body is judged by."""
+        return self.sizes if body.sizes is None else body.sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +144,8 @@ class SupportBody:
         True for walls without thickness, which the machine must not fill.
     lattice
         The body as beams, for a file with beams; None for a mesh.
+    reach, sizes
+        Reach (mm) and sizes of the supports of ``[[rule]]`` entries; None for those of the settings of the build.
     """
 
     name: str
@@ -143,6 +153,8 @@ class SupportBody:
     parts: tuple[int, ...]
     surface: bool = False
     lattice: Lattice | None = None
+    reach: float | None = None
+    sizes: SupportSizes | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.sampling import sample_segments
-from amprep.model.build import PlacedPart, SupportBody
+from amprep.model.build import BuildSettings, PlacedPart, SupportBody
 from amprep.model.mesh import Mesh
-from amprep.model.supports import SupportRules
 
 NUDGE = 0.01
 """Distance (mm) below a face at which a support must be, and above a support at which a part must be."""
@@ -18,20 +17,30 @@ _MOST_CELLS = 4_000_000
 """Largest number of cells of the grid that preselects points."""
 
 
-def sample_spacing(placed: PlacedPart, rules: SupportRules, reach: float) -> float:
-    """Return the spacing (mm) of sample points at which no point of an overhang is farther than reach / 3 from one."""
+def sample_spacing(placed: PlacedPart, bodies: Sequence[SupportBody], settings: BuildSettings) -> float:
+    """Return the spacing (mm) of sample points at which no point of an overhang is farther than reach / 3 from one.
+
+    The least reach of the bodies counts, so that planner and judge sample the same points.
+    """
     own = placed.part.overrides.overhang_angle_deg
-    angle = min(rules.overhang_angle_deg if own is None else own, 85.0)
+    angle = min(settings.rules.overhang_angle_deg if own is None else own, 85.0)
+    reach = min([settings.reach, *(settings.reach_of(body) for body in bodies)])
     return reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
 
 
 def find_held(
-    points: Floats, mesh: Mesh, bodies: Sequence[SupportBody], spacing: float, reach: float
+    points: Floats,
+    mesh: Mesh,
+    bodies: Sequence[SupportBody],
+    settings: BuildSettings,
+    spacing: float,
+    border: float = 0.0,
 ) -> Bools:
-    """Tell which sample points of a part have a contact of a support with that part within reach.
+    """Tell which sample points of a part have a contact with that part within the reach of the body of the contact.
 
-    A contact is a sample point on the plate or directly above a solid support. Where there is none, points on the
-    edges of supports in or on the part are contacts, too: of narrow connectors, and of walls without thickness.
+    The plate has the reach of the build. A contact is a sample point on the plate or directly above a solid support.
+    Where there is none, points on the edges of supports in or on the part are contacts, too: of narrow connectors, and
+    of walls without thickness.
 
     Parameters
     ----------
@@ -41,18 +50,41 @@ def find_held(
         The part in build coordinates.
     bodies
         All supports of the build.
+    settings
+        Settings of the build, with the reach of bodies that state none.
     spacing
         Distance of the sample points, mm.
-    reach
-        Largest distance from a contact, mm.
+    border
+        Distance (mm) that is granted on every reach.
     """
-    near = [body for body in bodies if len(points) and _boxes_meet(body.mesh.bounds, mesh.bounds, reach)]
-    held = _touched(points, near)
-    contacts, left = points[held], np.flatnonzero(~held)
-    held[left] = is_near(contacts, points[left], reach)
-    if not held.all():
+    held = np.zeros(len(points), np.bool_)
+    reaches = {settings.reach, *(settings.reach_of(body) for body in bodies)}
+    for reach in sorted(reaches, reverse=True):
+        own = [body for body in bodies if settings.reach_of(body) == reach]
         left = np.flatnonzero(~held)
-        held[left] = is_near(_embedded(points[left], mesh, near, spacing, reach), points[left], reach)
+        on_plate = (
+            points[:, 2] <= CONTACT_TOLERANCE if reach == settings.reach else np.zeros(len(points), np.bool_)
+        )
+        held[left] = _held_within(points, left, mesh, own, on_plate, spacing, reach + border)
+    return held
+
+
+def _held_within(
+    points: Floats,
+    asked: Int64s,
+    mesh: Mesh,
+    bodies: Sequence[SupportBody],
+    on_plate: Bools,
+    spacing: float,
+    reach: float,
+) -> Bools:
+    """Tell which of the points `asked` have a contact of bodies with the same reach within it."""
+    near = [body for body in bodies if len(asked) and _boxes_meet(body.mesh.bounds, mesh.bounds, reach)]
+    contacts = points[_touched(points, on_plate, near)]
+    held = is_near(contacts, points[asked], reach)
+    if not held.all():
+        left = asked[~held]
+        held[~held] = is_near(_embedded(points[left], mesh, near, spacing, reach), points[left], reach)
     return held
 
 
@@ -61,9 +93,9 @@ def _boxes_meet(one: tuple[Floats, Floats], other: tuple[Floats, Floats], margin
     return bool((one[0] <= other[1] + margin).all() and (other[0] <= one[1] + margin).all())
 
 
-def _touched(points: Floats, bodies: Sequence[SupportBody]) -> Bools:
+def _touched(points: Floats, on_plate: Bools, bodies: Sequence[SupportBody]) -> Bools:
     """Tell which points are on the plate or directly above the interior of a solid support."""
-    touched = np.asarray(points[:, 2] <= CONTACT_TOLERANCE)
+    touched = on_plate.copy()
     lower = points - (0.0, 0.0, NUDGE)
     for body in bodies:
         if not body.surface:

@@ -10,6 +10,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
 from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import BuildSettings, PlacedPart, SupportBody, Unsupported
+from amprep.model.supports.rules import OverhangRules
 from amprep.overhangs.contacts import find_held, sample_spacing
 from amprep.overhangs.of_part import PartOverhangs
 
@@ -23,6 +24,7 @@ def find_unsupported(
     bodies: Sequence[SupportBody],
     settings: BuildSettings,
     reasons_at: ReasonsAt,
+    reach: float | None = None,
 ) -> tuple[Unsupported, ...]:
     """List the overhangs that have no contact within reach, by part, region and reason.
 
@@ -35,20 +37,23 @@ def find_unsupported(
     bodies
         The finished supports.
     settings
-        Reach, smallest area and smallest length.
+        Reach of bodies that state none, smallest area and smallest length.
     reasons_at
         Says why points are unsupported.
+    reach
+        Reach (mm) of the supports that the overhangs were to get; None for that of the settings.
     """
+    reach = settings.reach if reach is None else reach
     found: list[Unsupported] = []
     for part, (placed, own) in enumerate(zip(parts, overhangs, strict=True)):
-        spacing = sample_spacing(placed, settings.rules, settings.reach)
+        spacing = sample_spacing(placed, bodies, settings)
         samples = sample_overhangs(own.mesh.vertices, own.mesh.triangles, own.overhangs, spacing)
-        held = find_held(samples.points, placed.mesh, bodies, spacing, settings.reach)
+        held = find_held(samples.points, placed.mesh, bodies, settings, spacing)
         left = np.flatnonzero(~held)
         reasons = np.array(reasons_at(part, samples.points[left]), dtype=object)
         for number in np.unique(samples.region[left]):
             here = samples.region[left] == number
-            region = _RegionCoverage(samples, held, own.overhangs.regions[number], settings)
+            region = _RegionCoverage(samples, held, own.overhangs.regions[number], settings.rules, reach)
             for reason, minor, chosen in region.patches(left[here], reasons[here]):
                 found.append(
                     Unsupported(
@@ -57,8 +62,8 @@ def find_unsupported(
                         region.region.feature,
                         reason,
                         region.measure(chosen),
-                        _thinned(samples.points[chosen], settings.reach / 3),
-                        settings.reach,
+                        _thinned(samples.points[chosen], reach / 3),
+                        reach,
                         minor,
                     )
                 )
@@ -76,7 +81,8 @@ class _RegionCoverage(NamedTuple):
     samples: OverhangSamples
     held: Bools
     region: OverhangRegion
-    settings: BuildSettings
+    rules: OverhangRules
+    reach: float
 
     def patches(self, left: Ints, reasons: NDArray[np.object_]) -> Iterator[tuple[str, bool, Ints]]:
         """Yield the samples of the region that are not held by reason, first those that count, then minor ones."""
@@ -99,7 +105,7 @@ class _RegionCoverage(NamedTuple):
         A minor patch is smaller than the smallest area (or length), and beside it the part is held at a point
         that is no higher: the part does not start in the air there. A tip is never minor.
         """
-        rules, near = self.settings.rules, self.settings.reach / 2
+        rules, near = self.rules, self.reach / 2
         smallest = {"face": rules.min_area_mm2, "edge": rules.min_length_mm, "tip": 0.0}[self.region.feature]
         minor = np.zeros(len(left), np.bool_)
         if smallest <= 0.0:

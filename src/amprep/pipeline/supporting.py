@@ -207,12 +207,12 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         return SupportedBuild(Build(build_settings(job, planned.build.build_id, planned.pitch_mm), parts))
     bodies: list[SupportBody] = []
     with clock.stage("cells") as progress:
-        for number in range(len(planned.passes)):
-            bodies += _bodies(planned, number, bodies, stop, _part_of(progress, number, len(planned.passes)))
+        for number, own in enumerate(settings):
+            made = _bodies(planned, number, bodies, stop, _part_of(progress, number, len(settings)))
+            bodies += [replace(body, reach=own.reach, sizes=own.sizes) for body in made] if number else made
     with clock.stage("judge"):
-        reach = max(each.reach for each in settings)
         unsupported = _unsupported(planned, planned.taken, bodies, settings)
-        build = Build(replace(settings[0], reach=reach), parts, tuple(bodies), unsupported)
+        build = Build(settings[0], parts, tuple(bodies), unsupported)
         removal = removal_of(job, build)
     advice = [
         *advice_for(job, build, planned.pitch_mm),
@@ -264,7 +264,8 @@ def _unsupported(
     parts = planned.build.parts
     found: list[Unsupported] = []
     for each, rules in zip(planned.passes, settings, strict=True):
-        found += find_unsupported(parts, each.layout.overhangs, bodies, rules, each.layout.reason_at)
+        layout = each.layout
+        found += find_unsupported(parts, layout.overhangs, bodies, settings[0], layout.reason_at, rules.reach)
     excepted = [number for number, rule in enumerate(planned.build.resolved.job.rules, 1) if not rule.support]
     left = find_unsupported(
         parts, taken.chosen(excepted, ()), bodies, settings[0], lambda _, points: [EXCEPTED] * len(points)

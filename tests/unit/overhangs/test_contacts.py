@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.shared.builds import box_mesh
 
-from amprep.model import Mesh, SupportBody
+from amprep.model import BuildSettings, BuildVolume, Mesh, SupportBody
 from amprep.overhangs.contacts import find_held, is_near
 
 SLAB = box_mesh((0, 0, 10), (20, 20, 3))
@@ -13,13 +13,26 @@ LINE = np.array([(x, 10.0, 10.0) for x in np.arange(0.0, 20.25, 0.25)])
 
 
 def held(*bodies, reach=1.4):
-    return LINE[find_held(LINE, SLAB, bodies, 0.5, reach), 0]
+    return LINE[find_held(LINE, SLAB, bodies, settings(reach), 0.5), 0]
+
+
+def settings(reach):
+    return BuildSettings("b", BuildVolume([60, 60, 60]), reach=reach)
 
 
 def test_a_post_holds_the_points_above_it_and_within_reach():
     post = SupportBody("post", box_mesh((8, 8, 0), (4, 4, 10.1)), (0,))
     assert (held(post).min(), held(post).max()) == (6.75, 13.25)
     assert (held(post, reach=3.1).min(), held(post, reach=3.1).max()) == (5.0, 15.0)
+
+
+def test_each_body_holds_as_far_as_its_own_reach():
+    near = SupportBody("near", box_mesh((2, 8, 0), (1, 4, 10.1)), (0,), reach=0.6)
+    usual = SupportBody("usual", box_mesh((10, 8, 0), (1, 4, 10.1)), (0,))
+    for bodies in ((near, usual), (usual, near)):
+        on = held(*bodies)
+        assert on[on < 6].tolist() == [1.5, 1.75, *np.arange(2, 3.25, 0.25), 3.25, 3.5]
+        assert (on[on > 6].min(), on.max()) == (8.75, 12.25)
 
 
 @pytest.mark.parametrize(("top", "is_held"), [(9.9, False), (10.0, True), (10.1, True)])
@@ -42,7 +55,11 @@ def test_a_wall_without_thickness_holds_by_its_upper_edge():
 
 def test_points_on_the_plate_are_held_without_supports():
     points = np.array([(0, 0, 0.0), (0, 0, 0.5), (0, 0, 5.0)])
-    assert find_held(points, box_mesh((0, 0, 0), (1, 1, 1)), (), 0.5, 1.0).tolist() == [True, True, False]
+    assert find_held(points, box_mesh((0, 0, 0), (1, 1, 1)), (), settings(1.0), 0.5).tolist() == [
+        True,
+        True,
+        False,
+    ]
 
 
 def test_near_points_are_those_of_all_pairs():

@@ -1,6 +1,7 @@
 """Regions are supported in passes by the first rule that fits; bodies of passes never overlap, whatever their cells."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.model import Part
 from amprep.model.supports import EXCEPTED
+from amprep.threemf import read_build
 
 CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
 THESIS = {
@@ -104,6 +106,25 @@ def test_bodies_of_passes_do_not_overlap_at_any_pitch(first, second, connector):
     assert [each for each in found.build.unsupported if not each.minor] == []
 
 
+def test_each_body_is_recorded_and_judged_with_the_reach_and_the_sizes_of_its_pass(tmp_path):
+    rule = {**ARM, "pitch_mm": 1.0, "connector": "teeth", "tooth_width_mm": 0.5}
+    found = supported(rule, **{"cells.strategy": "prism"})
+    file = amprep.write(found, tmp_path / "tree.3mf")
+    slab, arm = read_build(file).supports
+    settings = read_build(file).settings
+    assert [settings.reach_of(each) for each in (slab, arm)] == [3.0, 1.5]
+    assert [settings.sizes_of(each).square_mm for each in (slab, arm)] == [2.0, 1.0]
+    assert [settings.sizes_of(each).tip_width_mm for each in (slab, arm)] == [0.0, 0.5]
+    solid = as_manifold(*found.build.supports[1].mesh.arrays)
+    low = found.build.supports[1].mesh.bounds[0]
+    shorter = solid - Manifold.cube([2.2, 50, 50]).translate([low[0] - 0.1, low[1] - 1, -1])
+    cut = replace(found.build.supports[1], mesh=mesh_of(shorter))
+    for reach, promises in ((1.5, ["coverage"]), (3.0, [])):
+        bodies = (found.build.supports[0], replace(cut, reach=reach))
+        changed = replace(found, build=replace(found.build, supports=bodies))
+        assert [each.promise for each in violations(changed, tmp_path)] == promises
+
+
 def test_an_excepted_region_is_listed_with_its_rule_and_is_no_fault(tmp_path):
     found = supported({**ARM, "support": False})
     (listed,) = found.build.unsupported
@@ -114,8 +135,6 @@ def test_an_excepted_region_is_listed_with_its_rule_and_is_no_fault(tmp_path):
 
 
 def test_verify_finds_an_excepted_region_that_is_not_listed(tmp_path):
-    from dataclasses import replace
-
     found = supported({**ARM, "support": False})
     silent = replace(found, build=replace(found.build, unsupported=()))
     assert [each.promise for each in violations(silent, tmp_path)] == ["coverage"]

@@ -24,7 +24,7 @@ def check_coverage(build: Build) -> list[Violation]:
     if not settings.supported:
         return found
     for part, placed in enumerate(build.parts):
-        spacing = sample_spacing(placed, settings.rules, settings.reach)
+        spacing = sample_spacing(placed, build.supports, settings)
         overhangs = judged_overhangs(placed, settings.rules, spacing)
         left = _left_over(build, part, overhangs.samples, spacing)
         left = left[are_needed(overhangs, settings.rules, left)]
@@ -37,9 +37,9 @@ def check_coverage(build: Build) -> list[Violation]:
 
 def _left_over(build: Build, part: int, samples: JudgedSamples, spacing: float) -> Int64s:
     """Return the samples of a part that are neither within reach of a contact nor listed."""
-    placed, reach = build.parts[part], build.settings.reach
+    placed = build.parts[part]
     border = NUDGE + border_of(placed)
-    held = find_held(samples.points, placed.mesh, build.supports, spacing, reach + border)
+    held = find_held(samples.points, placed.mesh, build.supports, build.settings, spacing, border)
     for listed in build.unsupported:
         if listed.part == part and not held.all():
             left = np.flatnonzero(~held)
@@ -50,7 +50,13 @@ def _left_over(build: Build, part: int, samples: JudgedSamples, spacing: float) 
 def _violation(build: Build, part: int, kind: int, samples: JudgedSamples, left: Int64s) -> Violation:
     label = build.parts[part].label
     message = (
-        f"an overhanging {KINDS[kind]} of {label} has {len(left)} sample points over {build.settings.reach:g} mm from "
+        f"an overhanging {KINDS[kind]} of {label} has {len(left)} sample points over {_reach_words(build)} mm from "
         f"any contact and is not listed, first at {place_words(samples.points[left[0]])} mm"
     )
     return Violation(PROMISE, label, message)
+
+
+def _reach_words(build: Build) -> str:
+    """Return the reach (mm) of the supports of a build, the least and the greatest where they differ."""
+    reaches = [build.settings.reach, *(build.settings.reach_of(body) for body in build.supports)]
+    return " to ".join(dict.fromkeys(f"{each:g}" for each in (min(reaches), max(reaches))))

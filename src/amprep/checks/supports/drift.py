@@ -70,7 +70,7 @@ def _targets(placed: PlacedPart, build: Build) -> Floats:
 
 def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) -> list[Violation]:
     points = _samples(body)
-    excess = _excess(points, above, build) - uncertain
+    excess = _excess(points, above, body, build) - uncertain
     far = np.flatnonzero(excess > TOLERANCE)
     if not len(far):
         return []
@@ -94,14 +94,14 @@ def _samples(body: SupportBody) -> Floats:
     return points[_highest(points)]
 
 
-def _excess(points: Floats, above: Floats, build: Build) -> Floats:
+def _excess(points: Floats, above: Floats, body: SupportBody, build: Build) -> Floats:
     """Return how much farther each point is to the side than it may be, mm; at most 0 where it is not."""
-    rules, sizes = build.settings.rules, build.settings.sizes
+    rules, sizes = build.settings.rules, build.settings.sizes_of(body)
     least = np.full(len(points), np.inf)
     if not len(above):
         return least
     limit = rules.drift_mm or np.inf
-    square = sizes.square_mm or build.settings.reach
+    square = sizes.square_mm or build.settings.reach_of(body)
     nearby = np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0)
 
     def over(rows: Int64s, targets: Floats) -> Floats:

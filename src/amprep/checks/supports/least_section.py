@@ -22,6 +22,7 @@ from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model.build import Build, BuildSettings, SupportBody
 from amprep.model.control import Stop
+from amprep.model.supports.sizes import SupportSizes
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -150,8 +151,8 @@ class _SectionJudge:
     def __init__(self, build: Build, solids: KnownSolids) -> None:
         self.settings, self.solids = build.settings, solids
         self.parts = [as_manifold(placed.mesh.vertices, placed.mesh.triangles) for placed in build.parts]
-        limits = _limits_of(build.settings)
-        self.shapes = KnownShapes(limits.wall, limits.contact, limits.reach)
+        self.limits = _limits_of(build.settings)
+        self.shapes = KnownShapes(*self.limits, self.limits.reach)
 
     def thin_places(self, body: SupportBody) -> ThinPlaces:
         """Return the places where a support is too thin."""
@@ -159,14 +160,14 @@ class _SectionJudge:
         if not accepted(solid):
             return ThinPlaces([], 0)
         places: list[ThinPlace] = []
-        heights = _heights(body)
+        heights, sizes = _heights(body), self.settings.sizes_of(body)
         for height in heights.tolist():
-            found = self._places_at(solid, height)
+            found = self._places_at(solid, height, sizes)
             if found:
                 beside = [
                     place
                     for step in (-1.0, 1.0)
-                    for place in self._places_at(solid, height + step * self.burr)
+                    for place in self._places_at(solid, height + step * self.burr, sizes)
                 ]
                 places += [place for place in found if _continues(place, beside, 3.0 * self.burr)]
         return ThinPlaces(places, len(heights))
@@ -176,11 +177,11 @@ class _SectionJudge:
         """Height (mm) up to which what is too thin is a burr, and no wall: the least wall."""
         return max(self.settings.rules.least_wall_mm, _SLIVER)
 
-    def _places_at(self, solid: "Manifold", height: float) -> list[ThinPlace]:
+    def _places_at(self, solid: "Manifold", height: float, sizes: SupportSizes) -> list[ThinPlace]:
         region, around = self.shapes.undecided(solid.slice(height))
         if region.is_empty():
             return []
-        section = _Section(region, around, height, self.settings, self.parts)
+        section = _Section(region, around, height, self.limits, sizes, self.parts)
         return [*section.small_pieces(), *section.fins()]
 
 
@@ -207,14 +208,15 @@ class _Section:
         region: "CrossSection",
         around: "CrossSection",
         height: float,
-        settings: BuildSettings,
+        limits: _GrantedLimits,
+        sizes: SupportSizes,
         parts: "Sequence[Manifold]",
     ) -> None:
         self.region, self.around, self.height = region, around, height
-        self.parts, self.sizes = parts, settings.sizes
+        self.parts, self.sizes = parts, sizes
         self.part_sections: dict[int, CrossSection] = {}
-        self.limits = _limits_of(settings)
-        self.wall, self.contact = self.limits.wall, self.limits.contact
+        self.limits = limits
+        self.wall, self.contact = limits
 
     def small_pieces(self) -> list[ThinPlace]:
         """Return the pieces that are too narrow or too small, unless they are tips or touch a part."""

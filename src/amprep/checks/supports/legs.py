@@ -84,12 +84,13 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     low, high = (float(corner[2]) for corner in body.mesh.bounds)
     step = max(STEP, (high - low) / _MOST_PLANES)
     rules = build.settings.rules
-    cell = build.settings.sizes.square_mm * float(np.tan(np.radians(rules.strut_angle_deg)))
+    cell = build.settings.sizes_of(body).square_mm * float(np.tan(np.radians(rules.strut_angle_deg)))
     slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
     legs = []
     for chain in _long_enough(slices, _chains(slices), limit, cell):
         if _worst(slices, chain).ratio > limit * _GRANT:
-            free = ~_touches(slices, chain, build) & ~_beside_braces(slices, chain, _LAYERS * cell)
+            tip = build.settings.sizes_of(body).tip_height_mm
+            free = ~_touches(slices, chain, build, tip) & ~_beside_braces(slices, chain, _LAYERS * cell)
             legs += [_worst(slices, own) for own in _runs(chain, free)]
     return [leg for leg in legs if leg.length_mm > cell and leg.ratio > limit * _GRANT]
 
@@ -174,15 +175,14 @@ def _runs(chain: Int64s, free: Bools) -> list[Int64s]:
     return [run for run, own in zip(np.split(chain, changes), np.split(free, changes), strict=True) if own[0]]
 
 
-def _touches(slices: Slices, chain: Int64s, build: Build) -> Bools:
-    """Tell which contours of a chain touch a part."""
+def _touches(slices: Slices, chain: Int64s, build: Build, tip: float) -> Bools:
+    """Tell which contours of a chain touch a part, some with tips of a height (mm)."""
     points = [slices.points_of(int(contour)) for contour in chain]
     owner = np.repeat(np.arange(len(chain)), [len(each) for each in points])
     every = np.concatenate(points)
     touches = np.zeros(len(chain), np.bool_)
     for placed in build.parts:
         touches[owner[_near_part(every, placed)]] = True
-        tip = build.settings.sizes.tip_height_mm
         for share in (0.5, 1.0) if tip > 0.0 else ():
             above = every + (0.0, 0.0, share * tip)
             touches[owner[inside(above, placed.mesh.vertices, placed.mesh.triangles)]] = True

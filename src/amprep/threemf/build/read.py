@@ -14,7 +14,7 @@ from amprep.model.part import Part
 from amprep.threemf.build import record
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
-from amprep.threemf.build.values import as_list, from_json, integer, integers, string
+from amprep.threemf.build.values import as_list, from_json, integer, integers, number, string
 from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
 
@@ -119,7 +119,16 @@ def _support(body: StoredBody, parts: int) -> SupportBody:
         lattice = replace(lattice, nodes=nodes, solids=solids, stand_in=stand_in)
     mesh = body.mesh.moved(matrix) if lattice is None else lattice.stand_in
     holds = integers(body.record, "holds", below=parts)
-    return SupportBody(string(body.record, "name"), mesh, holds, body.surface, lattice)
+    own = body.record
+    return SupportBody(
+        string(own, "name"),
+        mesh,
+        holds,
+        body.surface,
+        lattice,
+        reach=number(own, "reach") if "reach" in own else None,
+        sizes=record.sizes_of(own["sizes"]) if "sizes" in own else None,
+    )
 
 
 def _in_order(bodies: Sequence[StoredBody]) -> list[StoredBody]:

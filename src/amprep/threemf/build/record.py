@@ -7,7 +7,7 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
-from amprep.model.build import TARGETS, BuildSettings, SupportsAs, Target, Unsupported
+from amprep.model.build import TARGETS, BuildSettings, SupportBody, SupportsAs, Target, Unsupported
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
@@ -83,7 +83,7 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         choice(values, "supports_as", get_args(SupportsAs)) if "supports_as" in values else "support",
     )
     supported = boolean(values, "supported")
-    sizes = _sizes_of(values.get("sizes", {}))
+    sizes = sizes_of(values.get("sizes", {}))
     return BuildSettings(
         **strings,  # type: ignore[arg-type]
         **numbers,  # type: ignore[arg-type]
@@ -96,7 +96,15 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     )
 
 
-def _sizes_of(record: Any) -> SupportSizes:
+def support_record(index: int, support: SupportBody) -> JsonObject:
+    """Return the record of a support with its index in the build; reach and sizes only if they are its own."""
+    own: JsonObject = {} if support.reach is None else {"reach": support.reach}
+    sizes = {} if support.sizes is None else {"sizes": asdict(support.sizes)}
+    entry = {"role": "support", "index": index, "name": support.name, "holds": list(support.parts)}
+    return {**entry, **own, **sizes}
+
+
+def sizes_of(record: Any) -> SupportSizes:
     """Return the sizes of supports; older files have none."""
     values = as_object(record, "sizes")
     known = [each.name for each in fields(SupportSizes) if each.name in values]

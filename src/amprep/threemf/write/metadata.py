@@ -78,8 +78,7 @@ def placed_part_record(build: Build, index: int, parts: Sequence[Part], digest: 
 
 def support_record(build: Build, index: int) -> JsonObject:
     """Return the record of the support with this index in the build."""
-    support = build.supports[index]
-    return {"role": "support", "index": index, "name": support.name, "holds": list(support.parts)}
+    return record.support_record(index, build.supports[index])
 
 
 def item_metadata(records: Iterable[JsonObject]) -> Metadata:

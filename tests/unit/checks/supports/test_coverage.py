@@ -115,6 +115,15 @@ def test_thin_posts_hold_what_is_within_reach_of_them():
     assert len(judged(body(wide))) == 1
 
 
+@pytest.mark.parametrize(("reach", "faults"), [(None, 0), (1.5, 0), (1.0, 1)])
+def test_what_a_support_holds_is_judged_by_its_own_reach(reach, faults):
+    left, right = body(box((10, 20, 10.1), (0, 0, 0))), body(box((7.6, 20, 10.1), (12.4, 0, 0)))
+    pair = [replace(each, reach=reach) for each in (left, right)]
+    assert [len(judged(*pair)), len(listed(*pair))] == [faults, faults], "judge and planner agree"
+    between = body(box((0.5, 20, 10.1), (11.2, 0, 0)))
+    assert judged(*pair, between) == [], "a body with a larger reach holds what others do not"
+
+
 def wall(x):
     return [(x, 0, 0), (x, 20, 0), (x, 20, 10.1), (x, 0, 10.1)]
 

@@ -1,5 +1,7 @@
 """Least section: thin supports, needles and fins are found, right ones are not."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -93,6 +95,15 @@ def test_points_have_their_own_least_size_only_below_the_part():
     low = post(1, height=5) + Manifold.cylinder(5.1, 0.5, 0.1, 24).translate((5.5, 5.5, 5))
     short = SupportSizes(tip_width_mm=0.2, tip_height_mm=1.0)
     assert promises(low, sizes=short, least_wall_mm=0.6) != set()
+
+
+def test_a_support_with_sizes_of_its_own_is_judged_by_them():
+    pointed = post(2, height=9.0) + box((0.12, 0.12, 1.2), (6, 6, 8.95))
+    tips = SupportSizes(tip_width_mm=0.1, tip_height_mm=1.5)
+    build = build_of([table(10)], [pointed, pointed.translate((5, 0, 0))], **RULES)
+    first, second = build.supports
+    own = replace(build, supports=(first, replace(second, name="pointed", sizes=tips)))
+    assert {each.subject for each in check_least_section(own, Stop())[0]} == {first.name}
 
 
 def test_without_rules_nothing_is_judged():

@@ -27,6 +27,7 @@ from amprep.model import (
     SupportBody,
     Unsupported,
 )
+from amprep.model.supports.sizes import SupportSizes
 from amprep.threemf import read_build, write_build
 from amprep.threemf import write as writing
 from amprep.threemf.build import record
@@ -68,6 +69,15 @@ def test_a_written_build_is_read_back(make_build, round_trip, target, share):
     build = make_build(target, share=share)
     found = differences(build, round_trip(build))
     assert set(found) == {f"build.parts.{index}.recorded_digest" for index in range(3)}
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_reach_and_sizes_of_a_support_are_read_back(make_build, round_trip, target):
+    build = make_build(target)
+    own = replace(build.supports[1], reach=1.2, sizes=SupportSizes(0.8, 0.3, 1.5, 0.4, 2.0, 0.5))
+    found = round_trip(replace(build, supports=(build.supports[0], own)))
+    assert [(each.reach, each.sizes) for each in found.supports] == [(None, None), (1.2, own.sizes)]
+    assert [found.settings.reach_of(each) for each in found.supports] == [build.settings.reach, 1.2]
 
 
 def test_a_wall_without_thickness_is_read_back_as_such(make_build, round_trip):
@@ -150,14 +160,12 @@ def test_settings_are_recorded_exactly(rules):
     assert differences(rules, record.settings_of(from_json(text), record.volume_of(volume))) == []
 
 
-def test_every_override_is_recorded():
+def test_every_override_but_the_volume_makers_is_recorded():
     """A field added to `Overrides` must be added to the record."""
-    given = Overrides(**{each.name: True if each.name == "supports" else 1.5 for each in fields(Overrides)})
-    part = replace(_part(), overrides=given)
-    text = to_json(record.part_record(part))
-    assert record.part_of(from_json(text), part.mesh, None).overrides == given or not differences(
-        given, record.part_of(from_json(text), part.mesh, None).overrides
-    )
+    names = [each.name for each in fields(Overrides) if each.name != "volumes"]
+    given = Overrides(**{name: True if name == "supports" else 1.5 for name in names})
+    text = to_json(record.part_record(replace(_part(), overrides=given)))
+    assert differences(given, record.part_of(from_json(text), _part().mesh, None).overrides) == []
 
 
 def test_the_record_does_not_contain_the_folder_of_the_job():
