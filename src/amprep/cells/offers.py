@@ -13,6 +13,9 @@ from amprep.validation import require_bounds
 Declare = Callable[[float, float, Any], "Shape | DeclaredCell"]
 """Makes the cell for a grid from its pitch and step (mm) and the checked parameters."""
 
+FitParams = Callable[[Any, CellRequest], Any]
+"""Returns the checked parameters with the sizes that the user left open chosen by the limits of a request."""
+
 
 @dataclass(frozen=True)
 class GraphParams:
@@ -34,7 +37,12 @@ class GraphParams:
 
 
 def cell_offer(
-    name: str, summary: str, cell: "Shape | DeclaredCell | Declare", *, params: type | None = None
+    name: str,
+    summary: str,
+    cell: "Shape | DeclaredCell | Declare",
+    *,
+    params: type | None = None,
+    fit_params: FitParams | None = None,
 ) -> CellEmitter:
     """Return the offer of a declared cell.
 
@@ -47,13 +55,17 @@ def cell_offer(
     params
         Frozen dataclass of the parameters; a field ``solid`` that is False turns struts into beams. The default is
         `GraphParams` for a cell of graphs, and no parameters for other cells.
+    fit_params
+        Chooses sizes that the user left open by the least wall and the leg ratio of the request; None for sizes that
+        do not depend on them.
     """
     declare, default_params = _declaration(cell)
 
     def emit(request: CellRequest, *, params: Any, stop: Stop, progress: Progress) -> Cells:  # noqa: ARG001
         from amprep.cells.emission import emit_declared
 
-        made = declare(request.grid.pitch, request.grid.step, params)
+        chosen = params if fit_params is None else fit_params(params, request)
+        made = declare(request.grid.pitch, request.grid.step, chosen)
         return emit_declared(made, request, solid=getattr(params, "solid", True))
 
     def material(pitch: float, step: float, params: Any) -> tuple[float, float]:

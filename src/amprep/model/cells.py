@@ -47,6 +47,8 @@ class CellRequest:
         True: struts become beams if the cell supports them; False: no beams; None: the parameters of the cell decide.
     least_wall
         Least thickness of supports, mm, for the default sizes of cells; sizes that the user chooses take precedence.
+    leg_ratio
+        Largest ratio of length to width of a leg, for the default sizes of cells, too; 0 for no limit.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class CellRequest:
     allow_surface: bool = True
     beams: bool | None = None
     least_wall: float = 0.0
+    leg_ratio: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "role", frozen(self.role, np.uint8))

@@ -1,10 +1,8 @@
 """Advise on settings that would support more of a build."""
 
-import math
 from collections import Counter
 from collections.abc import Iterator
 
-from amprep.errors import JobError
 from amprep.job import Job
 from amprep.model import Build
 from amprep.model.supports import (
@@ -16,12 +14,7 @@ from amprep.model.supports import (
     TERRITORY,
     Grounding,
 )
-from amprep.pipeline.resolve import ResolvedJob
-from amprep.supports.grid.sizing import estimated_megabytes, least_pitch, usual_pitch
-from amprep.supports.solids.thin_cells import has_thin_walls
-
-_MOST_STEPS = 20
-"""Steps of 0.1 mm by which a larger pitch is looked for."""
+from amprep.supports.grid.sizing import choose_pitch, estimated_megabytes, least_pitch, usual_pitch
 
 
 def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
@@ -38,7 +31,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
     """
     rules = job.supports
     usual = usual_pitch(build.parts, rules.least_wall_mm)
-    if rules.pitch_mm is None and pitch > usual:
+    if rules.pitch_mm is None and choose_pitch(build.parts, job.printer.space, rules) > usual:
         yield (
             f"the pitch of the support grid was raised from {usual:g} to {pitch:g} mm, so that the grid fits into "
             f"supports.memory_mb = {rules.memory_mb}"
@@ -89,27 +82,3 @@ def _finer(job: Job, build: Build, pitch: float) -> str:
     if needed > job.supports.memory_mb:
         options += f" --set supports.memory_mb={int(needed) + 1}"
     return f"a finer pitch may reach those outside the part: {options}"
-
-
-def wall_advice(resolved: ResolvedJob) -> Iterator[str]:
-    """Yield a sentence if the walls of the cell are thinner than the least wall at the pitch that the job gives."""
-    rules, name = resolved.job.supports, resolved.job.cells.strategy
-    if rules.pitch_mm is None or not _is_thin(resolved, rules.pitch_mm):
-        return
-    larger = (math.ceil(10.0 * rules.pitch_mm) / 10.0 + number / 10.0 for number in range(_MOST_STEPS))
-    pitch = next((each for each in larger if _is_thin(resolved, each) is False), None)
-    remedy = "thicker walls" if pitch is None else f"a larger pitch: --set supports.pitch_mm={pitch:g}"
-    yield (
-        f"at a pitch of {rules.pitch_mm:g} mm walls of the cell {name} are thinner than the least wall of "
-        f"{rules.least_wall_mm:g} mm and are left out; choose {remedy}"
-    )
-
-
-def _is_thin(resolved: ResolvedJob, pitch: float) -> bool | None:
-    """Tell whether the walls of the cell are too thin at a pitch; None if the cell refuses the pitch."""
-    rules = resolved.job.supports
-    step = pitch * math.tan(math.radians(rules.strut_angle_deg))
-    try:
-        return has_thin_walls(resolved.cell.emit, pitch, step, rules.least_wall_mm)
-    except JobError:
-        return None

@@ -1,6 +1,6 @@
 """Support one build: plan the supports, replace their edges by cells, and list the unsupported regions."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
     Build,
     BuildSettings,
+    PlacedPart,
     Progress,
     Stop,
     SupportBody,
@@ -23,14 +24,16 @@ from amprep.model.supports import EXCEPTED
 from amprep.model.supports.sizes import SupportSizes
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.unsupported import find_unsupported
-from amprep.pipeline.advice import advice_for, wall_advice
+from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
+from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
 from amprep.supports.plan import PassScope, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
+from amprep.supports.solids.thin_cells import suitable_pitch, wall_advice
 
 LARGEST_REACH = 5.0
 """Upper limit (mm) of the default reach: even in a coarse grid, no face farther from a contact counts as held."""
@@ -167,12 +170,24 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
         planned: list[PlannedPass] = []
         for number, each in enumerate(divided):
             own = replace(build, resolved=each.resolved)
-            pitch = choose_pitch(build.parts, job.printer.space, each.resolved.job.supports)
+            pitch = _pitch_of(each.resolved, build.parts)
             earlier = [done.layout for done in planned]
             overhangs = taken.chosen(each.rules, excepted)
             layout = _layout(own, overhangs, earlier, pitch, stop, _part_of(progress, number, len(divided)))
             planned.append(PlannedPass(each.rules, pitch, layout))
     return PlannedBuild(build, tuple(planned), taken)
+
+
+def _pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:
+    """Return the pitch (mm) that the job gives, or one that suits parts, memory and cell."""
+    rules = resolved.job.supports
+    pitch = choose_pitch(parts, resolved.job.printer.space, rules)
+    return pitch if rules.pitch_mm is not None else suitable_pitch(resolved.cell.emit, pitch, rules)
+
+
+def _wall_advice(resolved: ResolvedJob, pitch: float) -> Iterator[str]:
+    job = resolved.job
+    return wall_advice(job.cells.strategy, resolved.cell.emit, pitch, job.supports)
 
 
 def _part_of(progress: Progress, number: int, count: int) -> Progress:
@@ -216,7 +231,11 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         removal = removal_of(job, build)
     advice = [
         *advice_for(job, build, planned.pitch_mm),
-        *(words for each in planned.passes for words in wall_advice(resolved.for_rule(each.rules[0]))),
+        *(
+            words
+            for each in planned.passes
+            for words in _wall_advice(resolved.for_rule(each.rules[0]), each.pitch_mm)
+        ),
     ]
     return SupportedBuild(
         build, planned.layouts, planned.taken.overhangs, tuple(dict.fromkeys(advice)), removal
@@ -243,6 +262,7 @@ def _bodies(
             gap=job.supports.gap_mm,
             space=job.printer.space,
             least=least_section(job),
+            leg_ratio=job.supports.leg_ratio,
         ),
         earlier=earlier,
         later=planned.layouts[number + 1 :],
@@ -339,7 +359,7 @@ def _layout(
         rules,
         cell=CellProperties(
             resolved.cell.material(pitch, step),
-            measure_cell(resolved.cell.emit, pitch, step) if rules.leg_ratio else None,
+            measure_cell(resolved.cell.emit, pitch, step, rules) if rules.leg_ratio else None,
         ),
         scope=PassScope(overhangs, earlier=earlier),
         route=lambda problem, stop, progress: resolved.router.call(

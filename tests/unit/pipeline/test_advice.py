@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 from tests.shared.builds import box_mesh
 
-from amprep.host import Host
-from amprep.job import override
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, Part, PlacedPart, Unsupported
 from amprep.model.supports import EXCEPTED, REASONS
-from amprep.pipeline.advice import advice_for, wall_advice
-from amprep.pipeline.resolve import resolve
+from amprep.pipeline.advice import advice_for
 
 ADVICE = {
     "no free voxel below": "1 region has no free voxel below it at a pitch of 2 mm; .* --set supports.pitch_mm=1",
@@ -67,22 +64,3 @@ def test_no_pitch_is_proposed_at_which_walls_would_close_the_cells(pitch, expect
     (sentence,) = advice("no free voxel below", pitch=pitch, least_wall_mm=0.3)
     assert expected in sentence
     assert (pitch > 0.8) == ("--set" in sentence)
-
-
-@pytest.mark.parametrize(
-    ("cell", "params", "pitch", "remedy"),
-    [("x-wall", {}, 0.7, "pitch_mm=0.8$"), ("x-wall", {}, 0.8, ""), ("prism", {}, 0.7, "")]
-    + [
-        ("x-wall", {"wall_mm": 0.2}, 2.0, "thicker walls$"),
-        ("x-wall", {"wall_mm": 0.3, "gap_mm": 0.1}, 0.7, ""),
-    ],
-)
-def test_a_given_pitch_that_makes_walls_thinner_than_the_least_wall_is_warned_of(cell, params, pitch, remedy):
-    table = {"supports": {"pitch_mm": pitch}, "cells": {"strategy": cell, "params": params}}
-    job = make_job({"inputs": ["a.stl"], **table}, name="job", folder=None, source="job")
-    sentences = list(wall_advice(resolve(job, Host.load())))
-    assert len(sentences) == bool(remedy)
-    assert all(
-        re.search(f"x-wall are thinner than the least wall of 0.3 mm .*{remedy}", each) for each in sentences
-    )
-    assert not list(wall_advice(resolve(override(job, {"supports.least_wall_mm": 0.0}), Host.load())))

@@ -6,7 +6,14 @@ from amprep.cells import cell_offer
 from amprep.hookspecs import CellEmitter, hookimpl
 from amprep.plugins.cells.hatch import HatchParams, emit_hatch, hatch_material
 from amprep.plugins.cells.prism import emit_prisms, prism_material
-from amprep.plugins.cells.struts import BccParams, StrutParams, declare_bcc, declare_strut
+from amprep.plugins.cells.struts import (
+    BccParams,
+    StrutParams,
+    declare_bcc,
+    declare_strut,
+    fit_bcc,
+    fit_strut,
+)
 from amprep.plugins.cells.x_wall import XWallParams, emit_x_walls, x_wall_material
 
 amprep_api = 1
@@ -24,10 +31,18 @@ def amprep_cell_emitters() -> Iterator[CellEmitter]:
         material=x_wall_material,
     )
     yield cell_offer(
-        "strut", "A round pin along each edge, tied to its neighbours.", declare_strut, params=StrutParams
+        "strut",
+        "A round pin along each edge, tied to its neighbours.",
+        declare_strut,
+        params=StrutParams,
+        fit_params=fit_strut,
     )
     yield cell_offer(
-        "bcc", "Round struts from the centre to the corners of the cell.", declare_bcc, params=BccParams
+        "bcc",
+        "Round struts from the centre to the corners of the cell.",
+        declare_bcc,
+        params=BccParams,
+        fit_params=fit_bcc,
     )
     yield CellEmitter(
         "hatch",

@@ -8,6 +8,7 @@ from amprep.arrays import Floats, frozen
 from amprep.cells.answers import Emit
 from amprep.cells.samples import single_column
 from amprep.model import CellRequest, Cells
+from amprep.model.supports.rules import SectionRules
 from amprep.supports.legs.sections import directions
 
 _NEAR = 0.05
@@ -39,7 +40,7 @@ class CellProperties:
         return square_cell(pitch) if self.extents is None else self.extents
 
 
-def measure_cell(emit: Emit, pitch: float, step: float) -> Floats:
+def measure_cell(emit: Emit, pitch: float, step: float, rules: SectionRules) -> Floats:
     """Return the extents (mm) of one cell in the horizontal `directions`, where it is least wide.
 
     A column is emitted and measured at the planes of the grid. Cells that answer with finished meshes alone count as
@@ -51,8 +52,11 @@ def measure_cell(emit: Emit, pitch: float, step: float) -> Floats:
         Calls the cell.
     pitch, step
         Width and height (mm) of a voxel.
+    rules
+        The least wall and the leg ratio, by which cells choose default sizes.
     """
-    request = replace(single_column(pitch, step, 0), beams=False)
+    column = single_column(pitch, step, 0)
+    request = replace(column, beams=False, least_wall=rules.least_wall_mm, leg_ratio=rules.leg_ratio)
     found = _extents(request, emit(request))
     return min(found, key=lambda extents: float(extents.min())) if found else square_cell(pitch)
 

@@ -50,6 +50,8 @@ class SolidRules:
         Build volume, which clips beams and bases; without it struts become meshes.
     least
         Least section of connectors; None for none.
+    leg_ratio
+        Largest ratio of length to width of a leg; 0 for no limit.
     """
 
     connector: ConnectorRules = field(default_factory=ConnectorRules)
@@ -60,6 +62,7 @@ class SolidRules:
     gap: float = 0.0
     space: BuildVolume | None = None
     least: LeastSection | None = None
+    leg_ratio: float = 0.0
 
 
 def least_wall_of(rules: SolidRules) -> float:
@@ -128,6 +131,7 @@ def build_supports(
             extend=extend,
             beams=beams,
             least_wall=least_wall_of(rules),
+            leg_ratio=rules.leg_ratio,
         )
         return classify(request, checked(request, emit(request)))
 

@@ -15,6 +15,7 @@ def make_request(
     extend: bool,
     beams: bool | None = None,
     least_wall: float = 0.0,
+    leg_ratio: float = 0.0,
 ) -> CellRequest:
     """Return a request for every edge of the layout, and with `extend` for the voxels above red squares.
 
@@ -34,6 +35,7 @@ def make_request(
         allow_surface=allow_surface,
         beams=beams,
         least_wall=least_wall,
+        leg_ratio=leg_ratio,
     )
 
 

@@ -1,6 +1,7 @@
 """Block supports: a grid of thin walls with perforations, teeth and fragmentation gaps."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,12 @@ THINNING = 1e-3
 Cells of different directions therefore have no sides in a common plane, for which Boolean unions are unreliable.
 """
 
+_DEFAULT_WALL = 0.25
+"""Default thickness of walls (mm)."""
+
+_LEAST_SPAN = 0.1
+"""Least distance between the sides of two walls, as a fraction of the distance of their middles."""
+
 _ROOF_DEG = 55.0
 """Angle of the upper sides of perforations to the horizontal."""
 
@@ -28,9 +35,10 @@ class HatchParams:
     Attributes
     ----------
     hatch_mm
-        Distance between parallel walls, rounded to a whole number of walls per pitch. The default is half the pitch.
+        Distance between parallel walls, rounded to a whole number of walls per pitch. The default is half the pitch, or
+        the pitch where two walls leave no room for gaps.
     wall_mm
-        Thickness of the walls.
+        Thickness of the walls. The default is 0.25 mm, or the least wall of the job if that is more.
     perforation_mm
         Width of the diamond-shaped openings in walls of straight edges, through which powder escapes; 0 for none.
     tooth_pitch_mm, tooth_width_mm, tooth_height_mm
@@ -41,7 +49,7 @@ class HatchParams:
     """
 
     hatch_mm: float | None = None
-    wall_mm: float = 0.25
+    wall_mm: float | None = None
     perforation_mm: float = 0.5
     tooth_pitch_mm: float | None = None
     tooth_width_mm: float = 0.5
@@ -63,6 +71,7 @@ def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, progres
     Walls end in teeth where a support ends. Connector edges consist of teeth alone, so that only teeth touch the part.
     """
     pitch, step = request.grid.pitch, request.grid.step
+    spacing = _spacing(pitch, params, request.least_wall)
     edges, is_connector = request.edges, request.role == Role.CONNECTOR
     fragmented = (edges.direction == 0) & ~is_connector & bool(params.fragment_every)
     every = params.fragment_every or 1
@@ -70,21 +79,45 @@ def emit_hatch(request: CellRequest, *, params: HatchParams, stop: Stop, progres
     end = np.where(is_connector, 2, _is_end(request)) * (params.tooth_pitch_mm != 0.0)
     rows = np.column_stack([edges.direction, end, *cut]).astype(np.int64)
     kinds, template = np.unique(rows, axis=0, return_inverse=True)
-    templates = tuple(hatch_template(_walls(pitch, step, params, *kind)) for kind in kinds.tolist())
+    templates = tuple(hatch_template(_walls(pitch, step, params, spacing, *kind)) for kind in kinds.tolist())
     return Cells(templates, template.ravel(), np.arange(len(edges)), request.matrices)
 
 
 def hatch_material(pitch: float, step: float, params: HatchParams) -> tuple[float, float]:
     """Estimate the volume (mm3) of an upright and of an oblique edge, without teeth and gaps."""
+    spacing = _spacing(pitch, params)
     upright, oblique = (
-        hatch_template(_walls(pitch, step, params, direction, 0, 0, 0)).mesh.signed_volume
+        hatch_template(_walls(pitch, step, params, spacing, direction, 0, 0, 0)).mesh.signed_volume
         for direction in (0, 1)
     )
     return upright * pitch * pitch * step, oblique * pitch * pitch * step
 
 
+class _Spacing(NamedTuple):
+    """Thickness of the walls (mm), and their number in each of the two directions."""
+
+    wall: float
+    number: int
+
+
+def _spacing(pitch: float, params: HatchParams, least_wall: float = 0.0) -> _Spacing:
+    """Return the walls that the user states; else walls as thick as the least wall, two if there is room for gaps."""
+    wall = max(_DEFAULT_WALL, least_wall) if params.wall_mm is None else params.wall_mm
+    if params.hatch_mm is not None:
+        return _Spacing(wall, max(1, round(pitch / params.hatch_mm)))
+    gap = 2.0 * params.fragment_gap_mm if params.fragment_every else _LEAST_SPAN * pitch / 2.0
+    return _Spacing(wall, 2 if pitch / 2.0 - wall >= gap else 1)
+
+
 def _walls(
-    pitch: float, step: float, params: HatchParams, direction: int, end: int, cut_x: int, cut_y: int
+    pitch: float,
+    step: float,
+    params: HatchParams,
+    spacing: _Spacing,
+    direction: int,
+    end: int,
+    cut_x: int,
+    cut_y: int,
 ) -> HatchWalls:
     """Convert lengths to fractions of the unit cube.
 
@@ -92,6 +125,8 @@ def _walls(
     ----------
     pitch, step
         Width and height (mm) of a voxel.
+    spacing
+        Thickness and number of the walls.
     direction
         Index into `amprep.model.DIRECTIONS`.
     end
@@ -99,11 +134,11 @@ def _walls(
     cut_x, cut_y
         1 where a new block begins in this direction, else 0.
     """
-    count = max(1, round(pitch / (params.hatch_mm or pitch / 2.0)))
-    thickness = params.wall_mm / pitch - THINNING * direction
-    span = 1.0 / count - params.wall_mm / pitch
+    count = spacing.number
+    thickness = spacing.wall / pitch - THINNING * direction
+    span = 1.0 / count - spacing.wall / pitch
     gap = params.fragment_gap_mm / pitch
-    _require_room(pitch, params, count, thickness, span)
+    _require_room(pitch, params, spacing, thickness, span)
     perforated = not direction and end != 2
     teeth = max(1, round(pitch / (params.tooth_pitch_mm or pitch / count))) if end else 0
     return HatchWalls(
@@ -117,10 +152,12 @@ def _walls(
     )
 
 
-def _require_room(pitch: float, params: HatchParams, count: int, thickness: float, span: float) -> None:
-    if span < 0.1 / count or thickness <= 0.0:
+def _require_room(
+    pitch: float, params: HatchParams, spacing: _Spacing, thickness: float, span: float
+) -> None:
+    if span < _LEAST_SPAN / spacing.number or thickness <= 0.0:
         raise JobError(
-            f"hatch: walls of {params.wall_mm:g} mm every {pitch / count:.3g} mm leave no room, or are too thin "
+            f"hatch: walls of {spacing.wall:g} mm every {pitch / spacing.number:.3g} mm leave no room, or are too thin "
             f"for a pitch of {pitch:.4g} mm; change wall_mm, hatch_mm or pitch_mm"
         )
     if params.fragment_every and params.fragment_gap_mm / pitch > span / 2.0:
