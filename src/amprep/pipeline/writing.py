@@ -1,6 +1,7 @@
 """Write the files of a build, verify the build as read back from its file, and write the reports."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from amprep.job import Job
 from amprep.model import Build, Stop
@@ -11,6 +12,9 @@ from amprep.pipeline.supporting import SupportedBuild
 from amprep.pipeline.verifying.build import verify_build
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.sealing.seal import file_digest
+
+if TYPE_CHECKING:
+    from amprep.threemf import BuildFile
 
 
 def finish_build(
@@ -49,8 +53,11 @@ def finish_build(
         with clock.stage("write"):
             record = _written(record, number, outputs, stl)
     with clock.stage("verify") as progress:
-        checked = build if dry_run else _read_back(number, outputs)
-        judged = verify_build(checked, stop=stop, progress=progress)
+        if dry_run:
+            judged = verify_build(build, stop=stop, progress=progress)
+        else:
+            file = _read_back(number, outputs)
+            judged = verify_build(file.build, printed=file.printed, stop=stop, progress=progress)
         return replace(record, verification=judged.violations, pairs=judged.pairs)
 
 
@@ -85,10 +92,10 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
     return replace(record, report_files=(outputs.name("report.html"), outputs.name("report.json")))
 
 
-def _read_back(number: int, outputs: OutputFolder) -> Build:
-    from amprep.threemf import read_build
+def _read_back(number: int, outputs: OutputFolder) -> "BuildFile":
+    from amprep.threemf import read_build_file
 
-    return read_build(outputs.staged(outputs.of_build(number, "3mf")))
+    return read_build_file(outputs.staged(outputs.of_build(number, "3mf")))
 
 
 def _written(record: BuildRecord, number: int, outputs: OutputFolder, stl: bool) -> BuildRecord:

@@ -4,7 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from amprep.checks.packing.pairs import PairCounts
-from amprep.checks.packing.parts_placed import judge_placed
+from amprep.checks.packing.parts_placed import ROUNDING, judge_placed
+from amprep.checks.printed import as_recorded
+from amprep.checks.printed.found import PrintedFile
 from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, limits, xy_distance
 from amprep.checks.supports.bodies import check_bodies
@@ -15,6 +17,7 @@ from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, silent
 
 PROMISES = (
+    as_recorded.PROMISE,
     "inside build volume",
     "outside forbidden zones",
     "no intersection",
@@ -67,13 +70,21 @@ class Verification:
         return "\n".join(lines) or "every promise holds"
 
 
-def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress = silent) -> Verification:
+def verify_build(
+    build: Build,
+    *,
+    printed: PrintedFile | None = None,
+    stop: Stop | None = None,
+    progress: Progress = silent,
+) -> Verification:
     """Return every broken promise: of parts, of supports, of overhangs without support, and of limits of supports.
 
     Parameters
     ----------
     build
         The build.
+    printed
+        What the target of its file would print; None for a build that is in no file.
     stop
         Ends the check of parts and supports early.
     progress
@@ -92,5 +103,13 @@ def verify_build(build: Build, *, stop: Stop | None = None, progress: Progress =
         found += judge()
     progress(1.0 - 1.0 / (len(judges) + 2), "limits")
     judged = limits.check_limits(build, stop, solids)
+    seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
-    return Verification((*found, *judged.violations), pairs, judged.extent)
+    return Verification((*seen, *found, *judged.violations), pairs, judged.extent | _extent(printed))
+
+
+def _extent(printed: PrintedFile | None) -> dict[str, str]:
+    """Return how the file was read a second time."""
+    if printed is None:
+        return {as_recorded.PROMISE: f"{limits.NOT_JUDGED}: the build is in no file"}
+    return {as_recorded.PROMISE: f"as {printed.program} reads it, tolerance {ROUNDING:g} mm"}

@@ -71,19 +71,20 @@ def verify_file(
     JobError
         If the job or the printer is wrong.
     """
-    from amprep.threemf import read_build
+    from amprep.threemf import read_build_file
 
     found, extent = _seal(path, demands.key)
     if demands.report is not None:
         found += _reported(path, demands.report)
         extent[REPORTED] = f"SHA-256 of the file, by {demands.report.name}"
-    build = read_build(path)
+    file = read_build_file(path)
+    build = file.build
     weaker = [each.words("usual") for each in weaker_settings(build.settings, usual_settings(build))]
     for each in _orders(build, demands, progress):
         found += order.check_order(build, each)
         extent[order.PROMISE] = f"by {each.source}"
         build = order.as_ordered(build, each)
-    judged = verify_build(build, stop=stop, progress=progress)
+    judged = verify_build(build, printed=file.printed, stop=stop, progress=progress)
     return replace(
         judged, violations=(*found, *judged.violations), extent=judged.extent | extent, weaker=tuple(weaker)
     )

@@ -36,7 +36,7 @@ def read_metadata(package: bytes) -> BuildMetadata:
     """
     with zipfile.ZipFile(io.BytesIO(package)) as archive:
         text = archive.read(MODEL_NAME) if MODEL_NAME in archive.namelist() else b"<model/>"
-    model = parse_xml(_without_meshes(text))
+    model = parse_xml(without_meshes(text))
     items = model.iterfind(f"{_CORE}build/{_CORE}item")
     return BuildMetadata(
         _own_entries(model, model.iterfind(f"{_CORE}metadata")),
@@ -44,7 +44,7 @@ def read_metadata(package: bytes) -> BuildMetadata:
     )
 
 
-def _without_meshes(text: bytes) -> bytes:
+def without_meshes(text: bytes) -> bytes:
     """Return the model without its meshes, which are nearly all of its text."""
     head, *rest = text.split(b"<mesh>")
     return head + b"".join(each.partition(b"</mesh>")[2] for each in rest)

@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from amprep.checks.printed.found import PrintedFile
 from amprep.errors import InputError
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
+from amprep.threemf.as_read import read_as_printed
 from amprep.threemf.build import record
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
@@ -19,8 +21,20 @@ from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
 
 
+class BuildFile(NamedTuple):
+    """A build as amprep's metadata describes it, and what the target of the file would print."""
+
+    build: Build
+    printed: PrintedFile
+
+
 def read_build(path: Path) -> Build:
-    """Read a build that amprep wrote, in any dialect, from the file alone.
+    """Read a build that amprep wrote, in any dialect, from the file alone; see `read_build_file`."""
+    return read_build_file(path).build
+
+
+def read_build_file(path: Path) -> BuildFile:
+    """Read a build that amprep wrote, in any dialect, and read the file again as its target does.
 
     The metadata is used only for facts that the objects in the file do not show. `PlacedPart.recorded_digest` is the
     digest that the metadata states; `amprep.checks` compares it with that of the geometry.
@@ -37,12 +51,24 @@ def read_build(path: Path) -> Build:
     try:
         metadata = read_metadata(package.data)
         _check_version(metadata.model.get(record.FORMAT), path)
-        return _build(load_model(package.data).model, metadata)
+        model = load_model(package.data).model
+        build = _build(model, metadata)
+        return BuildFile(build, _as_printed(package.data, model, build, path))
     except lib3mf.ELib3MFException as error:
         raise InputError(f"{path}: lib3mf refuses the file ({error}); write the build again") from error
     except (ValueError, TypeError, OverflowError) as error:
         raise InputError(
             f"{path}: amprep's metadata in the file is damaged ({error}); write the build again"
+        ) from error
+
+
+def _as_printed(package: bytes, model: Any, build: Build, path: Path) -> PrintedFile:
+    target = build.settings.target
+    try:
+        return read_as_printed(package, model, target)
+    except ValueError as error:
+        raise InputError(
+            f"{path}: the target {target} cannot read it ({error}); write the build again"
         ) from error
 
 

@@ -85,11 +85,19 @@ def fetch_mesh(mesh: "Lib3MF.MeshObject") -> RawMesh:
 
 def fetch_beams(lattice: "Lib3MF.BeamLattice") -> tuple[NDArray[np.int64], Floats]:
     """Fetch the beams of a lattice: the vertices ``(m, 2)`` and radii ``(m, 2)`` of both ends, in the file's unit."""
+    struts, radii, _ = fetch_capped_beams(lattice)
+    return struts, radii
+
+
+def fetch_capped_beams(
+    lattice: "Lib3MF.BeamLattice",
+) -> tuple[NDArray[np.int64], Floats, NDArray[np.int32]]:
+    """Fetch the beams of a lattice as `fetch_beams` does, and the caps ``(m, 2)`` of both ends, numbered by lib3mf."""
     from lib3mf import Lib3MF
 
     dtype = np.dtype([("ends", np.uint32, 2), ("radii", np.float64, 2), ("caps", np.int32, 2)])
     beams = _fetch(lattice, "lib3mf_beamlattice_getbeams", Lib3MF.Beam, dtype, 1).reshape(-1)
-    return beams["ends"].astype(np.int64), beams["radii"].astype(np.float64)
+    return beams["ends"].astype(np.int64), beams["radii"].astype(np.float64), beams["caps"]
 
 
 def _fetch(thing: Any, name: str, record: type, dtype: DTypeLike, width: int) -> NDArray[Any]:

@@ -1,0 +1,1 @@
+"""Judge what the target of a build file would print."""

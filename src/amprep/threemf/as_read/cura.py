@@ -1,0 +1,65 @@
+"""What Cura prints: every mesh as a part, unless the settings of its object say otherwise.
+
+Cura's reader ignores the types of objects. The judge demands that they agree, for other readers; see `generic`.
+"""
+
+from amprep.checks.printed.found import PrintedBody, PrintedFile, PrintedKind
+from amprep.model.mesh import Mesh
+from amprep.threemf.as_read.generic import kind_of
+from amprep.threemf.as_read.meshes import ObjectMeshes, placed
+from amprep.threemf.as_read.structure import FileObject, MeshInstance, Structure
+from amprep.threemf.names import CORE_NAMESPACE, CURA_NAMESPACE
+
+_CORE = f"{{{CORE_NAMESPACE}}}"
+_KINDS: dict[str, PrintedKind] = {
+    "support_mesh": "support",
+    "anti_overhang_mesh": "blocker",
+    "infill_mesh": "modifier",
+    "cutting_mesh": "modifier",
+}
+_PROJECT = "cura/"
+
+
+def read_as_cura(structure: Structure, meshes: ObjectMeshes) -> PrintedFile:
+    """Return the bodies by Cura's settings of their objects; every other setting is a remark."""
+    bodies = []
+    remarks = structure.remarks()
+    for instance in structure.instances():
+        vertices, triangles = meshes.of(instance.object_id)
+        settings = _settings_of(instance)
+        foreign = sorted(settings.keys() - _KINDS)
+        if foreign:
+            remarks.append(
+                f"it would print {instance.name!r} with settings of its own: {', '.join(foreign)[:80]}"
+            )
+        mesh = Mesh(placed(vertices, instance.matrix), triangles)
+        bodies.append(PrintedBody(instance.name, _kind_of(instance, settings), mesh))
+    project = [name for name in structure.entries if name.lower().startswith(_PROJECT)]
+    remarks += [f"the package has settings of a Cura project, {name[:80]}" for name in project[:1]]
+    return PrintedFile("Cura", structure.unit_mm, tuple(bodies), tuple(remarks))
+
+
+def _kind_of(instance: MeshInstance, settings: dict[str, str]) -> PrintedKind:
+    if kind_of(instance) in ("nothing", "surface", "open support"):
+        return kind_of(instance)
+    for name, kind in _KINDS.items():
+        if settings.get(name, "").strip().lower() == "true":
+            return kind
+    return "model"
+
+
+def _settings_of(instance: MeshInstance) -> dict[str, str]:
+    """Return Cura's settings of an instance; those of inner objects have precedence."""
+    found: dict[str, str] = {}
+    for each in instance.path:
+        found |= _own_settings(each)
+    return found
+
+
+def _own_settings(thing: FileObject) -> dict[str, str]:
+    found = {}
+    for each in thing.element.iterfind(f"{_CORE}metadatagroup/{_CORE}metadata"):
+        prefix, _, name = each.get("name", "").rpartition(":")
+        if thing.element.nsmap.get(prefix) == CURA_NAMESPACE:
+            found[name] = each.text or ""
+    return found

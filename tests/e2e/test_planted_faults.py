@@ -1,0 +1,58 @@
+"""`amprep verify` finds what is wrong in a build file, whichever entry of the package was changed."""
+
+import pytest
+from tests.shared.planted import (
+    BEAMS,
+    DIALECTS,
+    FAULTS,
+    bracket_build,
+    write_entries,
+    write_package,
+)
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory):
+    """Entries of the unchanged build file of each dialect."""
+    folder = tmp_path_factory.mktemp("written")
+    return {each: write_entries(bracket_build(each), folder / f"{each}.3mf") for each in DIALECTS}
+
+
+def verdict(amprep, entries, folder):
+    outcome = amprep("verify", write_package(entries, folder / "build.3mf"), "--json")
+    broken = [] if outcome.code == 2 else [each["promise"] for each in outcome.json["violations"]]
+    return outcome, broken
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_an_unchanged_file_breaks_no_promise(amprep, written, tmp_path, dialect):
+    outcome, broken = verdict(amprep, written[dialect], tmp_path)
+    assert (outcome.code, broken) == (0, [])
+    assert "not judged" not in str(outcome.json["limits_judged"])
+
+
+@pytest.mark.parametrize(
+    ("planted", "dialect"),
+    [
+        pytest.param(planted, dialect, id=f"{dialect}: {planted.name}")
+        for planted in FAULTS
+        for dialect in planted.dialects
+    ],
+)
+def test_a_planted_fault_is_found(amprep, written, tmp_path, planted, dialect):
+    changed = planted.fault(written[dialect])
+    assert changed != written[dialect]
+    outcome, broken = verdict(amprep, changed, tmp_path)
+    if planted.promise is None:
+        assert outcome.code == 2
+        assert len(outcome.err.strip().splitlines()) == 1
+    else:
+        assert outcome.code == 1
+        assert planted.promise in broken
+
+
+def test_there_are_faults_enough_in_every_dialect():
+    counts = {each: sum(each in planted.dialects for planted in FAULTS) for each in DIALECTS}
+    assert sum(counts.values()) >= 60
+    assert min(counts.values()) >= 12
+    assert any(planted.dialects == BEAMS for planted in FAULTS)

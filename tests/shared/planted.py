@@ -1,0 +1,316 @@
+"""Small builds written in every dialect, and faults planted in their text.
+
+A fault changes the entries of a written package, as a careless program or a malicious hand would. Verification must
+find each of them, and must accept the unchanged files.
+"""
+
+import re
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from manifold3d import Manifold
+from tests.shared.solids import mesh_of
+from tests.shared.supported import box
+
+from amprep.model import Build, BuildSettings, BuildVolume, Lattice, Mesh, Part, PlacedPart, SupportBody
+from amprep.model.supports.rules import SupportRules
+from amprep.model.supports.sizes import SupportSizes
+from amprep.threemf import write_build
+
+DIALECTS = ("generic", "beams", "cura", "prusaslicer")
+BEAMS, CURA, PRUSASLICER = ("beams",), ("cura",), ("prusaslicer",)
+COMPONENTS = ("generic", "beams", "cura")
+MODEL = "3D/3dmodel.model"
+CONFIG = "Metadata/Slic3r_PE_model.config"
+
+RULES = SupportRules(
+    rules="limits",
+    ledge_mm=1.0,
+    bridge_mm=2.0,
+    bore_mm=8.0,
+    least_wall_mm=0.3,
+    least_contact_mm2=0.09,
+    leg_ratio=10.0,
+    territory="own",
+    territory_margin_mm=2.5,
+    drift_ratio=0.3,
+    drift_mm=15.0,
+)
+
+Entries = dict[str, str]
+Fault = Callable[[Entries], Entries]
+
+
+@dataclass(frozen=True)
+class Planted:
+    """A fault in some dialects, and the promise that it breaks; None if such a file is refused."""
+
+    name: str
+    fault: Fault
+    dialects: tuple[str, ...] = DIALECTS
+    promise: str | None = "printed as planned"
+
+
+def bracket_build(dialect: str, *, apart: float = 30.0) -> Build:
+    """Return two brackets, each with a shelf over a support of its own: a box, or beams below a plate."""
+    mesh = mesh_of(box((4, 8, 12), (0, 0, 0)) + box((13, 8, 3), (0, 0, 9)))
+    part = Part("bracket", mesh, 600.0)
+    places = [(10.0, 10.0), (10.0 + apart, 10.0)]
+    parts = tuple(
+        PlacedPart("bracket" if not number else "bracket-2", part, _moved(*place))
+        for number, place in enumerate(places)
+    )
+    body = _beam_body if dialect == "beams" else _box_body
+    supports = tuple(
+        body(f"supports of {each.label}", number, *places[number]) for number, each in enumerate(parts)
+    )
+    settings = BuildSettings(
+        "job.build-1",
+        BuildVolume([100, 60, 60]),
+        "generic" if dialect == "beams" else dialect,
+        clearance=5.0,
+        overlap=0.1,
+        reach=1.6,
+        rules=RULES,
+        sizes=SupportSizes(square_mm=1.0),
+    )
+    return Build(settings, parts, supports)
+
+
+def _moved(x: float, y: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:2, 3] = x, y
+    return matrix
+
+
+def _box_body(name: str, part: int, x: float, y: float) -> SupportBody:
+    return SupportBody(name, mesh_of(box((8, 7, 9.1), (x + 4.5, y + 0.5, 0))), (part,))
+
+
+def _beam_body(name: str, part: int, x: float, y: float) -> SupportBody:
+    """Four upright beams and a diagonal one, below a plate that enters the shelf."""
+    corners = np.array([[5.5, 1.5], [11.5, 1.5], [11.5, 6.5], [5.5, 6.5]]) + (x, y)
+    nodes = np.vstack([np.column_stack([corners, np.full(4, z)]) for z in (0.0, 8.2)])
+    struts = np.array([[0, 4], [1, 5], [2, 6], [3, 7], [0, 5]], np.int32)
+    radii = np.full((5, 2), 0.75)
+    plate = box((8, 7, 1.1), (x + 4.5, y + 0.5, 8.0))
+    columns = [
+        Manifold.cylinder(8.2, 0.75, 0.75, 12).translate((*corner, 0.0)) for corner in corners.tolist()
+    ]
+    whole = plate
+    for column in columns:
+        whole += column
+    room = np.array([[0.0, 0, 0], [100, 60, 60]])
+    return SupportBody(
+        name,
+        mesh_of(whole),
+        (part,),
+        lattice=Lattice(nodes, struts, radii, mesh_of(plate), mesh_of(whole), room),
+    )
+
+
+def write_entries(build: Build, path: Path) -> Entries:
+    """Write a build and return the entries of its package as text."""
+    write_build(build, path)
+    with zipfile.ZipFile(path) as package:
+        return {name: package.read(name).decode() for name in package.namelist()}
+
+
+def write_package(entries: Entries, path: Path) -> Path:
+    with zipfile.ZipFile(path, "w") as package:
+        for name, text in entries.items():
+            package.writestr(name, text)
+    return path
+
+
+def sub(pattern: str, replacement: str, *, entry: str = MODEL, count: int = 1) -> Fault:
+    """Return a fault that replaces the first matches of a pattern, of which there must be one."""
+
+    def fault(entries: Entries) -> Entries:
+        text, number = re.subn(pattern, replacement, entries[entry], count=count, flags=re.DOTALL)
+        assert number, f"{pattern} is not in {entry}"
+        return entries | {entry: text}
+
+    return fault
+
+
+def drop(entry: str) -> Fault:
+    """Return a fault that removes an entry of the package."""
+    return lambda entries: {name: text for name, text in entries.items() if name != entry}
+
+
+def add(entry: str, text: str) -> Fault:
+    """Return a fault that adds an entry to the package."""
+    return lambda entries: entries | {entry: text}
+
+
+def scale_radii(factor: float) -> Fault:
+    """Return a fault that multiplies every radius of beams."""
+
+    def scaled(found: re.Match[str]) -> str:
+        return f'{found[1]}="{float(found[2]) * factor:.9g}"'
+
+    return lambda entries: entries | {MODEL: re.sub(r'\b(radius|r1|r2)="([^"]*)"', scaled, entries[MODEL])}
+
+
+def with_body(build: Build, number: int, solid: Manifold) -> Build:
+    """Return a build of which one support has another solid."""
+    bodies = list(build.supports)
+    bodies[number] = replace(bodies[number], mesh=mesh_of(solid))
+    return replace(build, supports=tuple(bodies))
+
+
+def solid_of(mesh: Mesh) -> Manifold:
+    from amprep.geometry.meshes.manifold import as_manifold
+
+    return as_manifold(mesh.vertices, mesh.triangles)
+
+
+def _swapped(entries: Entries) -> Entries:
+    """Exchange the supports of both parts, with their names."""
+    text = entries[MODEL].replace('objectid="2"', 'objectid="x"').replace('objectid="3"', 'objectid="2"')
+    return entries | {MODEL: text.replace('objectid="x"', 'objectid="3"')}
+
+
+_BLANK = '<?xml version="1.0"?><model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"/>'
+_TRIANGLE = "<mesh><vertices>" + '<vertex x="0" y="0" z="0"/><vertex x="9" y="0" z="0"/>' * 2 + "</vertices>"
+_STRAY = (
+    f'<object id="90" name="stray" type="model">{_TRIANGLE}'
+    '<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>'
+)
+
+
+def _volume_type(kind: str, number: int) -> Fault:
+    """Give the volume with a number another type in PrusaSlicer's configuration."""
+
+    def fault(entries: Entries) -> Entries:
+        pieces = entries[CONFIG].split("ModelPart")
+        text = "ModelPart".join(pieces[: number + 1]) + kind + "ModelPart".join(pieces[number + 1 :])
+        return entries | {CONFIG: text}
+
+    return fault
+
+
+FAULTS = (
+    Planted("the unit is inch", sub('unit="millimeter"', 'unit="inch"')),
+    Planted("the unit is micron", sub('unit="millimeter"', 'unit="micron"')),
+    Planted("the unit is missing in name only", sub('unit="millimeter"', 'unit="furlong"'), promise=None),
+    Planted("an item is not printed", sub("<item ", '<item printable="0" ')),
+    Planted("an item is not printed, said otherwise", sub("<item ", '<item printable="false" ')),
+    Planted("the first object is of type other", sub('type="model"', 'type="other"')),
+    Planted("the first object is of type surface", sub('type="model"', 'type="surface"')),
+    Planted("the first object is of type support", sub('type="model"', 'type="support"')),
+    Planted("the first item is there twice", sub(r"(<item .*?</item>)", r"\1\1"), promise=None),
+    Planted("an object that nothing uses", sub("<resources>", f"<resources>{_STRAY}")),
+    Planted("another model in the package", add("3D/other.model", _BLANK)),
+    Planted("a comment in the model", sub("<resources>", "<!-- --><resources>"), promise=None),
+    Planted("the item refers to nothing", sub(r'<item objectid="\d+"', '<item objectid="77"'), promise=None),
+    Planted(
+        "a triangle of a part is turned over",
+        sub(r'(<triangle v1=")(\d+)(" v2=")(\d+)', r"\1\4\3\2"),
+        promise="part unchanged",
+    ),
+    Planted(
+        "a vertex of a part is moved",
+        sub(r'<vertex x="0.000000"', '<vertex x="-0.020000"'),
+        promise="part unchanged",
+    ),
+    Planted(
+        "a support is of type other", sub('type="solidsupport"', 'type="other"'), ("generic", "beams", "cura")
+    ),
+    Planted("a support is of type surface", sub('type="solidsupport"', 'type="surface"'), COMPONENTS),
+    Planted("a support is a model", sub('type="solidsupport"', 'type="model"'), ("generic", "beams")),
+    Planted(
+        "the group is of type support",
+        sub(r'(type=")model("[^>]*>\s*<components>)', r"\1support\2"),
+        COMPONENTS,
+    ),
+    Planted(
+        "the group is of type other", sub(r'(type=")model("[^>]*>\s*<components>)', r"\1other\2"), COMPONENTS
+    ),
+    Planted("another component", sub(r"(<component [^>]*/>)", r"\1\1"), COMPONENTS, promise=None),
+    Planted(
+        "the support's component is removed",
+        sub(r"(<component [^>]*/>)\s*<component [^>]*/>", r"\1"),
+        COMPONENTS,
+        promise=None,
+    ),
+    Planted("Cura prints a support as a part", sub(r"(cura:support_mesh[^>]*>)True", r"\1False"), CURA),
+    Planted(
+        "the metadata of a support in Cura is removed",
+        sub(r"<metadata name=.cura:support_mesh.*?</metadata>", ""),
+        CURA,
+    ),
+    Planted("Cura's support is an infill mesh", sub("cura:support_mesh", "cura:infill_mesh"), CURA),
+    Planted("Cura's support is a blocker", sub("cura:support_mesh", "cura:anti_overhang_mesh"), CURA),
+    Planted(
+        "Cura's support has an infill of its own",
+        sub(
+            r"(<metadata name=.cura:support_mesh.*?</metadata>)",
+            r'\1<metadata name="cura:infill_sparse_density">0</metadata>',
+        ),
+        CURA,
+    ),
+    Planted("settings of a Cura project", add("Cura/preferences.cfg", "[general]"), CURA),
+    *(
+        Planted(f"volume {number} is a {kind}", _volume_type(kind, number), PRUSASLICER)
+        for number in (0, 1)
+        for kind in ("NegativeVolume", "ParameterModifier", "SupportBlocker", "SupportEnforcer")
+    ),
+    Planted("half of a part is lost", sub(r'lastid="\d+"', 'lastid="9"', entry=CONFIG), PRUSASLICER),
+    Planted("a volume begins later", sub(r'firstid="0"', 'firstid="2"', entry=CONFIG), PRUSASLICER),
+    Planted(
+        "a volume ends beyond the mesh",
+        sub(r'lastid="\d+"', 'lastid="99999"', entry=CONFIG),
+        PRUSASLICER,
+        promise=None,
+    ),
+    Planted(
+        "the volume of a support is removed",
+        sub(r"(</volume>)\s*<volume .*?</volume>", r"\1", entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted("a volume is there twice", sub(r"(<volume .*?</volume>)", r"\1\1", entry=CONFIG), PRUSASLICER),
+    Planted("an object is not configured", sub(r"<object .*?</object>", "", entry=CONFIG), PRUSASLICER),
+    Planted(
+        "an object is configured by another number",
+        sub(r'<object id="2"', '<object id="7"', entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted("the configuration is removed", drop(CONFIG), PRUSASLICER),
+    Planted(
+        "a volume has settings",
+        sub("</volume>", '<metadata type="volume" key="fill_density" value="0%"/></volume>', entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted(
+        "an object has settings",
+        sub("<volume ", '<metadata type="object" key="perimeters" value="0"/><volume ', entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted(
+        "the package has settings",
+        add("Metadata/Slic3r_PE.config", "; perimeters = 0"),
+        PRUSASLICER,
+        promise=None,
+    ),
+    Planted(
+        "the package has settings of layers",
+        add("Metadata/Prusa_Slicer_layer_config_ranges.xml", "<objects/>"),
+        PRUSASLICER,
+    ),
+    Planted(
+        "the version is removed", sub(r"<metadata name=.slic3rpe:Version3mf.*?</metadata>", ""), PRUSASLICER
+    ),
+    Planted("the version is 0", sub(r"(slic3rpe:Version3mf[^>]*>)1", r"\g<1>0"), PRUSASLICER),
+    Planted("another cap", sub('cap="sphere"', 'cap="butt"'), BEAMS),
+    Planted("one beam has another cap", sub(r'(<b:beam v1="8" v2="12")', r'\1 cap1="hemisphere"'), BEAMS),
+    Planted("beams must be longer", sub('minlength="0.001"', 'minlength="50"'), BEAMS),
+    Planted("beams are clipped outside", sub('clippingmode="inside"', 'clippingmode="outside"'), BEAMS),
+    Planted("the clipping mesh cuts everything away", sub(r'clippingmesh="\d+"', 'clippingmesh="1"'), BEAMS),
+    Planted("the clipping mesh ends at half height", sub(r'z="60.000000"', 'z="4.000000"', count=4), BEAMS),
+    Planted("readers need not know beams", sub(r' requiredextensions="b"', ""), BEAMS),
+)
