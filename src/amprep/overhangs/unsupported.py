@@ -50,10 +50,12 @@ def find_unsupported(
         samples = sample_overhangs(own.mesh.vertices, own.mesh.triangles, own.overhangs, spacing)
         held = find_held(samples.points, placed.mesh, bodies, settings, spacing)
         left = np.flatnonzero(~held)
+        areas = _areas(own.mesh.vertices[own.mesh.triangles[own.overhangs.faces]])
         reasons = np.array(reasons_at(part, samples.points[left]), dtype=object)
         for number in np.unique(samples.region[left]):
             here = samples.region[left] == number
-            region = _RegionCoverage(samples, held, own.overhangs.regions[number], settings.rules, reach)
+            found_region = own.overhangs.regions[number]
+            region = _RegionCoverage(samples, held, found_region, areas, settings.rules, reach)
             for reason, minor, chosen in region.patches(left[here], reasons[here]):
                 found.append(
                     Unsupported(
@@ -76,11 +78,24 @@ def region_name(region: int, label: str) -> str:
 
 
 class _RegionCoverage(NamedTuple):
-    """One overhang region of a part, with the samples of the part and which of them are held."""
+    """One overhang region of a part.
+
+    Attributes
+    ----------
+    samples, held
+        The samples of the part, and which of them are held.
+    region
+        The region.
+    areas
+        Areas (mm2) of the faces of all overhangs of the part.
+    rules, reach
+        Rules for what needs support, and the reach of supports, mm.
+    """
 
     samples: OverhangSamples
     held: Bools
     region: OverhangRegion
+    areas: Floats
     rules: OverhangRules
     reach: float
 
@@ -96,8 +111,31 @@ class _RegionCoverage(NamedTuple):
     def measure(self, chosen: Ints) -> float:
         """Return the area or length of the region that the chosen samples represent."""
         own = self.samples.region == self.samples.region[chosen[0]]
-        weight = self.samples.inner if self.samples.inner[own].any() else np.ones(len(own), np.bool_)
-        return float(self.region.measure * weight[chosen].sum() / weight[own].sum())
+        inner = self.samples.inner & own
+        if not inner.any():
+            return float(self.region.measure * len(chosen) / own.sum())
+        lattice_area = self.region.measure / inner.sum()
+        found = inner[chosen].sum()
+        return float(lattice_area * found) if found else self._rim_measure(chosen, own, lattice_area)
+
+    def _rim_measure(self, chosen: Ints, own: Bools, lattice_area: float) -> float:
+        """Return the area that samples on rims represent: of triangles without lattice points, or strips beside rims.
+
+        A strip ends half-way to the nearest sample that is held.
+        """
+        from scipy.spatial import KDTree
+
+        samples = self.samples
+        face, count = np.unique(samples.face[own], return_counts=True)
+        at = np.searchsorted(face, samples.face[chosen])
+        area = self.areas[samples.face[chosen]] / count[at]
+        in_strip = np.isin(samples.face[chosen], samples.face[own & samples.inner])
+        held = samples.points[own & self.held]
+        if in_strip.any() and len(held):
+            width = KDTree(held).query(samples.points[chosen[in_strip]])[0] / 2.0
+            whole = self.areas[samples.face[chosen[in_strip]]]
+            area[in_strip] = np.minimum(width * np.sqrt(lattice_area), whole)
+        return float(area.sum())
 
     def _are_minor(self, left: Ints) -> Bools:
         """Tell which of the samples that are not held are minor.
@@ -118,6 +156,12 @@ class _RegionCoverage(NamedTuple):
             is_small = self.measure(left[own]) < smallest
             minor[own] = is_small and _is_held_as_low(points[left[own]], held, near)
         return minor
+
+
+def _areas(corners: Floats) -> Floats:
+    """Return the areas (mm2) of triangles ``(n, 3, 3)``."""
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(cross, axis=1) / 2.0)
 
 
 def _patches(points: Floats, distance: float) -> Ints:

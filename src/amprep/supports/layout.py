@@ -4,13 +4,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from amprep.arrays import Bools, Bytes, Floats, Int64s, Ints, frozen
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Bytes, Floats, Int64s, Ints, frozen
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW
+from amprep.model.supports import CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW, REASONS
 from amprep.model.supports.edges import SupportEdges
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.supports.grid.red_squares import RedSquares
 from amprep.supports.grid.territory import PartTerritory
+
+_SAYS_LESS = (CONNECTOR_BLOCKED, NO_FREE_VOXEL_BELOW)
+_BY_PRECEDENCE = (*(reason for reason in REASONS if reason not in _SAYS_LESS), *_SAYS_LESS)
+"""Reasons in the order in which they count for a point between columns, those of unconnected squares first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +86,18 @@ class SupportLayout:
 
         The reason comes from the highest red square of the part that is in the point's column and not above the
         point. If the point is within the rise of the square, the reason is that of the square or, if the square is
-        connected, that the connector is blocked. Otherwise there is no free voxel below the point.
+        connected, that the connector is blocked. Otherwise there is no free voxel below the point. A point on a line of
+        the grid is in the columns on both sides: an unconnected square tells most, and no square at all least.
         """
+        sides = [
+            self._reasons_at(part, points + (dx, dy, 0.0))
+            for dx in (-CONTACT_TOLERANCE, CONTACT_TOLERANCE)
+            for dy in (-CONTACT_TOLERANCE, CONTACT_TOLERANCE)
+        ]
+        return tuple(min(own, key=_BY_PRECEDENCE.index) for own in zip(*sides, strict=True))
+
+    def _reasons_at(self, part: int, points: Floats) -> list[str]:
+        """Return the reason at each point from the column that contains it."""
         red_squares = np.flatnonzero(self.red.part == part)
         key = self._heights(self.red.square[red_squares])
         order = np.argsort(key)
@@ -96,7 +110,7 @@ class SupportLayout:
             within = voxel[i, 0] <= self.red.square[red, 0] + self.red.rise[red]
             if within and (self.red.square[red, 1:] == voxel[i, 1:]).all():
                 reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]
-        return tuple(reasons)
+        return reasons
 
     def _heights(self, square: Ints | Int64s) -> Int64s:
         """Return numbers that order squares ``(n, 3)`` by column, and upwards in each column."""

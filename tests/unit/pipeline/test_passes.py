@@ -16,7 +16,7 @@ import amprep
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.model import Part
-from amprep.model.supports import EXCEPTED
+from amprep.model.supports import CONNECTOR_BLOCKED, EXCEPTED
 from amprep.threemf import read_build
 
 CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
@@ -138,6 +138,17 @@ def test_verify_finds_an_excepted_region_that_is_not_listed(tmp_path):
     found = supported({**ARM, "support": False})
     silent = replace(found, build=replace(found.build, unsupported=()))
     assert [each.promise for each in violations(silent, tmp_path)] == ["coverage"]
+
+
+def test_an_overhang_smaller_than_the_gap_is_listed_and_no_support_is_made():
+    solid = (Manifold.cube([10, 10, 10]) + Manifold.cube([12, 12, 2]).translate([-1, -1, 0.5])).translate(
+        [40, 40, 0]
+    )
+    lip = Part("lip", mesh_of(solid), solid.volume())
+    settings = {"printer": "EOS M290", "supports.gap_mm": 2.0}
+    found = amprep.emit_cells(amprep.plan_supports(amprep.load(lip, settings=settings)))
+    assert found.build.supports == ()
+    assert {each.reason for each in found.build.unsupported} == {CONNECTOR_BLOCKED}
 
 
 def test_the_report_adds_the_figures_of_all_passes(tmp_path):

@@ -119,6 +119,8 @@ def test_a_ceiling_in_a_closed_room_is_listed_as_enclosed():
     assert set(plan.reasons) == {ENCLOSED}
     assert not plan.connected.any()
     assert plan.reason_at(0, np.array([[15.0, 15.2, 9.0]])) == (ENCLOSED,)
+    rim = np.array([[13.0, 15.2, 9.0], [19.0, 15.2, 9.0], [15.2, 19.0, 9.0], [19.0, 19.0, 9.0]])
+    assert plan.reason_at(0, rim) == (ENCLOSED,) * 4, "the ceiling is on one side of the lines of the grid"
 
 
 def test_an_overhang_right_above_material_is_listed_as_no_free_voxel_below():

@@ -11,12 +11,14 @@ from amprep.geometry.overhangs.regions import Overhangs
 class OverhangSamples(NamedTuple):
     """Points ``(n, 3)`` mm on overhangs, and the region ``(n,)`` of each.
 
-    `inner` marks the points of a lattice over the faces; each of them represents the same area in plan.
+    `inner` marks the points of a lattice over the faces; each of them represents the same area in plan. `face` is the
+    index of the face of each point among those of the overhangs, -1 on knife edges and tips.
     """
 
     points: Floats
     region: Int64s
     inner: Bools
+    face: Int64s
 
 
 def sample_overhangs(
@@ -49,9 +51,10 @@ def sample_overhangs(
         overhangs.tip_region,
     ]
     points = np.concatenate([inner, rims, edges, vertices[overhangs.tips]])
-    return OverhangSamples(
-        points, np.concatenate(region).astype(np.int64), np.arange(len(points)) < len(inner)
-    )
+    face = np.full(len(points), -1, np.int64)
+    face[: len(inner) + len(rims)] = np.concatenate([owner, rim_owner[rim]])
+    is_inner = np.arange(len(points)) < len(inner)
+    return OverhangSamples(points, np.concatenate(region).astype(np.int64), is_inner, face)
 
 
 def sample_segments(start: Floats, end: Floats, spacing: float) -> tuple[Floats, Int64s]:

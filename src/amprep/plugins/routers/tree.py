@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.arrays import Int64s
 from amprep.model.control import Progress, Stop, silent
+from amprep.model.counting import counted
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
@@ -49,12 +50,16 @@ def route_tree(
         best.adopt(flow)
     best.set_prices(_G, 0.0, problem.material)
     stop_reason = _improve(best, params, rng, stop, progress)
-    note = (
-        f"tree takes {best.material:.6g} mm3 of material: {_less(best.material, paths_material)} "
-        f"shortest-paths, {_less(best.material, flow_material)} min-cost-flow"
-    )
+    before, left = best.material, best.unrouted_count
     if stop_reason == "finished":
         stop_reason = best.escalate(stop, progress)
+    raised = left - best.unrouted_count
+    note = (
+        f"tree takes {before:.6g} mm3 of material{' before capacities are raised' if raised else ''}: "
+        f"{_less(before, paths_material)} shortest-paths, {_less(before, flow_material)} min-cost-flow"
+    )
+    if raised:
+        note += f"; with raised capacities {best.material:.6g} mm3 for {counted(raised, 'square')} more"
     return replace(best.plan(stop_reason), notes=(note,) if best.paths.routed.any() else ())
 
 

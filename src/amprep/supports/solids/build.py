@@ -217,11 +217,11 @@ class _SupportBuilder(NamedTuple):
     def drained_solid(self, group: int) -> "Manifold | None":
         """Return the solid of a group, with drain holes where the cell promises them; its pieces may float.
 
-        What is thinner than the least section is cut away.
+        What is thinner than the least section is cut away. None where walls, parts and borders leave nothing.
         """
         solid, diameter = solid_of(self.context, group, self.instances), self.instances.cells.hole
-        if solid is None:
-            return solid
+        if solid is None or solid.is_empty():
+            return None
         if diameter > 0.0:
             held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
             boxes = self.context.foot_boxes(group)
@@ -229,7 +229,8 @@ class _SupportBuilder(NamedTuple):
         if self.rules.least is None:
             return solid
         tip_height = self._tip_height()
-        return without_thin_rests(solid, self.context.obstacles.near(solid), self.rules.least, tip_height)
+        solid = without_thin_rests(solid, self.context.obstacles.near(solid), self.rules.least, tip_height)
+        return None if solid.is_empty() else solid
 
     def _tip_height(self) -> float:
         """Return the height (mm) below parts up to which connectors taper; 0 where they do not."""

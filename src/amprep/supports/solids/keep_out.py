@@ -38,6 +38,8 @@ class WallClearance:
         """Return a solid without its points that are nearer to a wall than the XY distance."""
         from manifold3d import Manifold, OpType
 
+        if solid.is_empty():
+            return solid
         points, triangles = arrays_of(solid)
         corners = points[triangles]
         taken = occupancy_of(corners.min(axis=1), corners.max(axis=1))

@@ -96,6 +96,14 @@ def test_a_support_that_stops_short_of_the_face_holds_nothing():
     assert judged(touching) == []
 
 
+def test_a_strip_that_only_samples_on_the_rim_meet_is_measured_and_is_not_minor():
+    almost = body(box((18.4, 20, 10.1), (0, 0, 0)))
+    (region,) = listed(almost, min_area_mm2=0.5)
+    assert region.points[:, 0].min() == 20.0
+    assert 0.1 * 20 <= region.measure <= 0.3 * 20
+    assert not region.minor
+
+
 def grid_of_posts(spacing, width=0.1):
     return [
         box((width, width, 10.1), (x, y, 0))

@@ -55,6 +55,24 @@ def test_four_columns_in_a_square_become_one_trunk():
     assert route("tree", task).objective <= 24
 
 
+def shaft():
+    """Nine red squares above a shaft of one square."""
+    voxels = np.zeros((12, 7, 7), np.uint8)
+    voxels[:4] = Voxel.CLOSED
+    voxels[:4, 3, 3] = Voxel.FREE
+    red = np.array([(11, y, x) for y in (2, 3, 4) for x in (2, 3, 4)])
+    voxels[tuple(red.T)] = Voxel.OCCUPIED
+    grid = Grid(np.zeros(3), 1.0, 1.0, voxels.shape)
+    return SupportProblem(grid, voxels, red, np.zeros(9), np.zeros(9), voxels[0] == Voxel.FREE)
+
+
+def test_its_note_tells_what_raised_capacities_take():
+    task = replace(shaft(), node_capacity=1, escalation="cut")
+    plan = route("tree", task)
+    (note,) = plan.notes
+    assert f"with raised capacities {material(task, plan):.6g} mm3 for" in note
+
+
 @examples(12)
 @given(st.integers(0, 100_000))
 def test_it_connects_as_many_as_the_exact_routers(seed):
