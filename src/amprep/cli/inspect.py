@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from amprep.cli.job import finish
-from amprep.cli.options import NoPlugins, Plugins, job_option, output_option, with_options
+from amprep.cli.options import NoPlugins, Plugins, ReadingOptions, job_option, output_option, with_options
 
 if TYPE_CHECKING:
     from amprep.report.inspection.record import InspectionRecord
 
 
 @dataclass(frozen=True, kw_only=True)
-class InspectionOptions:
+class InspectionOptions(ReadingOptions):
     """Options of the command that do not choose what is inspected."""
 
     printer: Annotated[
@@ -100,7 +100,9 @@ def _inspected(inputs: list[str], volumes: list[str], options: InspectionOptions
     from amprep.host import Host
     from amprep.job import apply_sets, job_of, override
 
-    job = apply_sets(override(job_of(inputs), {"printer": options.printer}), options.sets or [])
+    job = apply_sets(
+        override(job_of(inputs), {"printer": options.printer, **options.reading}), options.sets or []
+    )
     with Bars(Console(stderr=True, quiet=options.quiet)) as bars:
         with bars.stage("start"):
             from amprep import api

@@ -32,7 +32,29 @@ output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
 
 
 @dataclass(frozen=True, kw_only=True)
-class JobOptions:
+class ReadingOptions:
+    """Options of every command that reads meshes: `run`, `support`, `lattice` and `inspect`."""
+
+    strict: Annotated[
+        bool, job_option("--strict", help="Refuse 3MF files that break any rule of the specification.")
+    ] = False
+    unit: Annotated[
+        str | None,
+        job_option(
+            "--unit",
+            metavar="UNIT",
+            help="Unit of STL, OBJ, PLY and OFF files: millimetre (default), micron, centimetre, inch, foot or metre.",
+        ),
+    ] = None
+
+    @property
+    def reading(self) -> dict[str, Any]:
+        """The settings of reading that options change, by dotted keys; None where an option is not given."""
+        return {"reading.strict": self.strict or None, "reading.unit": self.unit}
+
+
+@dataclass(frozen=True, kw_only=True)
+class JobOptions(ReadingOptions):
     """Options of every command that takes a job: `run`, `support` and `lattice`."""
 
     cell: Annotated[
@@ -83,7 +105,12 @@ class JobOptions:
     @property
     def changes(self) -> dict[str, Any]:
         """The settings of the job that options change, by dotted keys; None where an option is not given."""
-        return {"cells.strategy": self.cell, "cells.lattice": self.lattice, "target": self.target}
+        return {
+            "cells.strategy": self.cell,
+            "cells.lattice": self.lattice,
+            "target": self.target,
+            **self.reading,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)

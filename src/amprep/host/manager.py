@@ -2,8 +2,9 @@
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, overload
 
 from amprep import typed
@@ -245,7 +246,11 @@ class Host:
         )
 
     def read(
-        self, path: Path, readers: Mapping[str, str], params: Mapping[str, Mapping[str, Any]]
+        self,
+        path: Path,
+        readers: Mapping[str, str],
+        params: Mapping[str, Mapping[str, Any]],
+        shared: Mapping[str, Any] = MappingProxyType({}),
     ) -> list[Part]:
         """Read one file with the reader of its suffix.
 
@@ -257,6 +262,8 @@ class Host:
             Suffix to name of the reader; other suffixes have their default reader.
         params
             Name of a reader to its parameters.
+        shared
+            Parameters of every reader that has parameters of these names; `params` take precedence.
 
         Raises
         ------
@@ -266,7 +273,10 @@ class Host:
             When the reader does not exist or fails, or its parameters are wrong.
         """
         reader = self.reader_for(path, readers)
-        return self.call(reader, path, params=self.params(reader, params.get(reader.offer.name, {})))
+        names = {each.name for each in fields(reader.offer.params)} if reader.offer.params else set()
+        own = {name: value for name, value in shared.items() if name in names}
+        own |= params.get(reader.offer.name, {})
+        return self.call(reader, path, params=self.params(reader, own))
 
     @property
     def suffixes(self) -> tuple[str, ...]:

@@ -116,6 +116,8 @@ class Part:
         None.
     notes
         Repairs and findings of the reader, one sentence each, for the user.
+    warnings
+        What is wrong with the file or doubtful, one sentence each; the first part of a file has those of the file.
     metadata
         Metadata of the file, ``(namespace, name) -> value``, kept unchanged.
     """
@@ -136,6 +138,7 @@ class Part:
     part_number: str = ""
     source: str = ""
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     metadata: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     @property

@@ -18,8 +18,8 @@ from amprep.materials.catalogue import densities_of
 from amprep.measures.filled_part import pockets_of
 from amprep.model import Appearance, CellRequest, Cells, Lattice, Mesh, Part, Progress, Region, Stop
 from amprep.pipeline.outputs import OutputFolder, safe_name
-from amprep.pipeline.reading import expand_inputs, read_all
-from amprep.pipeline.resolve import choose_cell
+from amprep.pipeline.reading import expand_inputs, read_all, warnings_about
+from amprep.pipeline.resolve import choose_cell, read_by
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.report.cutaway import draw_cut
 from amprep.report.infill import FilledPartRecord, InfillRecord, write_json
@@ -136,7 +136,7 @@ def fill_marked_regions(
         job.cells.powder_hole_mm,
         records,
         tuple(each.part.name for each in done if each.filled is None),
-        warnings=(*host.warnings, *_notes(done, job)),
+        warnings=(*host.warnings, *warnings_about([each.part for each in work]), *_notes(done, job)),
     )
     if options.dry_run:
         return replace(record, stages=clock.times)
@@ -154,7 +154,7 @@ def _check(options: LatticeOptions) -> None:
 
 def _read(job: Job, host: Host, options: LatticeOptions, progress: Progress) -> list[Part]:
     def read(path: Path) -> list[Part]:
-        return host.read(path, job.reading.readers, job.reading.params)
+        return read_by(host, path, job)
 
     files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], host.suffixes)
     return with_files(read_all(files, read, progress=progress), options.regions, read)

@@ -15,6 +15,7 @@ from amprep.model.part import Appearance, Part, Region, RegionKind
 from amprep.model.summary import Summarised
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
+from amprep.pipeline.unit_question import with_unit_question
 
 
 def expand_inputs(
@@ -84,6 +85,13 @@ def repair_part(part: Part, *, allow_surface: bool) -> Part:
         advice = "repair it, or use --allow-surface to accept it as a surface"
         raise MeshError(f"{_where(part)} is not a solid: {repaired.problem}; {advice}")
     return _with_mesh(part, repaired)
+
+
+def warnings_about(parts: Sequence[Part]) -> list[str]:
+    """Return the warnings of the parts with the names of their files."""
+    return [
+        f"{Path(part.source).name or part.name}: {warning}" for part in parts for warning in part.warnings
+    ]
 
 
 def with_unique_names(parts: Sequence[Part]) -> list[Part]:
@@ -227,6 +235,7 @@ def read_job(
         files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], resolved.host.suffixes)
         parts = read_all(files, resolved.read, allow_surface=allow_surface, progress=progress)
         parts += [repair_part(part, allow_surface=allow_surface) for part in more]
+        parts = [with_unit_question(part, job) for part in parts]
         parts = apply_part_settings(with_unique_names(parts), job)
         return LoadedParts(resolved, tuple(with_region_files(parts, job, resolved.read)))
 

@@ -21,7 +21,7 @@ from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
 from amprep.pipeline.packing.turning import blade_rules
-from amprep.pipeline.reading import LoadedParts
+from amprep.pipeline.reading import LoadedParts, warnings_about
 from amprep.pipeline.supporting import SupportedBuild, part_densities
 from amprep.report.record import (
     BuildRecord,
@@ -113,7 +113,7 @@ def run_record(
         packed_as=kind_of_volumes(item.volume for item in items),
         steps=packing.steps,
         excess=_excess(loaded, packed),
-        warnings=(*loaded.resolved.host.warnings, *left, *advice),
+        warnings=(*loaded.resolved.host.warnings, *warnings_about(loaded.parts), *left, *advice),
         notes=(
             *(f"{part.name}: {note}" for part in loaded.parts for note in part.notes),
             *loaded.notes,

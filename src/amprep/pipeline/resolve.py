@@ -61,7 +61,7 @@ class ResolvedJob:
 
     def read(self, path: Path) -> list[Part]:
         """Read one file with the reader that the job names for its suffix."""
-        return self.host.read(path, self.job.reading.readers, self.job.reading.params)
+        return read_by(self.host, path, self.job)
 
     def makers_for(self, part: Part) -> tuple[Chosen[VolumeMaker], ...]:
         """Return the volume makers for a part: those that it names, or else those of the job.
@@ -213,15 +213,18 @@ def _listed(host: Host, job: Job) -> Listed[CellEmitter]:
         return host.choose("cell", job.cells.strategy)
 
     def read(file: Path) -> Mesh:
-        return _one_mesh(host, file, job.reading.readers, job.reading.params)
+        return _one_mesh(host, file, job)
 
     found = read_cell(path, read)
     return Listed("cell", cell_offer(found.name, found.summary, found.cell), str(path))
 
 
-def _one_mesh(
-    host: Host, path: Path, readers: Mapping[str, str], params: Mapping[str, Mapping[str, Any]]
-) -> Mesh:
+def read_by(host: Host, path: Path, job: Job) -> list[Part]:
+    """Read one file as the ``[reading]`` section of a job says; see `amprep.host.Host.read`."""
+    return host.read(path, job.reading.readers, job.reading.params, job.reading.shared)
+
+
+def _one_mesh(host: Host, path: Path, job: Job) -> Mesh:
     """Return the one mesh in a file.
 
     Raises
@@ -229,7 +232,7 @@ def _one_mesh(
     InputError
         When the file cannot be read or holds several meshes.
     """
-    parts = host.read(path, readers, params)
+    parts = read_by(host, path, job)
     if len(parts) != 1:
         raise MeshError(f"{path}: expected one mesh, the cell, got {len(parts)}")
     return parts[0].mesh

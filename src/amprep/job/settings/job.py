@@ -14,6 +14,7 @@ from amprep.job.settings.supports import SupportSettings
 from amprep.materials.profile import MaterialProfile
 from amprep.model.build import Target
 from amprep.printers.catalogue import Printer
+from amprep.units import MILLIMETRES
 from amprep.validation import require
 
 
@@ -30,17 +31,37 @@ class InputSpec:
 
 @dataclass(frozen=True)
 class ReadingSettings:
-    """Names of readers by suffix, and parameters of readers by name."""
+    """How files are read.
 
+    Attributes
+    ----------
+    readers
+        Names of readers by suffix.
+    params
+        Parameters of readers by name.
+    strict
+        Whether files that break any rule of their format are refused.
+    unit
+        Unit of files whose format does not state one.
+    """
+
+    strict: bool = False
+    unit: str = "millimetre"
     readers: Mapping[str, Any] = field(default_factory=dict)
     params: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        require(self.unit in MILLIMETRES, f"unit must be one of {', '.join(MILLIMETRES)}", self.unit)
         for suffix, name in self.readers.items():
             valid = suffix.startswith(".") and suffix == suffix.lower() and isinstance(name, str)
             require(valid, "readers must map suffixes such as '.stl' to names of readers", {suffix: name})
         for name, table in self.params.items():
             require(isinstance(table, Mapping), "params must hold one table per reader", {name: table})
+
+    @property
+    def shared(self) -> Mapping[str, Any]:
+        """Parameters of every reader that has them; `params` take precedence."""
+        return {"strict": self.strict, "unit": self.unit}
 
 
 @dataclass(frozen=True, eq=False)

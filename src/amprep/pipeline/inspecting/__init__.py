@@ -10,6 +10,7 @@ from amprep.pipeline.inspecting.outputs import write_inspection
 from amprep.pipeline.inspecting.parts import describe_part
 from amprep.pipeline.inspecting.reading import read_for_inspection
 from amprep.pipeline.inspecting.volumes import makers_named, measure_volumes, warm_up
+from amprep.pipeline.reading import warnings_about
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.report.inspection.record import InspectedPart, InspectionRecord
@@ -75,7 +76,7 @@ def inspect_job(
         parts=tuple(found),
         clearance_mm=job.packing.clearance_mm,
         lift_mm=job.packing.lift_mm,
-        warnings=tuple(resolved.host.warnings),
+        warnings=(*resolved.host.warnings, *warnings_about([part for part, _ in read])),
     )
     if options.folder is not None:
         with clock.stage("report") as progress:

@@ -8,6 +8,7 @@ from amprep.job import apply_part_settings
 from amprep.model import Part, Progress
 from amprep.pipeline.reading import expand_inputs, repair_part, with_region_files, with_unique_names
 from amprep.pipeline.resolve import ResolvedJob
+from amprep.pipeline.unit_question import with_unit_question
 from amprep.report.inspection.record import InspectedFile
 
 _WITH_UNIT = {
@@ -55,6 +56,7 @@ def read_for_inspection(
         files.append(_file(path, read, resolved))
         for part in read:
             repaired, problem = _repaired(part)
+            repaired = with_unit_question(repaired, job)
             parts.append(replace(repaired, quantity=repaired.quantity * (count or 1)))
             problems.append(problem)
     parts = apply_part_settings(with_unique_names(parts), job)

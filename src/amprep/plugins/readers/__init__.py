@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from amprep.hookspecs import MeshReader, hookimpl
 from amprep.model.part import Part
+from amprep.plugins.readers.params import MeshParams, ThreemfParams
 from amprep.plugins.readers.step import StepParams
 
 amprep_api = 1
@@ -19,12 +19,14 @@ def amprep_mesh_readers() -> Iterable[MeshReader]:
         "3MF jobs: build items with quantity, colours, materials and metadata.",
         run=_read_3mf,
         suffixes=(".3mf",),
+        params=ThreemfParams,
     )
     yield MeshReader(
         "mesh",
-        "Mesh files: STL, OBJ, PLY, OFF in millimetres, GLB and glTF in metres.",
+        "Mesh files: STL, OBJ, PLY, OFF in millimetres or `unit`, GLB and glTF in metres.",
         run=_read_mesh,
         suffixes=(".stl", ".obj", ".ply", ".off", ".glb", ".gltf"),
+        params=MeshParams,
     )
     yield MeshReader(
         "step",
@@ -35,16 +37,16 @@ def amprep_mesh_readers() -> Iterable[MeshReader]:
     )
 
 
-def _read_3mf(path: Path, *, params: Any) -> list[Part]:  # noqa: ARG001 - the hook's signature
+def _read_3mf(path: Path, *, params: ThreemfParams) -> list[Part]:
     from amprep.threemf import read_parts
 
-    return read_parts(path)
+    return read_parts(path, strict=params.strict)
 
 
-def _read_mesh(path: Path, *, params: Any) -> list[Part]:  # noqa: ARG001 - the hook's signature
+def _read_mesh(path: Path, *, params: MeshParams) -> list[Part]:
     from amprep.plugins.readers.files import read_mesh_file
 
-    return read_mesh_file(path)
+    return read_mesh_file(path, params.scale)
 
 
 def _read_step(path: Path, *, params: StepParams) -> list[Part]:

@@ -26,10 +26,15 @@ class _Named(NamedTuple):
     triangles: Int64s
 
 
-def read_mesh_file(path: Path) -> list[Part]:
+def read_mesh_file(path: Path, scale: float = 1.0) -> list[Part]:
     """Return the parts of a mesh file: one part, or one per mesh of a scene with its transform applied.
 
     Vertices at equal positions are merged, because most of these formats repeat them.
+
+    Parameters
+    ----------
+    scale
+        Length in mm of the unit of formats that do not state theirs, which are all but glTF.
 
     Raises
     ------
@@ -41,16 +46,15 @@ def read_mesh_file(path: Path) -> list[Part]:
     if suffix == ".stl":
         corners, notes = read_stl(content, path)
         vertices, triangles = corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
-        return _parts([_Named(path.stem, vertices, triangles)], notes, path)
+        return _parts(_scaled([_Named(path.stem, vertices, triangles)], scale), notes, path)
     if suffix in (".glb", ".gltf"):
         return read_gltf(content, suffix, path, ("scaled from metres, the unit of glTF, to millimetres",))
     checks: dict[str, Callable[[bytes, Path], None]] = {".ply": check_ply, ".off": check_off}
     if suffix in checks:
         checks[suffix](content, path)
     meshes = _load(content, suffix[1:], path, **(_SPLIT if suffix == ".obj" else {}))
-    return _parts(
-        meshes[::-1] if suffix == ".obj" else meshes, (), path
-    )  # trimesh returns objects in reverse order
+    in_order = meshes[::-1] if suffix == ".obj" else meshes  # trimesh returns objects in reverse order
+    return _parts(_scaled(in_order, scale), (), path)
 
 
 def read_gltf(content: bytes, suffix: str, path: Path, notes: tuple[str, ...]) -> list[Part]:
@@ -69,8 +73,11 @@ def read_gltf(content: bytes, suffix: str, path: Path, notes: tuple[str, ...]) -
     """
     check_gltf(content, path, binary=suffix == ".glb")
     meshes = _load(content, suffix[1:], path, merge_primitives=True)
-    scaled = [mesh._replace(vertices=mesh.vertices * _METRE) for mesh in meshes]
-    return _parts(scaled, notes, path)
+    return _parts(_scaled(meshes, _METRE), notes, path)
+
+
+def _scaled(meshes: list[_Named], scale: float) -> list[_Named]:
+    return meshes if scale == 1.0 else [mesh._replace(vertices=mesh.vertices * scale) for mesh in meshes]
 
 
 def _load(content: bytes, kind: str, path: Path, **options: Any) -> list[_Named]:

@@ -29,6 +29,21 @@ _CHUNK = 1 << 20
 _XML = (".model", ".rels", ".config", ".xml")
 
 
+class Contents(NamedTuple):
+    """The entries of a package as they are in the file.
+
+    Attributes
+    ----------
+    entries
+        Name -> contents of each entry; the XML among them is well-formed and has no document type definition.
+    outlines
+        Name -> outline of each model part.
+    """
+
+    entries: dict[str, bytes]
+    outlines: dict[str, Outline]
+
+
 class Package(NamedTuple):
     """A package that has been scanned.
 
@@ -43,8 +58,6 @@ class Package(NamedTuple):
         may be empty.
     unprintable
         Indices of the build items that are marked as not printable.
-    notes
-        One sentence for each repair.
     painted
         (model part, object id) -> supports painted on the object.
     """
@@ -53,27 +66,26 @@ class Package(NamedTuple):
     prusaslicer_config: bytes
     bambu_config: bytes
     unprintable: frozenset[int]
-    notes: tuple[str, ...]
     painted: dict[tuple[str, int], PaintedSupports]
 
 
 def open_package(path: Path) -> Package:
-    """Read a 3MF package; refuse a hostile or broken one, and repair a careless one.
+    """Read a 3MF package; see `read_contents` and `package_of`."""
+    return package_of(read_contents(path), path)
 
-    The repair removes relationships whose target is missing or outside the package. PrusaSlicer's command
-    line, for example, writes a relationship to a thumbnail that it does not make.
+
+def package_of(contents: Contents, path: Path) -> Package:
+    """Return the package of contents, without relationships whose target is missing or outside the package.
+
+    PrusaSlicer's command line, for example, writes a relationship to a thumbnail that it does not make.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is not a zip file, exceeds a limit, or contains something that no 3MF file
-        needs.
+        If there is no model, if objects contain themselves, or for too many instances.
     """
-    entries, outlines = _inflate(path)
-    notes: list[str] = []
-    for name in [name for name in entries if name.lower().endswith(".rels")]:
-        entries[name], dropped = _without_dangling(name, entries)
-        notes += [f"removed a relationship to {target!r}, which is not in the package" for target in dropped]
+    entries, outlines = contents
+    entries |= {name: _without_dangling(name, entries) for name in entries if name.lower().endswith(".rels")}
     if not outlines:
         raise InputError(f"{path}: expected a 3MF file, found no 3D model in the package; export it again")
     check_instances(outlines, str(path))
@@ -88,13 +100,19 @@ def open_package(path: Path) -> Package:
         prusaslicer_config=entries.get(PRUSASLICER_CONFIG, b""),
         bambu_config=entries.get(BAMBU_CONFIG, b""),
         unprintable=frozenset(root.unprintable),
-        notes=tuple(notes),
         painted=painted,
     )
 
 
-def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:
-    """Inflate every entry within the size limit, scan XML entries and return the outlines of model parts."""
+def read_contents(path: Path) -> Contents:
+    """Inflate every entry within the size limit and scan XML entries.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not a zip file, exceeds a limit, or contains something that no 3MF file
+        needs.
+    """
     entries: dict[str, bytes] = {}
     outlines: dict[str, Outline] = {}
     try:
@@ -113,7 +131,7 @@ def _inflate(path: Path) -> tuple[dict[str, bytes], dict[str, Outline]]:
         raise InputError(f"{path}: not a 3MF package or a damaged one ({error}); export it again") from error
     except (NotImplementedError, RuntimeError, ValueError) as error:
         raise InputError(f"{path}: a 3MF package may not use this kind of zip file ({error})") from error
-    return entries, outlines
+    return Contents(entries, outlines)
 
 
 def _checked(infos: list[zipfile.ZipInfo], path: Path) -> list[zipfile.ZipInfo]:
@@ -167,8 +185,8 @@ def _root_model(entries: dict[str, bytes]) -> str:
     return ""
 
 
-def _without_dangling(name: str, entries: dict[str, bytes]) -> tuple[bytes, list[str]]:
-    """Remove relationships to targets that are not in the package; return the new part and those targets."""
+def _without_dangling(name: str, entries: dict[str, bytes]) -> bytes:
+    """Return a part of relationships with different ids, without those to targets that are not in the package."""
     from lxml import etree
 
     present = {entry.lower() for entry in entries}
@@ -179,12 +197,15 @@ def _without_dangling(name: str, entries: dict[str, bytes]) -> tuple[bytes, list
         if each.get("TargetMode") == "External"
         or _resolved(name, each.get("Target", "")).lower() not in present
     ]
-    if not dangling:
-        return entries[name], []
+    ids = [each.get("Id") for each in relationships.iterchildren("{*}Relationship")]
+    if not dangling and len(set(ids)) == len(ids):
+        return entries[name]
     for each in dangling:
         relationships.remove(each)
-    content = etree.tostring(relationships, xml_declaration=True, encoding="UTF-8")
-    return content, [each.get("Target", "") for each in dangling]
+    for number, each in enumerate(relationships.iterchildren("{*}Relationship")):
+        each.set("Id", f"rel{number}")
+    content: bytes = etree.tostring(relationships, xml_declaration=True, encoding="UTF-8")
+    return content
 
 
 def _resolved(relationships: str, target: str) -> str:

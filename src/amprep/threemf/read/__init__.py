@@ -13,13 +13,15 @@ from amprep.errors import InputError
 from amprep.model.counting import counted
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region
-from amprep.threemf.package.open import Package, open_package
-from amprep.threemf.read.arrays import LoadedModel, load_model, unit_of
+from amprep.threemf.package.open import Package, package_of, read_contents
+from amprep.threemf.read.arrays import LoadedModel, unit_of
 from amprep.threemf.read.colours import appearance_of
 from amprep.threemf.read.job_metadata import foreign_metadata, parse_job_metadata
 from amprep.threemf.read.objects import FlattenedItem, Flattener
 from amprep.threemf.read.separate_regions import SeparateRegion, assign_regions
 from amprep.threemf.read.slicer_config import cura_role, parse_bambu_config, parse_prusaslicer_config
+from amprep.threemf.read.tolerance import load_tolerantly, refuse_broken, warnings_of
+from amprep.threemf.rules import find_broken_rules
 from amprep.threemf.transforms import row_matrix
 
 if TYPE_CHECKING:
@@ -40,46 +42,42 @@ class _ItemRequest(NamedTuple):
     metadata: dict[tuple[str, str], str]
 
 
-def read_parts(path: Path) -> list[Part]:
+def read_parts(path: Path, *, strict: bool = False) -> list[Part]:
     """Return the parts in the build of a 3MF file; their meshes are not yet validated and repaired.
 
     The linear map of a build item is applied to the mesh, and its translation becomes a position of the part.
-    Items of the same object with the same map become one part. Components are joined into one mesh. A file
-    that lib3mf refuses is read by trimesh.
+    Items of the same object with the same map become one part. Components are joined into one mesh. The first part
+    has a warning for each rule of the specification that the file breaks.
+
+    Parameters
+    ----------
+    strict
+        Whether a file that breaks any rule is refused, instead of one that breaks a rule on which geometry, units or
+        placement depend.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is hostile, or its build contains nothing that can be printed.
+        If the file cannot be read, is hostile, breaks such a rule, or its build contains nothing that can be printed.
     """
     from lib3mf import Lib3MF
 
-    package = open_package(path)
-    loaded = _load(package.data)
-    if isinstance(loaded, str):
-        from amprep.threemf.read.fallback import read_by_trimesh
-
-        return read_by_trimesh(package, path, refusal=loaded)
+    contents = read_contents(path)
+    broken = find_broken_rules(contents.entries)
+    refuse_broken(broken, path, strict=strict)
+    package = package_of(contents, path)
+    loaded, complaint = load_tolerantly(package.data, path)
     try:
-        return _parts(loaded, package, path)
+        parts = _parts(loaded, package, path)
     except (Lib3MF.ELib3MFException, UnicodeDecodeError) as error:
         raise InputError(f"{path}: lib3mf cannot read the contents of this file ({error})") from error
-
-
-def _load(data: bytes) -> LoadedModel | str:
-    """Return the model, or the reason why lib3mf refuses it."""
-    from lib3mf import Lib3MF
-
-    try:
-        return load_model(data)
-    except Lib3MF.ELib3MFException as error:
-        return str(error).partition(": ")[2] or str(error)
+    return [replace(parts[0], warnings=warnings_of(broken, complaint)), *parts[1:]]
 
 
 def _parts(loaded: LoadedModel, package: Package, path: Path) -> list[Part]:
     """Return one part for each different build item; the first part carries the notes about the file."""
     unit, scale = unit_of(loaded.model)
-    notes = [*package.notes, *_relevant(loaded.warnings)]
+    notes = _relevant(loaded.warnings)
     if scale != 1.0:
         notes.append(f"scaled from {unit} to millimetres")
     if package.unprintable:
@@ -184,8 +182,9 @@ def _scaled(region: Region, scale: float) -> Region:
 
 
 def _relevant(warnings: tuple[str, ...]) -> list[str]:
-    """Return lib3mf's warnings, without those about foreign attributes and missing UUIDs."""
-    relevant = [text for text in warnings if not re.search("namespace|uuid", text, re.IGNORECASE)]
+    """Return lib3mf's warnings, without those on foreign attributes, UUIDs, and what the rules have reported."""
+    reported = "namespace|uuid|model metadata"
+    relevant = [text for text in warnings if not re.search(reported, text, re.IGNORECASE)]
     return [f"lib3mf warns: {text}" for text in relevant[:_MOST_WARNINGS]]
 
 

@@ -311,22 +311,29 @@ THUMBNAIL = (
 )
 
 
-def test_a_relationship_to_a_missing_thumbnail_is_removed_with_a_note(tmp_path):
+def test_a_relationship_to_a_missing_thumbnail_gives_a_warning_with_the_rule(tmp_path):
     path = pack(tmp_path / "a.3mf", box_object(), '<item objectid="1"/>', rels=relations(THUMBNAIL))
     (part,) = settled(path)
-    assert part.notes == ("removed a relationship to '/Metadata/thumbnail.png', which is not in the package",)
+    assert part.notes == ()
+    (warning,) = part.warnings
+    assert "3MF core 2.1.1: the target of a relationship must be in the package" in warning
 
 
-def test_a_file_that_lib3mf_refuses_is_read_by_trimesh_with_a_note(tmp_path):
-    path = pack(tmp_path / "a.3mf", box_object(more='name="box"'), '<item objectid="1"/>', unit="inch")
-    with zipfile.ZipFile(path) as archive:
-        contents = {name: archive.read(name) for name in archive.namelist() if name != "_rels/.rels"}
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in contents.items():
-            archive.writestr(name, content)
-    (part,) = settled(path)
+def test_a_file_that_lib3mf_refuses_for_its_materials_is_read_without_them(tmp_path):
+    """Units, placements, metadata and names are as in a file without faults."""
+    groups = (
+        '<basematerials id="2"><base name="x" displaycolor="#FF0000"/></basematerials>'
+        '<m:colorgroup id="3"><m:color color="#00FF00"/></m:colorgroup>'
+        '<m:multiproperties id="4" pids="2 9"><m:multi pindices="0 0"/></m:multiproperties>'
+    )
+    box = box_object(more='name="box" pid="4" pindex="0"', inside=wishes(quantity=3))
+    build = '<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 5 6 7"/>'
+    (part,) = settled(pack(tmp_path / "a.3mf", groups + box, build, unit="inch"))
+    assert (part.name, part.quantity, part.appearance.colour) == ("box", 3, None)
     assert part.volume_mm3 == pytest.approx(6 * 25.4**3)
-    assert "read by trimesh" in part.notes[0]
+    assert part.positions[0] == pytest.approx(np.array([5, 6, 7]) * 25.4)
+    assert any("3MF materials 5" in warning for warning in part.warnings)
+    assert any("read without colours and materials" in warning for warning in part.warnings)
 
 
 def test_objects_in_another_part_of_the_package_are_found(tmp_path):
