@@ -41,6 +41,8 @@ def main() -> NoReturn:
     """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
     debug = "--debug" in sys.argv
     interruption.watch()
+    # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from amprep.cli.app import app
 

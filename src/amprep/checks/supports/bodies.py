@@ -157,7 +157,9 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
         lowest[volume <= NEGLIGIBLE_VOLUME] = 0.0
     if build.settings.rules.grounding == "anywhere" and (lowest > TOLERANCE).any():
         held = [build.parts[index] for index in body.support.parts]
-        on_part = _rest_on(points, held, build.settings.overlap)
+        in_air = np.unique(triangles[lowest[shell] > TOLERANCE])
+        on_part = np.zeros(len(points), np.bool_)
+        on_part[in_air] = _rest_on(points[in_air], held, build.settings.overlap)
         lowest[shell[on_part[triangles].any(axis=1)]] = 0.0
     floating = int((lowest > TOLERANCE).sum())
     if not floating:

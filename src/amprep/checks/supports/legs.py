@@ -112,16 +112,15 @@ def _chains(slices: Slices) -> list[Int64s]:
 
 def _long_enough(slices: Slices, chains: list[Int64s], limit: float, cell: float) -> list[Int64s]:
     """Return the chains that may be legs: longer than a cell, and long for their least width."""
-    if not chains:
+    ends = np.array([(chain[0], chain[-1]) for chain in chains], np.int64).reshape(-1, 2)
+    length = np.diff(slices.heights[slices.plane[ends]], axis=1)[:, 0]
+    high = np.flatnonzero(length > cell)
+    if not len(high):
         return []
-    starts = np.cumsum([0, *(len(chain) for chain in chains[:-1])])
-    contours = np.concatenate(chains)
-    height = slices.heights[slices.plane[contours]]
-    ends = np.append(starts[1:], len(contours)) - 1
-    length = height[ends] - height[starts]
-    width = np.minimum.reduceat(slices.width[contours], starts)
-    long = (length > cell) & (length > limit * _GRANT * width)
-    return [chains[row] for row in np.flatnonzero(long)]
+    own = [chains[row] for row in high]
+    starts = np.cumsum([0, *(len(chain) for chain in own[:-1])])
+    width = np.minimum.reduceat(slices.widths_of(np.concatenate(own)), starts)
+    return [own[row] for row in np.flatnonzero(length[high] > limit * _GRANT * width)]
 
 
 def _beside_braces(slices: Slices, chain: Int64s, longest: float) -> Bools:
@@ -145,7 +144,7 @@ def _girths(slices: Slices, chain: Int64s) -> Floats:
 
 def _worst(slices: Slices, chain: Int64s) -> Leg:
     """Return the stretch of a chain that is longest for its width."""
-    heights, widths = slices.heights[slices.plane[chain]], slices.width[chain]
+    heights, widths = slices.heights[slices.plane[chain]], slices.widths_of(chain)
     first, last, best = 0, 0, 0.0
     for width in np.unique(np.round(widths, 2)) + 0.005:
         for own in _stretches(heights, widths, width):

@@ -32,8 +32,6 @@ class Slices:
         ``(c,)`` plane of each contour.
     area
         ``(c,)`` mm2, signed: positive for outer contours, negative for holes.
-    width
-        ``(c,)`` mm, least width of the convex hull.
     points, first
         ``(n, 2)`` mm, points of all contours, those of contour c from ``first[c]`` up to ``first[c + 1]``.
     above
@@ -44,7 +42,6 @@ class Slices:
     heights: Floats
     plane: Int64s
     area: Floats
-    width: Floats
     points: Floats
     first: Int64s
     above: Int64s
@@ -53,6 +50,13 @@ class Slices:
         """Return the points of a contour, ``(n, 3)`` mm."""
         own = self.points[self.first[contour] : self.first[contour + 1]]
         return np.hstack([own, np.full((len(own), 1), self.heights[self.plane[contour]])])
+
+    def widths_of(self, contours: Int64s) -> Floats:
+        """Return the least widths of the convex hulls of some contours, ``(k,)`` mm."""
+        count = self.first[contours + 1] - self.first[contours]
+        starts = np.cumsum(count) - count
+        rows = np.arange(int(count.sum())) + np.repeat(self.first[contours] - starts, count)
+        return _widths(self.points[rows], starts)
 
 
 def slices_of(mesh: Mesh, heights: Floats) -> Slices:
@@ -86,7 +90,7 @@ def slices_of(mesh: Mesh, heights: Floats) -> Slices:
     slabs = planes.between(len(heights))
     component = slabs.components(pairs, crossed.between(len(heights)))
     above = _above(slabs, component, triangle, plane, contour, area > 0.0, len(heights))
-    return Slices(heights, own_plane, area, _widths(down, starts[:-1]), down, starts, above)
+    return Slices(heights, own_plane, area, down, starts, above)
 
 
 class _SharedEdges(NamedTuple):

@@ -190,13 +190,14 @@ def openness_at(
     """
     height, width = depth.shape
     here, closed, seen = depth[row, column], 0.0, 0
-    own, reach = openness.offsets[2 * (row & 1) + (column & 1)], openness.reach
-    for k in range(own.shape[0]):
-        i, j = row + own[k, 0], column + own[k, 1]
+    spiral, offsets, reach = 2 * (row & 1) + (column & 1), openness.offsets, openness.reach
+    for k in range(offsets.shape[1]):
+        down, right = offsets[spiral, k, 0], offsets[spiral, k, 1]
+        i, j = row + down, column + right
         if i < 0 or j < 0 or i >= height or j >= width:
             continue
         seen += 1
-        rise = here + slope_y * own[k, 0] + slope_x * own[k, 1] - depth[i, j]
+        rise = here + slope_y * down + slope_x * right - depth[i, j]
         if rise > 0.02 * reach:
             closed += min(1.0, rise / (0.35 * reach)) * min(1.0, reach / rise)
     return 1.0 - closed / max(seen, 1)
@@ -244,6 +245,12 @@ def outline_at(
     return found
 
 
+@njit(inline="always")
+def _to_multiple(value: float, step: float) -> float:
+    """Return the distance of a value from the nearest multiple of a step."""
+    return abs(value - step * np.floor(value / step + 0.5))
+
+
 @njit(cache=True)
 def plate_tone(x: float, y: float, plate: PlateShape) -> float:
     """Return the tone of the plate at a point: 1, darker on its edge and on lines every 10 and 50 mm; negative outside.
@@ -264,11 +271,9 @@ def plate_tone(x: float, y: float, plate: PlateShape) -> float:
         return -1.0
     if inside < 3.0 * pixel:
         return 0.35
-    to_ten = min(abs(x - 10.0 * np.round(x / 10.0)), abs(y - 10.0 * np.round(y / 10.0)))
-    to_fifty = min(abs(x - 50.0 * np.round(x / 50.0)), abs(y - 50.0 * np.round(y / 50.0)))
-    if to_fifty < 1.0 * pixel:
+    if min(_to_multiple(x, 50.0), _to_multiple(y, 50.0)) < 1.0 * pixel:
         return 0.60
-    return 0.82 if to_ten < 0.7 * pixel else 1.0
+    return 0.82 if min(_to_multiple(x, 10.0), _to_multiple(y, 10.0)) < 0.7 * pixel else 1.0
 
 
 @njit(inline="always")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import Bytes, Float32s, Floats, Int64s, Ints
+from amprep.arrays import Bools, Bytes, Float32s, Floats, Int64s, Ints
 from amprep.model import BuildVolume
 from amprep.report.picture.camera import Camera, box_corners, fitted, view_axes
 from amprep.report.picture.scene import ColouredMesh, TriangleScene, assemble, linear, unit_normals
@@ -79,9 +79,19 @@ def _drawn_marks(marks: Sequence[ColouredMesh], camera: Camera, size: tuple[int,
         buffer = _drawn(np.empty((0, 3)), np.empty((0, 3), np.int32), camera, size)
         return DrawnMarks(buffer, np.empty((0, 3), np.float32))
     scene = assemble(list(marks))
-    facing = -unit_normals(scene.vertices, scene.triangles) @ camera.axes[2]
-    tones = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * scene.colours
-    return DrawnMarks(_drawn(scene.vertices, scene.triangles, camera, size), tones.astype(np.float32))
+    buffer = _drawn(scene.vertices, scene.triangles, camera, size)
+    seen = _seen(buffer, len(scene.triangles))
+    facing = -unit_normals(scene.vertices, scene.triangles[seen]) @ camera.axes[2]
+    tones = np.zeros((len(scene.triangles), 3), np.float32)
+    tones[seen] = (0.5 + 0.5 * np.maximum(facing, 0.0))[:, None] * scene.colours[seen]
+    return DrawnMarks(buffer, tones)
+
+
+def _seen(buffer: "DepthBuffer", count: int) -> Bools:
+    """Tell which of `count` triangles are the nearest ones at some pixel."""
+    seen = np.zeros(count, np.bool_)
+    seen[buffer.ids[buffer.ids >= 0]] = True
+    return seen
 
 
 def _sun(scene: TriangleScene, camera: Camera) -> "Sun":

@@ -28,7 +28,7 @@ def test_areas_and_numbers_of_contours_are_those_of_manifold3d(seed, step):
 
 def test_widths_are_those_of_the_hull():
     slices = slices_of(mesh_of(box((7, 2, 5), (0, 0, 0)).rotate((0, 0, 30))), np.array([1.0, 2.0]))
-    assert slices.width == pytest.approx([2.0, 2.0], rel=0.01)
+    assert slices.widths_of(np.arange(2)) == pytest.approx([2.0, 2.0], rel=0.01)
 
 
 def test_a_contour_follows_another_only_where_neither_forks():
