@@ -1,5 +1,7 @@
 """Build the closed meshes of connectors below the overhangs in their columns."""
 
+from itertools import count
+
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, MeshArrays
@@ -20,7 +22,8 @@ _SAMPLES = 64
 # supported, and enters it by the overlap.
 # 1. Columns in which no other face is below a supported one (nearly all of them) need no Boolean: the prisms below
 #    the patches are one closed mesh per connected surface (`prisms_below`). Surfaces that only touch in plan stay
-#    apart, because manifold3d simplifies badly where walls of two prisms coincide.
+#    apart, because manifold3d simplifies badly where walls of two prisms coincide. Surfaces that are not in
+#    neighbouring squares go into one mesh (`_colour_surfaces`), so that there are few meshes to read and unite.
 # 2. In the other columns manifold3d subtracts the space above the obstructing patches from the space below the
 #    supported ones. The top of that space is higher than every connector.
 # 3. A column with very many patches, above a finely tessellated part, would take that Boolean too long; patches that
@@ -42,7 +45,14 @@ def find_below(supported: Patches, surface: Patches) -> Bools:
 
 
 def connect(
-    supported: Patches, surface: Patches, *, base: Floats, top: Floats, overlap: float, own: Bools
+    supported: Patches,
+    surface: Patches,
+    *,
+    square: Int64s,
+    base: Floats,
+    top: Floats,
+    overlap: float,
+    own: Bools,
 ) -> list[MeshArrays]:
     """Fill columns from their base up to the supported faces; where another face is below one, up to that face.
 
@@ -52,6 +62,8 @@ def connect(
         Overhangs in the columns.
     surface
         All faces of all parts in the columns that point down, supported or not.
+    square
+        ``(m, 2)`` indices y, x of the square of each column.
     base, top
         ``(m,)`` mm, height at which the connector of each column begins, and a height above all connectors.
     overlap
@@ -63,8 +75,7 @@ def connect(
     Returns
     -------
     meshes
-        Closed meshes that may touch: one per connected surface over unobstructed columns, and one per obstructed
-        column.
+        Closed meshes that may touch: a few over all unobstructed columns, and one per obstructed column.
     """
     rise = np.where(own, overlap, -overlap)
     supported, below = _cull_hidden(supported, surface, find_below(supported, surface), overlap, rise)
@@ -72,10 +83,10 @@ def connect(
     covered = np.diff(obstructing.of_column) > 0
     free = supported.chosen(~covered[supported.owner[:, 0]])
     meshes = []
-    surface_of = label_surfaces(free)
-    for label in range(int(surface_of.max(initial=-1)) + 1):
-        connected = free.chosen(surface_of == label)
-        meshes.append(split_nonmanifold_edges(*prisms_below(connected, base[connected.owner[:, 0]], overlap)))
+    colour = _colour_surfaces(label_surfaces(free), free.owner[:, 0], square)
+    for each in range(int(colour.max(initial=-1)) + 1):
+        apart = free.chosen(colour == each)
+        meshes.append(split_nonmanifold_edges(*prisms_below(apart, base[apart.owner[:, 0]], overlap)))
     for column in np.flatnonzero(covered).tolist():
         space = union(list(solids_between(*supported.in_column(column), overlap, base[column])))
         first, last = obstructing.of_column[column : column + 2]
@@ -105,6 +116,38 @@ def label_surfaces(patches: Patches, kind: Int64s | None = None) -> Int64s:
     graph = coo_array((np.ones(len(edge), np.int8), (patch, count + edge)), shape=(count + edges,) * 2)
     label = connected_components(graph, directed=False)[1][:count]
     return np.asarray(np.unique(label, return_inverse=True)[1], np.int64)
+
+
+def _colour_surfaces(surface: Int64s, column: Int64s, square: Int64s) -> Int64s:
+    """Colour surfaces so that no two with one colour are in one square or in neighbouring ones.
+
+    Parameters
+    ----------
+    surface, column
+        ``(n,)`` surface and column of each patch.
+    square
+        ``(m, 2)`` indices y, x of the square of each column.
+
+    Returns
+    -------
+    colour
+        ``(n,)`` colour of each patch: the first that is free for its surface.
+    """
+    wide = int(square[:, 1].max(initial=0)) + 3
+    place = square[column] @ np.array([wide, 1])
+    around = (np.arange(-1, 2)[:, None] * wide + np.arange(-1, 2)).ravel().tolist()
+    taken: dict[int, set[int]] = {}
+    colour = np.zeros(int(surface.max(initial=-1)) + 1, np.int64)
+    squares: list[set[int]] = [set() for _ in colour]
+    for each, at in zip(surface.tolist(), place.tolist(), strict=True):
+        squares[each].add(at)
+    for each, own in enumerate(squares):
+        used: set[int] = set().union(*(taken.get(at + step, ()) for at in own for step in around))
+        free = next(number for number in count() if number not in used)
+        colour[each] = free
+        for at in own:
+            taken.setdefault(at, set()).add(free)
+    return np.asarray(colour[surface])
 
 
 def _cull_hidden(

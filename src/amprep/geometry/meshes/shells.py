@@ -47,8 +47,9 @@ def label_shells(triangles: Int64s, vertex_count: int) -> tuple[int, Int64s]:
     start, end = triangles[:, [0, 1]].T.ravel(), triangles[:, [1, 2]].T.ravel()
     graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(vertex_count, vertex_count))
     _, label = connected_components(graph.tocsr(), directed=False)
-    shells, of_triangle = np.unique(label[triangles[:, 0]], return_inverse=True)
-    return len(shells), of_triangle.astype(np.int64)
+    used = np.zeros(len(label), np.bool_)  # components of vertices without a triangle do not count
+    used[label[triangles[:, 0]]] = True
+    return int(used.sum()), (np.cumsum(used) - 1)[label[triangles[:, 0]]]
 
 
 def measure_shells(vertices: Floats, triangles: Int64s) -> Shells:

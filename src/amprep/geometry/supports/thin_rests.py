@@ -1,7 +1,7 @@
 """Find what is too thin in a horizontal section of a solid, from the narrow ends of its outline."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -48,12 +48,49 @@ _SPECK = 1e-3
 # where the outline tells that something may be thin.
 # 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees.
 # 2. In a square around each narrow end, the rest is what discs of the least width, grown by the reach of corners, do
-#    not cover. Near the border of the square, which cuts the region, nothing is judged.
-# 3. Where the rest is cut away, the next narrow end of a long fin appears; so steps 1 and 2 are repeated.
+#    not cover. Near the border of the square, which cuts the region, nothing is judged. Only the outlines whose boxes
+#    meet the square are cut to it: no other outline encloses a point of it.
+# 3. Where the rest is cut away, the next narrow end of a long fin appears; so steps 1 and 2 are repeated there.
+
+
+class Contours(NamedTuple):
+    """The contours of a region.
+
+    Attributes
+    ----------
+    contours
+        Points ``(n, 2)`` mm of each, the region to their left.
+    low, high
+        ``(k, 2)`` mm, corners of their boxes.
+    """
+
+    contours: list[Floats]
+    low: Floats
+    high: Floats
+
+    def inside(self, low: Floats, high: Floats) -> "CrossSection":
+        """Return the region inside the union of rectangles with the corners ``(n, 2)`` mm."""
+        from manifold3d import CrossSection, FillRule
+
+        meets = np.all((self.low[:, None] < high) & (self.high[:, None] > low), axis=2)
+        chosen = [self.contours[each] for each in np.flatnonzero(np.any(meets, axis=1)).tolist()]
+        if not chosen:
+            return CrossSection()
+        boxes = union_of([box(*each) for each in zip(low, high, strict=True)])
+        return CrossSection(chosen, FillRule.Positive) ^ boxes
+
+
+def contours_of(region: "CrossSection") -> Contours:
+    """Return the outlines of a region, simplified by at most 0.003 mm."""
+    contours = [np.asarray(contour) for contour in region.simplify(_SMOOTH).to_polygons()]
+    if not contours:
+        return Contours([], np.empty((0, 2)), np.empty((0, 2)))
+    points, first = np.concatenate(contours), np.cumsum([0, *map(len, contours[:-1])])
+    return Contours(contours, np.minimum.reduceat(points, first), np.maximum.reduceat(points, first))
 
 
 def find_thin_rests(
-    region: "CrossSection", width: float, area: float, is_kept: "Callable[[CrossSection], bool]"
+    region: Contours, width: float, area: float, is_kept: "Callable[[CrossSection], bool]"
 ) -> "list[CrossSection]":
     """Return the pieces of a section that are thinner than a width, and whole pieces that are smaller than an area.
 
@@ -67,20 +104,23 @@ def find_thin_rests(
         Tells whether a piece may stay though it is thin.
     """
     found: list[CrossSection] = []
-    ends = narrow_ends(region, width, area)
+    whole, ends = region, narrow_ends(region, width, area)
     for _ in range(_ROUNDS):
         cut = _rests_at(region, ends, width, area, is_kept) if len(ends) else []
         if not cut:
             break
         found += cut
-        region -= union_of(cut).offset(_SMOOTH)
+        low, high = bounds_of(cut)
+        around = 2.0 * _AROUND * width
+        left = whole.inside(low - around, high + around) - union_of(found).offset(_SMOOTH)
+        region = contours_of(left)
         ends = narrow_ends(region, width, area)
-        ends = ends[_near(ends, cut, width)]
+        ends = ends[_are_in(ends, low - width, high + width)]
     return found
 
 
 def _rests_at(
-    region: "CrossSection",
+    region: Contours,
     ends: Floats,
     width: float,
     area: float,
@@ -94,7 +134,7 @@ def _rests_at(
         if len(seen) and (np.abs(seen - end) < half / 2.0).all(axis=1).any():
             continue
         seen = np.concatenate([seen, end[None]])
-        local = region ^ box(end - half, end + half)
+        local = region.inside((end - half)[None], (end + half)[None])
         judged = half - _BORDER * width
         thin = _beyond_discs(local, width) ^ box(end - judged, end + judged)
         rests = [rest for rest in thin.decompose() if rest.area() > _SPECK] if thin.area() > _SPECK else []
@@ -114,7 +154,7 @@ def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
     return region - discs.offset((0.5 + _CORNER) * width, JoinType.Round, 2.0, _SEGMENTS)
 
 
-def narrow_ends(region: "CrossSection", width: float, area: float = 0.0) -> Floats:
+def narrow_ends(region: Contours, width: float, area: float = 0.0) -> Floats:
     """Return the points ``(k, 2)`` mm at which the outline of a region turns back within a width.
 
     Those of pieces that are smaller than an area (mm2) are among them.
@@ -122,11 +162,11 @@ def narrow_ends(region: "CrossSection", width: float, area: float = 0.0) -> Floa
     Parameters
     ----------
     region
-        A region, whose outlines have it to their left.
+        A region.
     width, area
         Length (mm) of the outline within which it turns, and area (mm2).
     """
-    contours = [np.asarray(contour) for contour in region.simplify(_SMOOTH).to_polygons()]
+    contours = region.contours
     if not contours:
         return np.empty((0, 2))
     points = np.concatenate(contours)
@@ -158,13 +198,16 @@ def _turns_back(turn: Floats, length: Floats, after: np.ndarray, width: float) -
     return np.asarray(back)
 
 
-def _near(ends: Floats, pieces: "Sequence[CrossSection]", width: float) -> Bools:
-    """Tell which points are in or near the boxes of pieces."""
-    near = np.zeros(len(ends), np.bool_)
-    for piece in pieces:
-        bounds = np.asarray(piece.bounds())
-        near |= ((ends > bounds[:2] - width) & (ends < bounds[2:] + width)).all(axis=1)
-    return near
+def bounds_of(pieces: "Sequence[CrossSection]") -> tuple[Floats, Floats]:
+    """Return the corners of the boxes of pieces, ``(n, 2)`` mm."""
+    low, high = np.split(np.array([piece.bounds() for piece in pieces]), 2, axis=1)
+    return low, high
+
+
+def _are_in(points: Floats, low: Floats, high: Floats) -> Bools:
+    """Tell which points are inside one of several rectangles."""
+    inside = np.all((points[:, None] > low) & (points[:, None] < high), axis=2)
+    return np.asarray(np.any(inside, axis=1))
 
 
 def _is_inside(piece: "CrossSection", centre: Floats, half: float) -> bool:

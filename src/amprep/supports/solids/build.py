@@ -21,7 +21,7 @@ from amprep.supports.solids.keep_out import PartObstacles, WallClearance
 from amprep.supports.solids.least_section import without_narrow
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.territory import territory_section
-from amprep.supports.solids.thin_rests import without_thin_rests
+from amprep.supports.solids.thin_rests import NO_HOLES, without_thin_rests
 from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
 
 if TYPE_CHECKING:
@@ -222,14 +222,14 @@ class _SupportBuilder(NamedTuple):
         solid, diameter = solid_of(self.context, group, self.instances), self.instances.cells.hole
         if solid is None or solid.is_empty():
             return None
+        holes = NO_HOLES
         if diameter > 0.0:
             held = [self.parts[part].mesh for part in self.context.layout.group_parts[group]]
-            boxes = self.context.foot_boxes(group)
-            solid = cut_drain_holes(solid, held, diameter, boxes, least_wall_of(self.rules))
+            solid, holes = cut_drain_holes(solid, held, diameter, self.context.foot_boxes(group))
         if self.rules.least is None:
             return solid
-        tip_height = self._tip_height()
-        solid = without_thin_rests(solid, self.context.obstacles.near(solid), self.rules.least, tip_height)
+        near, tip_height = self.context.obstacles.near(solid), self._tip_height()
+        solid = without_thin_rests(solid, near, self.rules.least, tip_height, holes)
         return None if solid.is_empty() else solid
 
     def _tip_height(self) -> float:

@@ -106,7 +106,7 @@ def make_feet(layout: SupportLayout, group: int, *, overlap: float, seat: float)
     surface = join_patches(patches, len(own))
     base, top = columns.lo[:, 2] - seat, columns.hi[:, 2] + layout.grid.step
     every = np.ones(len(surface.owner), np.bool_)
-    feet = connect(surface, surface, base=base, top=top, overlap=overlap, own=every)
+    feet = connect(surface, surface, square=columns.square, base=base, top=top, overlap=overlap, own=every)
     return [(points * _MIRROR, triangles[:, ::-1]) for points, triangles in feet]
 
 

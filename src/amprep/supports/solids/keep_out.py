@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import Floats, Ints
+from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.merging.union import arrays_of, union
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
@@ -135,18 +135,33 @@ def drop_floating(
     feet
         Least and greatest corners ``(k, 3)`` of boxes; a component with a vertex in one of them stands on a part.
     """
-    count, shell = label_shells(triangles, len(points))
-    corners = points[triangles]
-    lo, hi = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(lo, shell, corners.min(axis=1))
-    np.maximum.at(hi, shell, corners.max(axis=1))
-    volume = np.bincount(
-        shell, np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])), count
-    )
-    stays = (lo[:, 2] <= CONTACT_TOLERANCE) | (volume < 0.0)
+    count, of_triangle = label_shells(triangles, len(points))
+    shell = np.zeros(len(points), np.int64)
+    shell[triangles] = of_triangle[:, None]
+    lowest = np.full(count, np.inf)
+    np.minimum.at(lowest, shell, points[:, 2])
+    stays = lowest <= CONTACT_TOLERANCE
+    loose = ~stays[of_triangle]
+    if not loose.any():
+        return points, triangles
+    corners = points[triangles[loose]]
+    volume = np.bincount(of_triangle[loose], np.linalg.det(corners), count)
+    stays |= volume < 0.0
     for low, high in zip(*(feet or ()), strict=True):
-        stays[shell[((corners >= low) & (corners <= high)).all(axis=2).any(axis=1)]] = True
-    for void in np.flatnonzero(volume < 0.0):
-        around = (volume > 0.0) & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
+        stays[shell[((points >= low) & (points <= high)).all(axis=1)]] = True
+    voids = np.flatnonzero(volume < 0.0)
+    if len(voids):
+        _drop_voids(stays, voids, points, shell)
+    return drop_unused_vertices(points, triangles[stays[of_triangle]])
+
+
+def _drop_voids(stays: Bools, voids: Int64s, points: Floats, shell: Int64s) -> None:
+    """Let voids stay only inside shells that stay, `stays` ``(k,)``; `shell` ``(n,)`` is that of each point."""
+    lo, hi = np.full((len(stays), 3), np.inf), np.full((len(stays), 3), -np.inf)
+    np.minimum.at(lo, shell, points)
+    np.maximum.at(hi, shell, points)
+    solid = np.ones(len(stays), np.bool_)
+    solid[voids] = False
+    for void in voids:
+        around = solid & (lo <= lo[void]).all(axis=1) & (hi >= hi[void]).all(axis=1)
         stays[void] = (stays & around).any()
-    return drop_unused_vertices(points, triangles[stays[shell]])

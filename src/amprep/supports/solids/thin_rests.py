@@ -1,14 +1,16 @@
 """Cut away what is thinner than the least section in a finished support."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.thin_rests import find_thin_rests
+from amprep.geometry.supports.thin_rests import Contours, bounds_of, contours_of, find_thin_rests
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -52,14 +54,32 @@ _SLIVER = 0.1
 _SLOPE = 0.3
 """Height (mm) by which a tip may begin lower, because the part above it is not level."""
 
+_HOLE_END = 0.2
+"""Fraction of the height of a drain hole, at both of its ends, in which no section of it is."""
+
+NO_HOLES = np.empty((0, 3)), np.empty((0, 3))
+"""Corners of the drain holes of a support without any."""
+
 # Strategy. The sources of thin places (narrow overhangs, drain holes) are avoided before. What is left comes from
-# faces that cut cells and connectors at any place: borders of territories, walls of parts, the parts themselves.
-# Sections at few heights tell where something is thin, and sections close together tell there what is cut away, layer
-# by layer. A rest that touches a part is one with the part, and stays. Pieces that float then are dropped later.
+# faces that cut cells and connectors at any place: borders of territories, walls of parts, the parts themselves, and
+# drain holes. Sections at few heights, of which each drain hole has one, tell where something is thin, and sections
+# close together tell there what is cut away, layer by layer. A rest that touches a part is one with the part, and
+# stays. Pieces that float then are dropped later.
+
+
+class _Place(NamedTuple):
+    """Where thin places are sought: in the section at a height (mm), in it all or only in rectangles ``(k, 2)``."""
+
+    height: float
+    around: tuple[Floats, Floats] | None = None
 
 
 def without_thin_rests(
-    solid: "Manifold", parts: "Sequence[Manifold]", least: LeastSection, tip_height: float
+    solid: "Manifold",
+    parts: "Sequence[Manifold]",
+    least: LeastSection,
+    tip_height: float,
+    holes: tuple[Floats, Floats] = NO_HOLES,
 ) -> "Manifold":
     """Return a support without its parts that are thinner than the least section; its pieces may float.
 
@@ -73,35 +93,57 @@ def without_thin_rests(
         Least section of supports.
     tip_height
         Height (mm) below parts up to which ends of supports taper, down to 0.1 mm; 0 where they do not.
+    holes
+        Least and greatest corners ``(k, 3)`` mm of the drain holes in it.
     """
-    finder = _RestFinder(parts, least, tip_height)
-    places: list[tuple[float, CrossSection | None]] = [(height, None) for height in _heights(solid)]
+    even = _heights(solid)
+    places = [_Place(height) for height in even] + _beside_holes(*holes, even, _WINDOW * least.width)
     for _ in range(_ROUNDS):
+        finder = _RestFinder(solid, parts, least, tip_height)
         cuts: dict[int, CrossSection] = {}
-        for height, around in places:
-            layer = round(height / _FINE)
-            if rest := _beyond(finder.rests(solid, height, around), cuts.get(layer)):
-                _collect(finder, solid, layer, rest, cuts)
+        for place in places:
+            layer = round(place.height / _FINE)
+            if rest := _beyond(finder.rests(place), cuts.get(layer)):
+                _collect(finder, layer, rest, cuts)
         if not cuts:
             break
         solid = _without(solid, cuts)
-        places = [((layer + 0.5) * _FINE, rest) for layer, rest in cuts.items()]
+        places = [finder.around((layer + 0.5) * _FINE, rest) for layer, rest in cuts.items()]
     return solid
 
 
+def _beside_holes(low: Floats, high: Floats, even: list[float], margin: float) -> list[_Place]:
+    """Return sections of the drain holes in which there is none of the `even` ones; `margin` (mm) around holes."""
+    inner = _HOLE_END * (high - low)[:, 2]
+    first = np.searchsorted(even, low[:, 2] + inner)
+    missed = first == np.searchsorted(even, high[:, 2] - inner)
+    low, high = low[missed], high[missed]
+    found = []
+    for height in heights_through(low[:, 2], high[:, 2]):
+        own = (low[:, 2] < height) & (high[:, 2] > height)
+        found.append(_Place(height, (low[own, :2] - margin, high[own, :2] + margin)))
+    return found
+
+
+def heights_through(low: Floats, high: Floats) -> list[float]:
+    """Return few heights such that one is inside each interval from `low` to `high` ``(k,)`` mm."""
+    heights: list[float] = []
+    inner = _HOLE_END * (high - low)
+    for number in np.argsort(high - inner, kind="stable").tolist():
+        if not heights or heights[-1] < low[number] + inner[number]:
+            heights.append(float(high[number] - inner[number]))
+    return heights
+
+
 def _collect(
-    finder: "_RestFinder",
-    solid: "Manifold",
-    layer: int,
-    around: "CrossSection",
-    cuts: "dict[int, CrossSection]",
+    finder: "_RestFinder", layer: int, around: "CrossSection", cuts: "dict[int, CrossSection]"
 ) -> None:
     """Add the rests around a thin place, layer by layer, up and down as far as there are any, to `cuts`."""
     for first, way in ((layer, -1), (layer + 1, 1)):
         each, last = first, around
         while True:
             known = cuts.get(each)
-            rest = _beyond(finder.rests(solid, each * _FINE, last), known)
+            rest = _beyond(finder.rests(finder.around(each * _FINE, last)), known)
             if rest is None and each != first:
                 break
             if rest is not None:
@@ -153,54 +195,58 @@ def _heights(solid: "Manifold") -> list[float]:
 class _RestFinder:
     """Finds the rests in sections of a support."""
 
-    def __init__(self, parts: "Sequence[Manifold]", least: LeastSection, tip_height: float) -> None:
+    def __init__(
+        self, solid: "Manifold", parts: "Sequence[Manifold]", least: LeastSection, tip_height: float
+    ) -> None:
         self._parts, self._tip_height = parts, tip_height
         self._width = max(least.width - _LESS, 0.0)
         self._area = max(least.area - 2.0 * _LESS * least.width, 0.0)
+        self._contours = cache(lambda height: contours_of(solid.slice(height)))
+        self._part_section = cache(lambda number, height: parts[number].slice(height))
+        self._bounds = np.array([part.bounding_box() for part in parts]).reshape(-1, 6)
 
-    def rests(
-        self, solid: "Manifold", height: float, around: "CrossSection | None" = None
-    ) -> "CrossSection | None":
-        """Return what is too thin in the section of a solid at a height (mm), if given, only around a region.
+    def around(self, height: float, rest: "CrossSection") -> _Place:
+        """Return the section at a height (mm) around the pieces of a region."""
+        low, high = bounds_of(rest.decompose())
+        margin = _WINDOW * self._width
+        return _Place(height, (low - margin, high + margin))
 
-        None for nothing.
-        """
-        region = solid.slice(height)
-        if around is not None:
-            region ^= _boxes(around, _WINDOW * self._width)
-        found = find_thin_rests(region, self._width, self._area, lambda rest: self._is_kept(rest, height))
-        if found and around is not None:
-            inner = _boxes(around, _WINDOW / 2.0 * self._width)
+    def rests(self, place: _Place) -> "CrossSection | None":
+        """Return what is too thin in a section; None for nothing. Near the border of the place nothing is judged."""
+        region: Contours = self._contours(place.height)
+        if place.around is not None:
+            region = contours_of(region.inside(*place.around))
+        found = find_thin_rests(
+            region, self._width, self._area, lambda rest: self._is_kept(rest, place.height)
+        )
+        if found and place.around is not None:
+            low, high = place.around
+            margin = _WINDOW / 2.0 * self._width
+            inner = union_of([box(*each) for each in zip(low + margin, high - margin, strict=True)])
             found = [rest ^ inner for rest in found]
         whole = union_of(found)
         return None if whole.is_empty() else whole
 
     def _is_kept(self, rest: "CrossSection", height: float) -> bool:
         """Tell whether a rest touches a part, or is a tip that is not too thin."""
-        wider = rest.offset(_TOUCH)
-        if any(not (wider ^ part.slice(height)).is_empty() for part in self._around(rest)):
+        wider, near = rest.offset(_TOUCH), self._near(rest)
+        if any(not (wider ^ self._part_section(part, height)).is_empty() for part in near):
             return True
-        return self._tip_height > 0.0 and self._is_tip(rest, height)
-
-    def _is_tip(self, rest: "CrossSection", height: float) -> bool:
-        if rest.offset(-_SLIVER / 2.0).is_empty():
+        if not self._tip_height or rest.offset(-_SLIVER / 2.0).is_empty():
             return False
-        space = rest.extrude(self._tip_height + _SLOPE).translate((0.0, 0.0, height))
-        return any(not (part ^ space).is_empty() for part in self._around(rest))
+        return any(self._is_below(rest, height, part) for part in near)
 
-    def _around(self, rest: "CrossSection") -> "list[Manifold]":
-        """Return the parts whose boxes meet a rest in plan."""
+    def _is_below(self, rest: "CrossSection", height: float, part: int) -> bool:
+        """Tell whether a part is above a rest, at most as high as tips are long."""
+        reach = self._tip_height + _SLOPE
+        if not (rest ^ self._part_section(part, height + reach)).is_empty():  # nearly always, and cheaper
+            return True
+        space = rest.extrude(reach).translate((0.0, 0.0, height))
+        return not (self._parts[part] ^ space).is_empty()
+
+    def _near(self, rest: "CrossSection") -> list[int]:
+        """Return the numbers of the parts whose boxes meet a rest in plan."""
         left, front, right, back = rest.bounds()
-        boxes = ((part, part.bounding_box()) for part in self._parts)
-        return [
-            part
-            for part, bounds in boxes
-            if bounds[0] <= right + _TOUCH and bounds[3] >= left - _TOUCH
-            and bounds[1] <= back + _TOUCH and bounds[4] >= front - _TOUCH
-        ]  # fmt: skip
-
-
-def _boxes(region: "CrossSection", margin: float) -> "CrossSection":
-    """Return the boxes of the pieces of a region, larger by a margin (mm)."""
-    boxes = [np.asarray(piece.bounds()) for piece in region.decompose()]
-    return union_of([box(each[:2] - margin, each[2:] + margin) for each in boxes])
+        meets = (self._bounds[:, :2] <= (right + _TOUCH, back + _TOUCH)).all(axis=1)
+        meets &= (self._bounds[:, 3:5] >= (left - _TOUCH, front - _TOUCH)).all(axis=1)
+        return np.flatnonzero(meets).tolist()

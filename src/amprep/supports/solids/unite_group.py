@@ -138,7 +138,13 @@ def _plain_connectors(context: SupportContext, red: Bools, depth: Floats) -> lis
     base = surfaces.columns.lo[:, 2] - depth
     top = surfaces.columns.hi[:, 2] + context.layout.grid.step
     meshes = connect(
-        supported, surfaces.surface, base=base, top=top, overlap=context.overlap, own=surfaces.own
+        supported,
+        surfaces.surface,
+        square=surfaces.columns.square,
+        base=base,
+        top=top,
+        overlap=context.overlap,
+        own=surfaces.own,
     )
     return [as_manifold(*mesh).simplify(FILE_STEP) for mesh in meshes]  # removes nine tenths of the triangles
 

@@ -48,7 +48,10 @@ def volume_of(layers: Sequence[Floats]) -> float:
     """Return the volume of connectors that support all layers; they do not overlap."""
     patches = patches_of(layers)
     own = np.ones(len(patches.owner), np.bool_)
-    meshes = connect(patches, patches, base=np.zeros(1), top=np.array([11.0]), overlap=OVERLAP, own=own)
+    square = np.zeros((1, 2), np.int64)
+    meshes = connect(
+        patches, patches, square=square, base=np.zeros(1), top=np.array([11.0]), overlap=OVERLAP, own=own
+    )
     solids = [as_manifold(*mesh) for mesh in meshes]
     assert sum(each.volume() for each in solids) == pytest.approx(union(solids).volume(), rel=1e-6)
     return float(union(solids).volume())
@@ -93,3 +96,19 @@ def test_exactly_the_patches_below_supported_ones_are_found():
     lower = surface.owner[:, 1] < 2
     assert lower.any()
     assert (find_below(held, surface) == lower).all()
+
+
+@pytest.mark.parametrize(("apart", "meshes"), [(1, 2), (2, 1)])
+def test_surfaces_share_a_mesh_unless_their_squares_are_neighbours(apart, meshes):
+    """The surfaces in the two columns have different heights, so that they are not connected."""
+    square = np.array([[0, 0], [0, apart]])
+    low = np.column_stack([2.0 * square[:, ::-1], np.zeros(2)])
+    columns = ConnectorColumns(low, low + (2.0, 2.0, 10.0), square, np.array([0.0, 0.0, 2.0]), (1, apart + 1))
+    corners = np.concatenate([tiles(2, 4.0), tiles(2, 5.0) + (2.0 * apart, 0.0, 0.0)])
+    patches = clip_to_columns(columns, corners, np.arange(len(corners)), np.ones(2, np.bool_))
+    own = np.ones(len(patches.owner), np.bool_)
+    found = connect(
+        patches, patches, square=square, base=np.zeros(2), top=np.full(2, 11.0), overlap=OVERLAP, own=own
+    )
+    assert len(found) == meshes
+    assert sum(as_manifold(*mesh).volume() for mesh in found) == pytest.approx(4.0 * (9.0 + 2 * OVERLAP))

@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 from manifold3d import CrossSection, OpType
 from tests.shared.examples import examples
 
-from amprep.geometry.supports.thin_rests import find_thin_rests, narrow_ends
+from amprep.geometry.supports.thin_rests import contours_of, find_thin_rests, narrow_ends
 
 WIDTH, AREA = 0.28, 0.07
 
 
 def rests(region, is_kept=lambda _: False):
     """The rests, which may overlap, as one region."""
-    return CrossSection.batch_boolean(find_thin_rests(region, WIDTH, AREA, is_kept), OpType.Add)
+    return CrossSection.batch_boolean(find_thin_rests(contours_of(region), WIDTH, AREA, is_kept), OpType.Add)
 
 
 def rectangle(width, length, turn=0.0, at=(0.0, 0.0)):
@@ -45,7 +45,7 @@ def test_of_a_block_with_a_fin_only_the_fin_is_a_rest(width, length, turn):
 
 def test_a_wedge_whose_end_is_a_little_wider_than_the_width_has_a_narrow_end():
     wedge = CrossSection([np.array([[0.0, 0.0], [0.29, 0.0], [0.2, 3.0], [0.05, 3.0]])])
-    assert len(narrow_ends(wedge, WIDTH))
+    assert len(narrow_ends(contours_of(wedge), WIDTH))
 
 
 @pytest.mark.parametrize("sides", [3, 4, 6, 40])
@@ -56,7 +56,7 @@ def test_wide_shapes_with_and_without_holes_have_no_rests(sides):
 
 def test_a_piece_that_is_wide_enough_but_too_small_is_a_rest():
     region = CrossSection.square((0.29, 0.29)) + rectangle(1.0, 1.0, at=(2.0, 0.0))
-    (found,) = find_thin_rests(region, WIDTH, 0.09, lambda _: False)
+    (found,) = find_thin_rests(contours_of(region), WIDTH, 0.09, lambda _: False)
     assert found.area() == pytest.approx(0.29**2)
 
 

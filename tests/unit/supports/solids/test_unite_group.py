@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
+from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Mesh
-from amprep.supports.solids.drain_holes import cut_drain_holes, heights_through
+from amprep.supports.solids.drain_holes import cut_drain_holes
+from amprep.supports.solids.thin_rests import heights_through, without_thin_rests
 from amprep.supports.solids.unite_group import stored_solid
 
 NO_FEET = np.empty((0, 3)), np.empty((0, 3))
@@ -19,7 +21,8 @@ def box(size, corner):
 def test_a_support_that_vanishes_is_no_error():
     part = box((5, 5, 5), (0, 0, 10)).to_mesh64()
     mesh = Mesh(np.array(part.vert_properties)[:, :3], np.array(part.tri_verts, np.int64))
-    nothing = cut_drain_holes(Manifold(), [mesh], 0.2, NO_FEET)
+    nothing, holes = cut_drain_holes(Manifold(), [mesh], 0.2, NO_FEET)
+    assert len(holes[0]) == 0
     assert nothing.is_empty()
     assert stored_solid(nothing, None, NO_FEET) is None
 
@@ -41,8 +44,9 @@ def test_a_stored_solid_has_the_volume_of_the_union_and_can_be_read_again():
 def test_what_a_drain_hole_leaves_thinner_than_the_least_wall_is_cut_away_with_it():
     """A hollow box traps powder, so that a hole leads through its wall."""
     hollow = box((6, 6, 6), (0, 0, 0)) - box((5, 5, 5), (0.5, 0.5, 0.5))
-    opened = cut_drain_holes(hollow, [], 0.4, NO_FEET, 0.3)
+    opened, holes = cut_drain_holes(hollow, [], 0.4, NO_FEET)
     assert opened.volume() < hollow.volume()
+    opened = without_thin_rests(opened, [], LeastSection(0.3, 0.0), 0.0, holes)
     assert all(
         not piece.offset(-0.14).is_empty()
         for height in np.arange(0.05, 6.0, 0.1)
