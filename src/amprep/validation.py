@@ -106,3 +106,15 @@ def _bounds(at_least: float | None, above: float | None, at_most: float | None, 
 
 LARGEST_COUNT = 1_000_000
 """Bound on quantities, capacities and costs: sums of them stay far inside 64 bits."""
+
+LARGEST_LENGTH = 10_000.0
+"""Bound on distances and sizes (mm) that jobs and build files state; no printer is larger."""
+
+LARGEST_COORDINATE = 1e6
+"""Bound on coordinates (mm) in the record of a build file; parts may lie anywhere in coordinates of their own."""
+
+LEAST_REACH = 0.05
+"""Least reach, mm: overhangs are sampled a third of it apart."""
+
+LARGEST_OVERLAP = 5.0
+"""Largest depth (mm) to which connectors may enter parts."""

@@ -13,6 +13,9 @@ from amprep.model.mesh import Mesh
 NUDGE = 0.01
 """Distance (mm) below a face at which a support must be, and above a support at which a part must be."""
 
+_MOST_SAMPLES = 2_000_000
+"""Largest number of sample points on the faces of a part."""
+
 _MOST_CELLS = 4_000_000
 """Largest number of cells of the grid that preselects points."""
 
@@ -20,12 +23,22 @@ _MOST_CELLS = 4_000_000
 def sample_spacing(placed: PlacedPart, bodies: Sequence[SupportBody], settings: BuildSettings) -> float:
     """Return the spacing (mm) of sample points at which no point of an overhang is farther than reach / 3 from one.
 
-    The least reach of the bodies counts, so that planner and judge sample the same points.
+    The least reach of the bodies counts, so that planner and judge sample the same points. It is larger where there
+    would be more than `_MOST_SAMPLES` of them.
     """
     own = placed.part.overrides.overhang_angle_deg
     angle = min(settings.rules.overhang_angle_deg if own is None else own, 85.0)
     reach = min([settings.reach, *(settings.reach_of(body) for body in bodies)])
-    return reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
+    spacing = reach / 3 * min(1.0, float(np.sqrt(2) * np.cos(np.radians(angle))))
+    return max(spacing, float(np.sqrt(_downward_area(placed.mesh) / _MOST_SAMPLES)))
+
+
+def _downward_area(mesh: Mesh) -> float:
+    """Return the area (mm2) in plan of the faces of a mesh that face downwards."""
+    corners = mesh.vertices[mesh.triangles]
+    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    upward = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    return float(-upward[upward < 0.0].sum() / 2.0)
 
 
 def find_held(

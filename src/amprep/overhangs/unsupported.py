@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
-from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs
+from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs, triangle_areas
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.supports.rules import OverhangRules
@@ -50,7 +50,7 @@ def find_unsupported(
         samples = sample_overhangs(own.mesh.vertices, own.mesh.triangles, own.overhangs, spacing)
         held = find_held(samples.points, placed.mesh, bodies, settings, spacing)
         left = np.flatnonzero(~held)
-        areas = _areas(own.mesh.vertices[own.mesh.triangles[own.overhangs.faces]])
+        areas = triangle_areas(own.mesh.vertices[own.mesh.triangles[own.overhangs.faces]])
         reasons = np.array(reasons_at(part, samples.points[left]), dtype=object)
         for number in np.unique(samples.region[left]):
             here = samples.region[left] == number
@@ -156,12 +156,6 @@ class _RegionCoverage(NamedTuple):
             is_small = self.measure(left[own]) < smallest
             minor[own] = is_small and _is_held_as_low(points[left[own]], held, near)
         return minor
-
-
-def _areas(corners: Floats) -> Floats:
-    """Return the areas (mm2) of triangles ``(n, 3, 3)``."""
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.asarray(np.linalg.norm(cross, axis=1) / 2.0)
 
 
 def _patches(points: Floats, distance: float) -> Ints:

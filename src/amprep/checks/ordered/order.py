@@ -6,10 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from amprep.checks.ordered.weaker import Weaker, weaker_orientations, weaker_part, weaker_settings
+from amprep.checks.ordered.weaker import (
+    Weaker,
+    most_lenient,
+    weaker_orientations,
+    weaker_part,
+    weaker_settings,
+)
 from amprep.checks.packing.parts_placed import ROUNDING
 from amprep.checks.violation import Violation
-from amprep.model.build import Build, BuildSettings, PlacedPart
+from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody
 from amprep.model.build_volume import BuildVolume
 from amprep.model.counting import counted
 from amprep.model.part import Part
@@ -43,7 +49,7 @@ def check_order(build: Build, order: Order) -> list[Violation]:
     Fewer copies than ordered are no violation, because a job may have several builds.
     """
     found = _volume(build.settings.space, order)
-    found += [_violation("settings", each) for each in weaker_settings(build.settings, order.settings)]
+    found += [_violation("settings", each) for each in weaker_settings(most_lenient(build), order.settings)]
     if order.parts is None:
         return found
     ordered = [ordered_part(placed.part, order.parts) for placed in build.parts]
@@ -62,13 +68,26 @@ def check_order(build: Build, order: Order) -> list[Violation]:
 
 
 def as_ordered(build: Build, order: Order) -> Build:
-    """Return a build with the settings, and for its parts with the rules, of an order, so that it is judged by them."""
-    settings = replace(order.settings, build_id=build.settings.build_id, target=build.settings.target)
+    """Return a build with the settings, and for its parts with the rules, of an order, so that it is judged by them.
+
+    A smaller reach of the file stays, because the ordered one is that of the widest pass. Supports lose a reach and
+    sizes of their own that are more lenient than ordered.
+    """
+    own, due = build.settings, order.settings
+    reach = min(own.reach, due.reach)
+    settings = replace(due, build_id=own.build_id, target=own.target, reach=reach)
+    supports = tuple(_ordered_support(body, due) for body in build.supports)
     parts = build.parts
     if order.parts is not None:
         known = order.parts
         parts = tuple(_ordered_placed(placed, ordered_part(placed.part, known)) for placed in parts)
-    return replace(build, settings=settings, parts=parts)
+    return replace(build, settings=settings, parts=parts, supports=supports)
+
+
+def _ordered_support(body: SupportBody, due: BuildSettings) -> SupportBody:
+    """Return a support without what is more lenient than ordered."""
+    own = replace(due, reach=due.reach_of(body), sizes=due.sizes_of(body))
+    return replace(body, reach=None, sizes=None) if weaker_settings(own, due) else body
 
 
 def ordered_part(built: Part, parts: Sequence[Part]) -> Part | None:

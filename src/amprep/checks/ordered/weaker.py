@@ -1,10 +1,10 @@
 """Find the settings of a build by which its judges are more lenient than by other settings."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from amprep.model.build import BuildSettings
+from amprep.model.build import Build, BuildSettings
 from amprep.model.part import Orientations, Overrides
 
 _STRICT_ABOVE = ("clearance", "lift")
@@ -39,6 +39,14 @@ class Weaker:
     def words(self, expected: str) -> str:
         """Return the setting in words; `expected` names what it should be: ``clearance_mm 2 (usual: 5)``."""
         return f"{self.setting} {_shown(self.value)} ({expected}: {_shown(self.expected)})"
+
+
+def most_lenient(build: Build) -> BuildSettings:
+    """Return the settings of a build with the largest reach and the largest sizes of its supports."""
+    settings, reach, sizes = build.settings, build.settings.reach, build.settings.sizes
+    for body in build.supports:
+        reach, sizes = max(reach, settings.reach_of(body)), sizes.enlarged(settings.sizes_of(body))
+    return replace(settings, reach=reach, sizes=sizes)
 
 
 def weaker_settings(found: BuildSettings, expected: BuildSettings) -> list[Weaker]:

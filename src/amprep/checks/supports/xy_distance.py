@@ -6,7 +6,7 @@ from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
 from amprep.checks.packing.parts_placed import TOLERANCE
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.containment import inside
-from amprep.geometry.meshes.sampling import sample_triangles
+from amprep.geometry.meshes.sampling import sample_triangles, triangle_areas
 from amprep.geometry.supports.walls import PartWalls, occupancy_of, wall_distance, walls_of
 from amprep.model.build import Build, PlacedPart, SupportBody
 from amprep.model.control import Stop
@@ -16,6 +16,9 @@ PROMISE = "XY distance to walls"
 
 SPACING = 0.3
 """Largest distance (mm) between the judged points of a support; the XY distance itself if that is less."""
+
+_LEAST_SPACING, _MOST_POINTS = 0.05, 2_000_000
+"""Least distance (mm) of the judged points, and their number from which the distance grows."""
 
 _TOLERANCE = 0.005
 """Horizontal error (mm) that float32 rounding causes on a nearly horizontal wall."""
@@ -30,7 +33,7 @@ def check_xy_distance(build: Build, stop: Stop) -> list[Violation]:
     Walls are all faces that are not overhangs. A point is judged against walls on whose outer side it is, unless the
     part is between them. Walls without thickness and beams are not judged.
     """
-    if build.settings.rules.gap_mm <= 0.0:
+    if build.settings.rules.gap_mm <= _TOLERANCE:
         return []
     found: list[Violation] = []
     for placed in build.parts:
@@ -49,7 +52,9 @@ def _too_near(body: SupportBody, placed: PlacedPart, build: Build) -> list[Viola
     corners = body.mesh.vertices[body.mesh.triangles]
     by_walls = occupancy_of(walls.corners.min(axis=1), walls.corners.max(axis=1))
     corners = corners[by_walls.near(corners, reach)]
-    points = sample_triangles(corners, min(SPACING, build.settings.rules.gap_mm))
+    fewest = float(np.sqrt(triangle_areas(corners).sum() / _MOST_POINTS))
+    spacing = max(min(SPACING, build.settings.rules.gap_mm), _LEAST_SPACING, fewest)
+    points = sample_triangles(corners, spacing)
     for up in (0.0, 2.0 * TOLERANCE):  # points in the part or directly below a face are contact
         points = points[~inside(points + (0.0, 0.0, up), placed.mesh.vertices, placed.mesh.triangles)]
     away, foot = wall_distance(points, walls, reach, 2.0 * TOLERANCE)

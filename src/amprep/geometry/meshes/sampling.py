@@ -84,6 +84,12 @@ def sample_triangles(corners: Floats, spacing: float) -> Floats:
     return sample_segments(start, end, spacing)[0]
 
 
+def triangle_areas(corners: Floats) -> Floats:
+    """Return the areas ``(n,)`` mm2 of triangles ``(n, 3, 3)`` mm."""
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(cross, axis=1) / 2.0)
+
+
 def _lattice(vertices: Floats, faces: Int64s, spacing: float) -> tuple[Floats, Int64s]:
     from amprep.kernels.meshes.sampling import lattice_points
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from amprep.model.contacts import BaseRules, ConnectorRules
-from amprep.validation import require_bounds
+from amprep.validation import LARGEST_OVERLAP, require_bounds
 
 _PATH_OF_CELL = re.compile(r"[/\\]|\.(toml|3mf|stl|obj|ply|off|glb|step|stp)$", re.IGNORECASE)
 
@@ -44,6 +44,7 @@ class CellSettings(ConnectorRules, BaseRules):
         ConnectorRules.__post_init__(self)
         BaseRules.__post_init__(self)
         require_bounds(self, "overlap_mm", at_least=0)
+        require_bounds(self, "overlap_mm", at_most=LARGEST_OVERLAP)
         require_bounds(self, "powder_hole_mm", at_least=0.02)
         require_bounds(self, "density_g_cm3", above=0)
 

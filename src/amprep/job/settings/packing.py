@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from amprep.model.packing import Interlocking, Objective
-from amprep.validation import require, require_bounds
+from amprep.validation import LARGEST_LENGTH, require, require_bounds
 
 Effort = Literal["fast", "normal", "thorough"]
 """How long packers work; each packer states its budgets."""
@@ -52,6 +52,7 @@ class PackingSettings:
 
     def __post_init__(self) -> None:
         require_bounds(self, "clearance_mm", "lift_mm", at_least=0)
+        require_bounds(self, "clearance_mm", "lift_mm", at_most=LARGEST_LENGTH)
         require_bounds(self, "blade_angle_deg", at_least=0, at_most=45)
         require_bounds(self, "time_limit_s", "blade_edge_mm", above=0)
         require(

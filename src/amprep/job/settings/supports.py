@@ -6,7 +6,7 @@ from typing import Any
 
 from amprep.model.build import SupportsAs
 from amprep.supports.rules import PlanningRules
-from amprep.validation import require_bounds
+from amprep.validation import LARGEST_LENGTH, LEAST_REACH, require_bounds
 
 
 @dataclass(frozen=True)
@@ -36,4 +36,6 @@ class SupportSettings(PlanningRules):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_bounds(self, "reach_mm", "time_limit_s", above=0)
+        require_bounds(self, "time_limit_s", above=0)
+        require_bounds(self, "reach_mm", at_least=LEAST_REACH, at_most=LARGEST_LENGTH)
+        require_bounds(self, "gap_mm", at_most=LARGEST_LENGTH)

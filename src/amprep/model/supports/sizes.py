@@ -33,3 +33,8 @@ class SupportSizes:
 
     def __post_init__(self) -> None:
         require_bounds(self, *(field.name for field in fields(self)), at_least=0, at_most=_LARGEST)
+
+    def enlarged(self, other: "SupportSizes") -> "SupportSizes":
+        """Return the larger of each of two sizes."""
+        names = [field.name for field in fields(self)]
+        return SupportSizes(**{name: max(getattr(self, name), getattr(other, name)) for name in names})

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from amprep.checks.ordered import order
-from amprep.checks.ordered.weaker import weaker_settings
+from amprep.checks.ordered.weaker import most_lenient, weaker_settings
 from amprep.checks.violation import Violation
 from amprep.errors import InputError
 from amprep.host import Host
@@ -79,7 +79,7 @@ def verify_file(
         extent[REPORTED] = f"SHA-256 of the file, by {demands.report.name}"
     file = read_build_file(path)
     build = file.build
-    weaker = [each.words("usual") for each in weaker_settings(build.settings, usual_settings(build))]
+    weaker = [each.words("usual") for each in weaker_settings(most_lenient(build), usual_settings(build))]
     for each in _orders(build, demands, progress):
         found += order.check_order(build, each)
         extent[order.PROMISE] = f"by {each.source}"

@@ -1,13 +1,16 @@
 """State what was ordered: the settings and parts of a job, or a printer, by which a build file is judged."""
 
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 
 from amprep.checks.ordered.order import Order
+from amprep.checks.ordered.weaker import most_lenient
 from amprep.errors import JobError
 from amprep.host import Host
 from amprep.job import Job, job_from_inputs, override
 from amprep.model import Build, BuildSettings
+from amprep.model.supports.sizes import SupportSizes
 from amprep.pipeline.reading import read_job
 from amprep.pipeline.resolve import resolve
 from amprep.pipeline.stages import Clock, Watcher
@@ -30,14 +33,18 @@ def usual_settings(build: Build) -> BuildSettings:
 
 
 def settings_for(job: Job, build: Build) -> BuildSettings:
-    """Return the settings that a job gives to a build with these placed parts; with the reach of its widest pass."""
+    """Return the settings that a job gives to a build with these placed parts.
+
+    Reach and sizes are the largest of its passes.
+    """
     passes = [
         build_settings(
             own, build.settings.build_id, choose_pitch(build.parts, own.printer.space, own.supports)
         )
         for own in (job.for_rule(number) for number in range(len(job.rules) + 1))
     ]
-    return replace(passes[0], reach=max(each.reach for each in passes))
+    sizes = reduce(SupportSizes.enlarged, (each.sizes for each in passes))
+    return replace(passes[0], reach=max(each.reach for each in passes), sizes=sizes)
 
 
 def order_of_printer(build: Build, printer: str) -> Order:
@@ -49,7 +56,7 @@ def order_of_printer(build: Build, printer: str) -> Order:
         When there is no such printer.
     """
     job = override(job_from_inputs(["part.stl"]), {"printer": printer})
-    settings = replace(build.settings, space=job.printer.space, printer=job.printer.name)
+    settings = replace(most_lenient(build), space=job.printer.space, printer=job.printer.name)
     return Order(job.printer.name, settings)
 
 

@@ -16,7 +16,7 @@ from amprep.threemf.as_read import read_as_printed
 from amprep.threemf.build import record
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
-from amprep.threemf.build.values import as_list, from_json, integer, integers, number, string
+from amprep.threemf.build.values import as_list, from_json, integer, integers, string
 from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
 
@@ -152,7 +152,7 @@ def _support(body: StoredBody, parts: int) -> SupportBody:
         holds,
         body.surface,
         lattice,
-        reach=number(own, "reach") if "reach" in own else None,
+        reach=record.own_reach(own),
         sizes=record.sizes_of(own["sizes"]) if "sizes" in own else None,
     )
 

@@ -7,6 +7,7 @@ from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
+from amprep.geometry.meshes.sampling import triangle_areas
 from amprep.model.build import TARGETS, BuildSettings, SupportBody, SupportsAs, Target, Unsupported
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
@@ -26,6 +27,7 @@ from amprep.threemf.build.values import (
     string,
     table,
 )
+from amprep.validation import LARGEST_COORDINATE, LARGEST_LENGTH, LARGEST_OVERLAP, LEAST_REACH
 
 FORMAT_VERSION = "1"
 """Version of the metadata; a file with another version is refused."""
@@ -47,6 +49,17 @@ def numbered(name: str, number: int) -> str:
 
 _SETTING_STRINGS = ("build_id", "printer")
 _SETTING_NUMBERS = ("clearance", "lift", "overlap", "reach")
+_BOUNDS = {
+    **dict.fromkeys(("clearance", "lift", "gap_mm", "radius"), (0.0, LARGEST_LENGTH)),
+    **dict.fromkeys(("clearance_mm", "lift_mm", "territory_margin_mm"), (0.0, LARGEST_LENGTH)),
+    "overlap": (0.0, LARGEST_OVERLAP),
+    "reach": (LEAST_REACH, LARGEST_LENGTH),
+    "overhang_angle_deg": (0.0, 89.0),
+    "measure": (0.0, LARGEST_COORDINATE**2),
+    "volume_mm3": (0.0, LARGEST_COORDINATE**3),
+    "value": (-(LARGEST_COORDINATE**3), LARGEST_COORDINATE**3),
+}
+"""Least and greatest values of numbers in a record, those of the job file's keys; `SupportRules` checks its own."""
 _RULE_NUMBERS = ("overhang_angle_deg", "strut_angle_deg", "min_area_mm2", "min_length_mm", "gap_mm")
 _LATER_RULE_NUMBERS = (
     *("noncritical_angle_deg", "ledge_mm", "bridge_mm", "bore_mm", "plate_mm", "layer_mm"),
@@ -70,10 +83,10 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     """Return the settings of a build; like all readers below, raise ValueError for a value of the wrong type."""
     values = as_object(record, SETTINGS)
     strings = {name: string(values, name) for name in _SETTING_STRINGS}
-    numbers = {name: number(values, name) for name in _SETTING_NUMBERS}
+    numbers = {name: _bounded(values, name) for name in _SETTING_NUMBERS}
     target = cast("Target", choice(values, "target", TARGETS))
     grounding = cast("Grounding", choice(values, "grounding", get_args(Grounding)))
-    limits: dict[str, Any] = {name: number(values, name) for name in _RULE_NUMBERS}
+    limits: dict[str, Any] = {name: _bounded(values, name) for name in _RULE_NUMBERS}
     limits |= {name: number(values, name) for name in _LATER_RULE_NUMBERS if name in values}
     limits |= {
         name: choice(values, name, known) for name, known in _LATER_RULE_CHOICES.items() if name in values
@@ -102,6 +115,11 @@ def support_record(index: int, support: SupportBody) -> JsonObject:
     sizes = {} if support.sizes is None else {"sizes": asdict(support.sizes)}
     entry = {"role": "support", "index": index, "name": support.name, "holds": list(support.parts)}
     return {**entry, **own, **sizes}
+
+
+def own_reach(record: JsonObject) -> float | None:
+    """Return the reach that a support states for itself, None where it states none."""
+    return _number_or_none(record, "reach")
 
 
 def sizes_of(record: Any) -> SupportSizes:
@@ -177,11 +195,11 @@ def part_of(record: Any, mesh: Mesh, triangle_colours: Any | None) -> Part:
     return Part(
         name=string(values, "name"),
         mesh=mesh,
-        volume_mm3=number(values, "volume_mm3"),
+        volume_mm3=_bounded(values, "volume_mm3"),
         quantity=integer(values, "quantity"),
         value=_number_or_none(values, "value"),
         orientations=orientations_of(values.get("orientations")),
-        regions=tuple(_region_of(entry) for entry in as_list(values.get("regions"), "regions")),
+        regions=tuple(_region_of(entry, mesh) for entry in as_list(values.get("regions"), "regions")),
         overrides=_overrides_of(values.get("overrides")),
         appearance=Appearance(colour, material, triangle_colours),
         is_solid=boolean(values, "is_solid"),
@@ -215,9 +233,9 @@ def unsupported_of(record: Any, parts: int) -> Unsupported:
         label=string(values, "label"),
         kind=choice(values, "kind", ("face", "edge", "tip")),
         reason=string(values, "reason"),
-        measure=number(values, "measure"),
+        measure=_bounded(values, "measure"),
         points=table(values, "points", 3),
-        radius=number(values, "radius"),
+        radius=_bounded(values, "radius"),
         minor="minor" in values and boolean(values, "minor"),
     )
 
@@ -243,17 +261,37 @@ def _region_record(region: Region) -> JsonObject:
     return record
 
 
-def _region_of(record: Any) -> Region:
+def _region_of(record: Any, part: Mesh) -> Region:
+    """Return a region of a part with a mesh."""
     values = as_object(record, "region")
     kind = cast("RegionKind", choice(values, "kind", get_args(RegionKind)))
-    triangles = (
-        np.array(integers(values, "triangles", below=2**31), np.int32) if "triangles" in values else None
-    )
-    mesh = None
-    if "mesh" in values:
-        vertices, corners = as_list(values["mesh"], "mesh")
-        mesh = Mesh(vertices, corners)
+    triangles = None
+    if "triangles" in values:
+        triangles = np.array(integers(values, "triangles", below=len(part.triangles)), np.int32)
+    mesh = _region_mesh(values) if "mesh" in values else None
+    if mesh is not None and triangles is not None:
+        _require_painted(mesh, part, len(triangles))
     return Region(kind, string(values, "name"), triangles, mesh)
+
+
+def _region_mesh(values: JsonObject) -> Mesh:
+    """Return the mesh of a region, whose triangles must have vertices."""
+    vertices, corners = as_list(values["mesh"], "mesh")
+    points = table({"mesh": vertices}, "mesh", 3)
+    flat = [corner for triangle in as_list(corners, "mesh") for corner in as_list(triangle, "mesh")]
+    indices = np.array(integers({"mesh": flat}, "mesh", below=len(points)), np.int32)
+    if len(indices) != 3 * len(corners):
+        raise ValueError("the triangles of a region's mesh must have three corners each")
+    return Mesh(points, indices.reshape(-1, 3))
+
+
+def _require_painted(mesh: Mesh, part: Mesh, count: int) -> None:
+    """Raise ValueError unless painted areas have a triangle of the part each, and no more area than the part."""
+    if len(mesh.triangles) != count:
+        raise ValueError(f"a region paints {count} triangles with {len(mesh.triangles)} areas")
+    area, whole = (triangle_areas(each.vertices[each.triangles]).sum() for each in (mesh, part))
+    if area > 1.01 * whole + 1e-3:
+        raise ValueError(f"a region paints {area:.6g} mm2 of a part of {whole:.6g} mm2")
 
 
 def _metadata_of(record: Any) -> dict[tuple[str, str], str]:
@@ -273,4 +311,9 @@ def _string_or_none(values: JsonObject, name: str) -> str | None:
 
 
 def _number_or_none(values: JsonObject, name: str) -> float | None:
-    return None if values.get(name) is None else number(values, name)
+    return None if values.get(name) is None else _bounded(values, name)
+
+
+def _bounded(values: JsonObject, name: str) -> float:
+    """Return the number called `name` within its bounds, if it has any."""
+    return number(values, name, *_BOUNDS.get(name, ()))

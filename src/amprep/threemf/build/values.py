@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.validation import LARGEST_COORDINATE, LARGEST_COUNT
 
 JsonObject = Mapping[str, Any]
 
@@ -65,11 +66,15 @@ def as_list(value: Any, name: str) -> list[Any]:
     return value
 
 
-def number(record: JsonObject, name: str) -> float:
-    """Return the finite number called `name`; like all functions below, raise ValueError for anything else."""
+def number(
+    record: JsonObject, name: str, least: float = -LARGEST_COUNT, most: float = LARGEST_COUNT
+) -> float:
+    """Return the number called `name`, within bounds; like all functions below, raise ValueError for anything else."""
     value = _entry(record, name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ValueError(f"{name} must be a finite number, got {_shown(value)}")
+    if not least <= value <= most:
+        raise ValueError(f"{name} must be between {least:g} and {most:g}, got {_shown(value)}")
     return float(value)
 
 
@@ -112,10 +117,15 @@ def choice(record: JsonObject, name: str, known: Iterable[str]) -> str:
 
 
 def table(record: JsonObject, name: str, width: int) -> Floats:
-    """Return the finite numbers called `name` as ``(n, width)``; a single row may be a flat list."""
+    """Return the numbers called `name` as ``(n, width)``; a single row may be a flat list.
+
+    They are at most `LARGEST_COORDINATE`, because all tables of a record are coordinates or matrices.
+    """
     values = np.array(as_list(_entry(record, name), name), dtype=np.float64)
     if not (values.size == 0 or values.shape[-1] == width) or not np.isfinite(values).all():
         raise ValueError(f"{name} must be rows of {width} finite numbers each")
+    if np.abs(values).max(initial=0.0) > LARGEST_COORDINATE:
+        raise ValueError(f"the numbers of {name} must be at most {LARGEST_COORDINATE:g}")
     return values.reshape(-1, width)
 
 

@@ -3,10 +3,12 @@
 from dataclasses import fields, replace
 
 import pytest
+from tests.shared.builds import box_mesh
 from tests.shared.supported import SETTINGS
 
-from amprep.checks.ordered.weaker import weaker_orientations, weaker_part, weaker_settings
-from amprep.model import BuildSettings, Orientations, Overrides
+from amprep.checks.ordered.order import Order, as_ordered
+from amprep.checks.ordered.weaker import most_lenient, weaker_orientations, weaker_part, weaker_settings
+from amprep.model import Build, BuildSettings, Orientations, Overrides, SupportBody
 from amprep.model.supports.rules import SupportRules
 from amprep.model.supports.sizes import SupportSizes
 
@@ -54,6 +56,33 @@ def changed(name, value):
         if name in {each.name for each in fields(own)}:
             return replace(USUAL, **{record: replace(own, **{name: value})})
     return replace(USUAL, **{name: value})
+
+
+def test_a_support_is_judged_by_no_reach_and_no_sizes_that_are_weaker_than_ordered():
+    mesh = box_mesh((0, 0, 0), (1, 1, 1))
+    usual, finer, wider, tipped = (
+        SupportBody(name, mesh, (0,), reach=reach, sizes=sizes)
+        for name, reach, sizes in (
+            ("usual", None, None),
+            ("finer", 0.9, USUAL.sizes),
+            ("wider", 40.0, USUAL.sizes),
+            ("tipped", 0.9, replace(USUAL.sizes, tip_width_mm=USUAL.sizes.tip_width_mm + 0.2)),
+        )
+    )
+    build = Build(USUAL, (), (usual, finer, wider, tipped))
+    assert [each.setting for each in weaker_settings(most_lenient(build), USUAL)] == [
+        "reach_mm",
+        "tip_width_mm",
+    ]
+    assert weaker_settings(most_lenient(build), most_lenient(build)) == []
+    judged = as_ordered(build, Order("job.toml", USUAL))
+    assert [judged.settings.reach_of(each) for each in judged.supports] == [
+        USUAL.reach,
+        0.9,
+        USUAL.reach,
+        USUAL.reach,
+    ]
+    assert {judged.settings.sizes_of(each) for each in judged.supports} == {USUAL.sizes}
 
 
 @pytest.mark.parametrize("name", WEAKER)

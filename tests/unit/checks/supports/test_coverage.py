@@ -21,6 +21,7 @@ from amprep.model import (
     Unsupported,
 )
 from amprep.model.supports.rules import SupportRules
+from amprep.overhangs.contacts import sample_spacing
 from amprep.overhangs.of_part import overhangs_of
 from amprep.overhangs.unsupported import find_unsupported
 
@@ -102,6 +103,12 @@ def test_a_strip_that_only_samples_on_the_rim_meet_is_measured_and_is_not_minor(
     assert region.points[:, 0].min() == 20.0
     assert 0.1 * 20 <= region.measure <= 0.3 * 20
     assert not region.minor
+
+
+def test_the_number_of_samples_is_bounded_whatever_the_reach():
+    wide = PlacedPart("wide", Part("wide", mesh_of(box((900, 900, 3), (0, 0, 10))), 1.0), np.eye(4))
+    assert sample_spacing(wide, (), replace(SETTINGS, reach=0.05)) == pytest.approx(900 / 2e6**0.5)
+    assert sample_spacing(TABLE, (), SETTINGS) == pytest.approx(0.5)
 
 
 def grid_of_posts(spacing, width=0.1):

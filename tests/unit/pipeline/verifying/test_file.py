@@ -73,11 +73,11 @@ def test_a_job_that_orders_more_clearance_is_not_met(made, tmp_path):
 def test_a_record_that_was_made_weaker_is_judged_by_the_job(made, changed):
     file = changed(
         lambda build: replace(
-            build, settings=replace(build.settings, clearance=0.0, lift=0.0, overlap=50.0, supported=False)
+            build, settings=replace(build.settings, clearance=0.0, lift=0.0, overlap=5.0, supported=False)
         )
     )
     assert verified(made, file) == {}
-    assert "overlap_mm 50 (ordered: 0.1)" in str(amprep.verify(file, job=made / "job.toml"))
+    assert "overlap_mm 5 (ordered: 0.1)" in str(amprep.verify(file, job=made / "job.toml"))
     assert any("clearance_mm 0 (usual: 5)" in words for words in amprep.verify(file).weaker)
 
 

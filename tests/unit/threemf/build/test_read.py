@@ -24,6 +24,7 @@ from amprep.model import (
     Overrides,
     Part,
     PlacedPart,
+    Region,
     SupportBody,
     Unsupported,
 )
@@ -147,7 +148,7 @@ def test_any_coordinates_keep_their_digest(round_trip, target, vertices, shift, 
         printer=st.text(),
         supported=st.booleans(),
         **{
-            each.name: st.floats(allow_nan=False, allow_infinity=False)
+            each.name: st.floats(0.05, 5.0)  # within the bounds of all of them
             for each in fields(BuildSettings)
             if each.type is float
         },
@@ -245,6 +246,30 @@ BROKEN = {
     "an index leaves a gap": ('"role": "part", "index": 2', '"role": "part", "index": 3'),
     "a piece is of no known part": ('"part": 1, "sha256"', '"part": 2, "sha256"'),
     "two parts have one label": ('"label": "bar"', '"label": "plate &amp; &lt;tray&gt;"'),
+    "a reach is too small to sample": ('"reach": 1.5', '"reach": 1e-4'),
+    "a reach is larger than any printer": ('"reach": 1.5', '"reach": 1e5'),
+    "a reach of a support is too small": ('"holds": [0]', '"holds": [0], "reach": 0.01'),
+    "a reach of a support is NaN": ('"holds": [0]', '"holds": [0], "reach": NaN'),
+    "a size of a support is below 0": ('"holds": [0]', '"holds": [0], "sizes": {"neck_mm": -1}'),
+    "an overlap is deeper than a part": ('"overlap": 0.1', '"overlap": 50'),
+    "an overlap is below 0": ('"overlap": 0.1', '"overlap": -0.1'),
+    "a gap is below 0": ('"gap_mm": 0.0', '"gap_mm": -1'),
+    "a gap is larger than any printer": ('"gap_mm": 0.0', '"gap_mm": 1e30'),
+    "a clearance is below 0": ('"clearance": 0.5', '"clearance": -3'),
+    "a lift is larger than any printer": ('"lift": 3.0', '"lift": 1e9'),
+    "a least area is below 0": ('"min_area_mm2": 0.5', '"min_area_mm2": -1'),
+    "an angle of a part is above 89": ('"overhang_angle_deg": 30.0', '"overhang_angle_deg": 90'),
+    "a volume is below 0": ('"volume_mm3": 800.0', '"volume_mm3": -1'),
+    "the build volume is astronomical": ('"size": [250, 210, 220]', '"size": [250, 210, 1e300]'),
+    "a region's triangle is none of the part": ('"triangles": [1, 3]', '"triangles": [1, 12]'),
+    "a region's triangle is huge": ('"triangles": [1, 3]', '"triangles": [1, 4000000000]'),
+    "a region paints without triangles": ('"mesh": [[', '"triangles": [1], "mesh": [['),
+    "a region's mesh has no vertices": ('"mesh": [[', '"mesh": [[], [['),
+    "a region's mesh is a number": ('"mesh": [[', '"mesh": [7, ['),
+    "a listed point is astronomical": ("[4, 5, 6]", "[4, 5, 6e30]"),
+    "a listed radius is below 0": ('"radius": 0.7', '"radius": -1'),
+    "a listed radius is larger than any printer": ('"radius": 0.7', '"radius": 1e9'),
+    "a listed area is below 0": ('"measure": 12.5', '"measure": -1'),
     "a support holds no known part": ('"holds": [0]', '"holds": [3]'),
     "a support holds half a part": ('"holds": [0]', '"holds": [0.5]'),
     "a listed region is of no part": ('"part": 2, "label"', '"part": 3, "label"'),
@@ -263,6 +288,21 @@ def test_a_damaged_record_is_refused_in_one_line(edited, claim):
     with pytest.raises(InputError, match=r"edited\.3mf: amprep's metadata in the file is damaged") as refused:
         edited(*BROKEN[claim])
     assert "\n" not in str(refused.value)
+
+
+def test_a_painted_region_may_have_the_area_of_the_part_and_no_more(make_build, round_trip):
+    build = make_build()
+    plate = build.parts[0].part
+    every = np.arange(len(plate.mesh.triangles), dtype=np.int32)
+    for stretch, is_read in ((1.0, True), (1.1, False)):
+        mesh = Mesh(plate.mesh.vertices * stretch, plate.mesh.triangles)
+        part = replace(plate, regions=(Region("blocker", "painted", every, mesh),))
+        parts = (replace(build.parts[0], part=part), *build.parts[1:])
+        if is_read:
+            assert len(round_trip(replace(build, parts=parts)).parts[0].part.regions) == 1
+        else:
+            with pytest.raises(InputError, match="a region paints"):
+                round_trip(replace(build, parts=parts))
 
 
 MISCOUNTED = {
