@@ -19,11 +19,15 @@ PLATE = 0.06
 
 
 class Overhang(NamedTuple):
-    """An overhang region: what it is, its size in mm, and whether the part starts in the air there."""
+    """An overhang region: what it is, its size in mm, and whether the part starts in the air there.
+
+    A knife edge that the part holds at one end is limited like a ledge, else like a bridge.
+    """
 
     kind: str
     size: float
     starts: bool = False
+    at_one_end: bool = False
 
 
 class Shape(NamedTuple):
@@ -383,7 +387,7 @@ def _shapes():
     yield "round bar", lambda: bar(6, round_section(3)), [("bridge", 6.0)]
     yield "knife edge between walls", lambda: bar(3.5, keel_section(4, 60)), [("edge", 3.5)]
     yield "long knife edge between walls", lambda: bar(9, keel_section(4, 60)), [("edge", 9.0)]
-    yield "knife edge of an arm", lambda: keel(1.7, 60), [("edge", 1.7)]
+    yield "knife edge of an arm", lambda: keel(1.7, 60), [("edge", 1.7, False, True)]
     lift = 12 * np.cos(np.radians(30)) - PLATE / np.tan(np.radians(30))
     yield "tilted block", lambda: tilted_block(12, 30), [("ledge", lift)]
     yield "engraved letter", lambda: engraved(0.45, 3), [("ledge", 0.45)] * 3

@@ -18,7 +18,8 @@ class PartOverhangs(NamedTuple):
     """The overhangs of a placed part, and the mesh that their indices refer to.
 
     The mesh is the part's own mesh in build coordinates. Where the border of a blocker or enforcer crosses
-    triangles, these are subdivided.
+    triangles, these are subdivided, and so are those that a limit divides. Where a limit divides a knife edge, the
+    point there is a vertex without triangles.
     """
 
     mesh: Mesh
@@ -70,6 +71,6 @@ def _limited(modified: ModifiedMesh, rules: SupportRules, angle_deg: float) -> P
         noncritical_deg=rules.noncritical_angle_deg,
         modifiers=modified.modifiers,
     )
-    if found.triangles is mesh.triangles:
+    if found.vertices is mesh.vertices:
         return PartOverhangs(mesh, found.overhangs)
     return PartOverhangs(Mesh(found.vertices, found.triangles), found.overhangs)

@@ -10,6 +10,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.overhangs.lines import Reaches
+from amprep.checks.overhangs.starts import plateaus
 from amprep.checks.overhangs.surface import LEVEL, MergedMesh
 
 _MOST = 2_000_000
@@ -17,7 +18,13 @@ _MOST = 2_000_000
 
 
 def carried_along(
-    surface: MergedMesh, ends: Int64s, points: Floats, edge: Int64s, reaches: Reaches, plate: float
+    surface: MergedMesh,
+    ends: Int64s,
+    points: Floats,
+    edge: Int64s,
+    reaches: Reaches,
+    plate: float,
+    held: Bools,
 ) -> Bools:
     """Tell which points on knife edges the part itself carries, ``(n,)``.
 
@@ -33,11 +40,13 @@ def carried_along(
         Limits.
     plate
         Height up to which geometry is on the plate, mm.
+    held
+        ``(n,)`` bool, points of the part that are anchors because supports hold them.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
-    anchor = _anchors(surface, ends, reaches.angle, plate)
+    anchor = _anchors(surface, ends, reaches.angle, plate) | held
     node, count = _cut(ends, anchor)
     terminals = np.unique(node[anchor[ends]])
     if not len(points) or not len(terminals):
@@ -58,7 +67,8 @@ def carried_along(
 def _anchors(surface: MergedMesh, ends: Int64s, angle: float, plate: float) -> Bools:
     """Tell from which points of knife edges the part goes further down, ``(n,)`` bool over all points.
 
-    It does so steeply, or anyhow at a point from which no knife edge goes down.
+    It does so steeply, or anyhow at a point from which no knife edge goes down. A local minimum, a dip or a start, is
+    such a point, too.
     """
     points = surface.points
     both = np.concatenate([surface.ends, surface.ends[:, ::-1]])
@@ -71,6 +81,8 @@ def _anchors(surface: MergedMesh, ends: Int64s, angle: float, plate: float) -> B
     has_lower[sharp[points[sharp[:, 1], 2] < points[sharp[:, 0], 2] - LEVEL, 0]] = True
     on_edges = np.zeros(len(points), np.bool_)
     on_edges[ends] = True
+    plateau = plateaus(surface)
+    goes_down |= ~np.isin(plateau, plateau[goes_down])
     return np.asarray(on_edges & (is_steep | (goes_down & ~has_lower) | (points[:, 2] <= plate)))
 
 

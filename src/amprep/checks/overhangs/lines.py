@@ -11,6 +11,9 @@ height differs by no more than the overhang angle allows over the distance. The 
     than the overhang angle, and the diameter is at most `bore_mm`. Between parallel anchors their distance counts,
     since lines along the oblique end of a bore are longer.
 
+In a region in which the part starts in the air, an anchor counts only if it is hardly higher than the point, as it is
+printed later otherwise; of the two ends in (b) and (c) one suffices.
+
 At the open end of a bridge or bore no straight line may lead from anchor to anchor, because the rim is bent or frayed.
 Points that are at most `_RIM` from points that (b) or (c) carry are carried, too.
 
@@ -85,7 +88,13 @@ class _Ends(NamedTuple):
 
 
 def carried(
-    points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches, *, thorough: bool = True
+    points: Floats,
+    region: Int64s,
+    edges: RegionEdges,
+    reaches: Reaches,
+    climb: Floats,
+    *,
+    thorough: bool = True,
 ) -> Bools:
     """Tell which points of overhang regions the part itself carries, ``(n,)``.
 
@@ -97,13 +106,15 @@ def carried(
         Edges of the regions.
     reaches
         Limits.
+    climb
+        ``(n,)`` greatest height (mm) of an anchor above each point.
     thorough
         Whether points that no line carries are tried with more lines.
     """
     found = np.zeros(len(points), np.bool_)
     for reach in (min(_NEAR, reaches.ledge), reaches.ledge):
         left = np.flatnonzero(~found)
-        found[left] = _sees_anchor(points[left], region[left], edges, reach, reaches.angle)
+        found[left] = _sees_anchor(points[left], region[left], edges, reach, reaches.angle, climb[left])
     anchored = np.isin(region, np.unique(edges.region[edges.is_anchor]))
     longest = max(reaches.ledge, reaches.bridge, _STRAIGHT * reaches.bore)
     oblique = max(longest, _OBLIQUE * reaches.bore)
@@ -111,12 +122,16 @@ def carried(
         ((_FEW, longest), (_MORE, longest), (_MANY, oblique)) if thorough else ((_FEW, longest),)
     ):
         left = np.flatnonzero(~found & anchored)
-        found[left] = _carried_by_lines(points[left], region[left], edges, reaches, reach, count)
+        found[left] = _carried_by_lines(
+            points[left], region[left], edges, reaches, climb[left], longest=reach, count=count
+        )
     left = np.flatnonzero(~found & anchored)
     if thorough and len(left):
         inner = _away_from_rims(points[left], region[left], edges)
         both_sides = reaches._replace(ledge=-1.0)
-        found[left] = _carried_by_lines(inner, region[left], edges, both_sides, oblique, _MORE)
+        found[left] = _carried_by_lines(
+            inner, region[left], edges, both_sides, climb[left], longest=oblique, count=_MORE
+        )
     return found
 
 
@@ -176,7 +191,9 @@ def _pairs(groups: Sequence[_Group]) -> Iterator[tuple[Int64s, Int64s]]:
         yield np.concatenate(points), np.concatenate(edges)
 
 
-def _sees_anchor(points: Floats, region: Int64s, edges: RegionEdges, reach: float, angle: float) -> Bools:
+def _sees_anchor(
+    points: Floats, region: Int64s, edges: RegionEdges, reach: float, angle: float, climb: Floats
+) -> Bools:
     """Tell from which points the nearest anchor is at most `reach` away and visible inside the region."""
     away = np.full(len(points), np.inf)
     foot = np.zeros((len(points), 3))
@@ -184,6 +201,7 @@ def _sees_anchor(points: Floats, region: Int64s, edges: RegionEdges, reach: floa
         place, distance = _nearest(points[i], edges.start[j], edges.end[j])
         near = distance <= reach
         near &= np.abs(place[:, 2] - points[i, 2]) <= distance * np.tan(angle) + _SLACK
+        near &= place[:, 2] - points[i, 2] <= climb[i]
         order = np.flatnonzero(near)
         order = order[np.lexsort((distance[order], i[order]))]
         own, first = np.unique(i[order], return_index=True)
@@ -224,7 +242,14 @@ def _blocks(points: Floats, foot: Floats, start: Floats, end: Floats) -> Bools:
 
 
 def _carried_by_lines(
-    points: Floats, region: Int64s, edges: RegionEdges, reaches: Reaches, longest: float, count: int
+    points: Floats,
+    region: Int64s,
+    edges: RegionEdges,
+    reaches: Reaches,
+    climb: Floats,
+    *,
+    longest: float,
+    count: int,
 ) -> Bools:
     """Tell which points one of `count` lines carries."""
     found = np.zeros(len(points), np.bool_)
@@ -235,8 +260,9 @@ def _carried_by_lines(
         ahead, back = _ends(points, edges, pairs, direction, reaches.angle)
         for end in (ahead, back):
             end.at_anchor[end.distance > longest] = False
-            found |= end.at_anchor & (end.distance <= reaches.ledge)
+            found |= end.at_anchor & (end.distance <= reaches.ledge) & (end.height - points[:, 2] <= climb)
         both = ahead.at_anchor & back.at_anchor
+        both &= np.minimum(ahead.height, back.height) - points[:, 2] <= climb
         span = ahead.distance + back.distance
         found |= both & (span <= reaches.bridge)
         arches = np.flatnonzero(both & ~found & (span <= _OBLIQUE * reaches.bore))

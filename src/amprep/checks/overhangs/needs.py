@@ -1,19 +1,21 @@
 """Tell which sample points of overhangs need a contact: those that the part itself does not carry.
 
 With the rules of the thesis all of them do. With limits the judge flags only what is certainly not carried: it grants
-the planner `GRANT_MM` on every limit. A region in which the part starts in the air needs contacts everywhere.
+the planner `GRANT_MM` on every limit. Where the part starts in the air, the start needs contacts, and so does what only
+higher anchors would carry, because these are printed later. A level start that is wide carries what is beside it.
 """
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.overhangs.along_edges import carried_along
+from amprep.checks.overhangs.bases import JudgedStarts, judged_starts, widths, with_bases
 from amprep.checks.overhangs.borders import region_edges, regions_of
 from amprep.checks.overhangs.lines import Reaches, carried
 from amprep.checks.overhangs.samples import ENFORCED, JudgedOverhangs
 from amprep.checks.overhangs.search import ROUNDING
 from amprep.checks.overhangs.starts import starts_in_air
-from amprep.checks.overhangs.surface import MergedMesh, labels
+from amprep.checks.overhangs.surface import LEVEL, MergedMesh, labels
 from amprep.model.supports.rules import OverhangRules
 
 GRANT_MM = 0.08
@@ -49,7 +51,9 @@ def are_needed(found: JudgedOverhangs, rules: OverhangRules, rows: Int64s, *, st
     sign = -1.0 if strict else 1.0
     reaches = _reaches(rules, found.angle, sign)
     plate = rules.plate_mm + ROUNDING
-    starts = starts_in_air(found.surface, plate, rules.layer_mm + sign * ROUNDING)
+    in_air = starts_in_air(found.surface, plate, rules.layer_mm + sign * ROUNDING)
+    faces, climb = found.overhangs.faces.astype(np.int64), max(rules.layer_mm + sign * GRANT_MM, 0.0)
+    starts = judged_starts(found.surface, faces, in_air, rules.ledge_mm, climb, sign)
     samples = found.samples.chosen(rows)
     needed = samples.points[:, 2] > plate
     on_faces = np.flatnonzero(needed & (samples.kind == 0) & (samples.owner != ENFORCED))
@@ -75,7 +79,7 @@ def _carried_faces(
     found: JudgedOverhangs,
     points: Floats,
     owner: Int64s,
-    starts: Bools,
+    starts: JudgedStarts,
     reaches: Reaches,
     plate: float,
     thorough: bool,
@@ -87,21 +91,19 @@ def _carried_faces(
         return np.zeros(0, np.bool_)
     region = regions_of(surface, faces)
     edges = region_edges(surface, faces, region, reaches.angle, plate)
-    in_air = np.zeros(int(region.max()) + 1, np.bool_)
-    in_air[region[starts[surface.triangles[faces]].any(axis=1)]] = True
-    is_carried = (_widths(surface, faces, region) <= _NOISE)[region[owner]] & ~in_air[region[owner]]
-    rows = np.flatnonzero(~in_air[region[owner]] & ~is_carried)
-    inner = _inwards(surface, points[rows], faces[owner[rows]])
-    is_carried[rows] = carried(inner, region[owner[rows]], edges, reaches, thorough=thorough)
+    edges = with_bases(edges, surface, faces, starts.wide)
+    corners = surface.triangles[faces]
+    touching, in_air = np.zeros((2, int(region.max()) + 1), np.bool_)
+    touching[region[starts.points[corners].any(axis=1)]] = True
+    in_air[region[starts.level[faces] | starts.pointed[corners].any(axis=1)]] = True
+    is_carried = ((widths(surface, faces, region) <= _NOISE) & ~in_air)[region[owner]]
+    lowest = np.where(starts.pointed[corners], surface.points[corners, 2], -np.inf).max(axis=1)
+    at_start = starts.level[faces[owner]] | (points[:, 2] <= lowest[owner] + LEVEL)
+    rows = np.flatnonzero(~at_start & ~is_carried)
+    inner, own = _inwards(surface, points[rows], faces[owner[rows]]), region[owner[rows]]
+    climb = np.where(touching[own], starts.climb, np.inf)
+    is_carried[rows] = carried(inner, own, edges, reaches, climb, thorough=thorough)
     return is_carried
-
-
-def _widths(surface: MergedMesh, faces: Int64s, region: Int64s) -> Floats:
-    """Return the width (mm) of each region: that of a strip with the same area and perimeter."""
-    edge, first, count = np.unique(surface.edge[faces], return_index=True, return_counts=True)
-    length = np.linalg.norm(np.diff(surface.points[surface.ends[edge]], axis=1)[:, 0], axis=1)
-    perimeter = np.bincount(region[first // 3], weights=np.where(count == 1, length, 0.0))
-    return np.asarray(2.0 * np.bincount(region, weights=surface.area[faces]) / np.maximum(perimeter, 1e-12))
 
 
 def _inwards(surface: MergedMesh, points: Floats, face: Int64s) -> Floats:
@@ -112,7 +114,12 @@ def _inwards(surface: MergedMesh, points: Floats, face: Int64s) -> Floats:
 
 
 def _carried_edges(
-    found: JudgedOverhangs, points: Floats, owner: Int64s, starts: Bools, reaches: Reaches, plate: float
+    found: JudgedOverhangs,
+    points: Floats,
+    owner: Int64s,
+    starts: JudgedStarts,
+    reaches: Reaches,
+    plate: float,
 ) -> Bools:
     """Tell which samples on knife edges the part itself carries."""
     surface = found.surface
@@ -123,6 +130,8 @@ def _carried_edges(
         return np.zeros(0, np.bool_)
     region = labels(ends.reshape(-1), np.repeat(np.arange(len(ends)), 2), len(ends))
     in_air = np.zeros(int(region.max()) + 1, np.bool_)
-    in_air[region[starts[ends].any(axis=1)]] = True
-    is_carried = carried_along(surface, ends, points, owner, reaches, plate)
+    in_air[region[starts.pointed[ends].any(axis=1)]] = True
+    held = np.zeros(len(surface.points), np.bool_)
+    held[surface.triangles[starts.wide]] = True
+    is_carried = carried_along(surface, ends, points, owner, reaches, plate, held)
     return np.asarray(is_carried & ~in_air[region[owner]])

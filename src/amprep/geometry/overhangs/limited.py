@@ -6,9 +6,10 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int32s, Int64s
 from amprep.geometry.overhangs.candidates import Candidates, Modifiers, find_candidates
-from amprep.geometry.overhangs.carried.borders import region_faces
+from amprep.geometry.overhangs.carried.borders import RegionFaces, region_faces
 from amprep.geometry.overhangs.carried.points import Carrier, Limits, make_carrier
-from amprep.geometry.overhangs.carried.sizes import region_sizes
+from amprep.geometry.overhangs.carried.sizes import RegionSize, region_sizes
+from amprep.geometry.overhangs.carried.starts import Starts, find_starts
 from amprep.geometry.overhangs.carried.stitch import Stitched, stitch
 from amprep.geometry.overhangs.carried.stretches import edge_regions
 from amprep.geometry.overhangs.carried.subdivide import Pieces, subdivide_at_limits
@@ -22,7 +23,9 @@ from amprep.geometry.overhangs.regions import (
 )
 
 # Strategy. Faces flatter than the angle form natural regions, whether blocked, enforced or not: how the part carries
-# them is geometry. Regions that start in the air need support as a whole; the others are subdivided at the limits.
+# them is geometry. Where a region starts in the air, supports hold the start, and what is printed before the anchors
+# that would carry it; a wide level start is held completely, so that it carries what is beside it as the plate does.
+# All else is subdivided at the limits.
 # Only then blockers take pieces away and enforcers add faces, and what is left is labelled again, since a blocker may
 # cut a region in two. Faces that need support as a whole or not at all keep their own triangles, so the mesh grows
 # only where a limit divides a face.
@@ -33,7 +36,10 @@ _NARROW = 0.01
 
 
 class LimitedOverhangs(NamedTuple):
-    """Overhangs, and the mesh ``(n, 3)``, ``(m, 3)`` that their indices refer to."""
+    """Overhangs, and the mesh ``(n, 3)``, ``(m, 3)`` that their indices refer to.
+
+    Points at which stretches of knife edges end are among the vertices, but no triangle has them.
+    """
 
     vertices: Floats
     triangles: Int32s
@@ -68,8 +74,9 @@ def find_limited_overhangs(
 
     A point of an overhang region is carried if a straight line in plan leads over the region to a border that the
     part holds, no longer than a ledge may be; if it is on a line between two such borders, no longer than a bridge
-    may be; or if it is under an arch whose diameter is at most that of a bore. Nothing is carried in a region in
-    which the part starts in the air. Where a limit divides a face, the mesh is subdivided.
+    may be; or if it is under an arch whose diameter is at most that of a bore. Where the part starts in the air, its
+    start needs support, and so does what is printed before the part reaches such a border. Where a limit divides a
+    face, the mesh is subdivided.
 
     Parameters
     ----------
@@ -86,52 +93,66 @@ def find_limited_overhangs(
         vertices, triangles, limits.angle_deg, modifiers, plate=limits.plate, dip=limits.layer
     )
     surface = found.surface
-    carrier = make_carrier(
-        region_faces(surface, found.normals, found.natural, limits.plate), found.normals, limits
-    )
-    judged = _judge_faces(found, carrier)
+    starts = find_starts(surface, found.minimum, found.natural, limits.ledge)
+    own = region_faces(surface, found.normals, found.natural, limits.plate, starts.wide)
+    carrier = make_carrier(own, found.normals, limits, _hanging(found, own, starts))
+    judged = _judge_faces(found, carrier, starts)
     label = np.full(len(triangles), -1)
     label[found.faces] = numbered_by_first(components_of_faces(surface, found.faces))
     parent = judged.stitched.parent
     region, needed = label[parent], (judged.needed | found.enforced[parent]) & found.faces[parent]
     corners = judged.points[judged.stitched.triangles]
-    regions = _sized_regions(found, carrier, corners, parent, region, needed)
+    regions = _sized_regions(found, carrier, starts, corners, parent, region, needed)
     spared = np.zeros(len(triangles), np.bool_)
     if noncritical_deg > limits.angle_deg:
         spared = overhanging_faces(surface, found.normals, noncritical_deg, limits.plate)
         spared &= ~found.natural & ~found.enforced & ~found.blocked
     regions += noncritical_regions(surface, spared)
-    edges, edge_number, of_edges = edge_regions(found, limits)
-    edge_number += len(regions)
-    regions += of_edges
+    edges = edge_regions(found, starts, limits)
+    edge_number = edges.number + len(regions)
+    regions += edges.regions
     tip_number, of_tips = tip_regions(found)
     tip_number += len(regions)
     regions += of_tips
     chosen = np.flatnonzero(needed)
     beside = np.flatnonzero(~needed & (region >= 0) & np.isin(region, region[chosen]))
     first = surface.first.astype(np.int32)
+    finer, corners_of = _mesh(vertices, triangles, found, judged)
+    points = np.concatenate([first, len(finer) + np.arange(len(edges.points), dtype=np.int32)])
     overhangs = Overhangs(
         chosen.astype(np.int32),
         region[chosen].astype(np.int32),
-        first[edges],
+        points[edges.ends].astype(np.int32),
         edge_number.astype(np.int32),
         first[found.tips],
         tip_number.astype(np.int32),
         tuple(regions),
         beside.astype(np.int32),
     )
-    return LimitedOverhangs(*_mesh(vertices, triangles, found, judged), overhangs)
+    if len(edges.points):
+        finer = np.concatenate([finer, edges.points])
+    return LimitedOverhangs(finer, corners_of, overhangs)
 
 
-def _judge_faces(found: Candidates, carrier: Carrier) -> _JudgedFaces:
-    """Subdivide the natural regions at the limits, and tell which triangles need support."""
+def _hanging(found: Candidates, own: RegionFaces, starts: Starts) -> Bools:
+    """Tell which faces are in natural regions that touch a start in the air."""
+    touching = starts.touching[found.surface.triangles[own.face]].any(axis=1)
+    return np.isin(own.label, own.label[touching])
+
+
+def _judge_faces(found: Candidates, carrier: Carrier, starts: Starts) -> _JudgedFaces:
+    """Subdivide the natural regions at the limits, and tell which triangles need support.
+
+    Supports hold level starts completely, and what touches a start without level faces.
+    """
     surface, own = found.surface, carrier.regions
-    corners = surface.triangles[own.face]
-    hanging = np.zeros(int(own.label.max(initial=-1)) + 1, np.bool_)
-    hanging[own.label[(found.minimum[corners] >= 0).any(axis=1)]] = True
-    pieces = subdivide_at_limits(carrier, surface.points, corners, ~(hanging | _slivers(carrier))[own.label])
+    corners, level, sliver = surface.triangles[own.face], starts.level[own.face], _slivers(carrier)[own.label]
+    pieces = subdivide_at_limits(carrier, surface.points, corners, ~(level | sliver))
+    at_start = np.zeros(len(pieces.points), np.bool_)
+    at_start[: len(surface.points)] = starts.pointed
+    pieces = pieces._replace(needed=pieces.needed | at_start[pieces.triangles].any(axis=1))
     mixed = _mixed(pieces, len(own.face))
-    needed = hanging[own.label]
+    needed = level | (sliver & starts.pointed[corners].any(axis=1))
     needed[pieces.face[pieces.needed]] = True
     kept = mixed[pieces.face]
     stitched = stitch(
@@ -168,22 +189,29 @@ def _mixed(pieces: Pieces, count: int) -> Bools:
 
 
 def _sized_regions(
-    found: Candidates, carrier: Carrier, corners: Floats, parent: Int64s, region: Int64s, needed: Bools
+    found: Candidates,
+    carrier: Carrier,
+    starts: Starts,
+    corners: Floats,
+    parent: Int64s,
+    region: Int64s,
+    needed: Bools,
 ) -> list[OverhangRegion]:
-    """Return the regions of faces with their kinds and sizes."""
+    """Return the regions of faces with their kinds and sizes; nothing carries wide starts."""
     count = int(region.max(initial=-1)) + 1
     holds = np.bincount(region[needed], minlength=count) == 0
     position = np.full(len(found.natural), -1)
     position[carrier.regions.face] = np.arange(len(carrier.regions.face))
     chosen = needed | (region >= 0)
     chosen[chosen] &= needed[chosen] | holds[region[chosen]]
-    judged = np.flatnonzero(chosen & (position[parent] >= 0))
+    judged = np.flatnonzero(chosen & (position[parent] >= 0) & ~starts.wide[parent])
     sizes = region_sizes(carrier, corners[judged], position[parent[judged]], region[judged], holds)
+    sizes |= dict.fromkeys(region[needed & starts.wide[parent]].tolist(), RegionSize("flat", 0.0, 0.0))
     own = np.flatnonzero(chosen)
-    starts = np.zeros(count, np.bool_)
-    touching = (found.minimum[found.surface.triangles[parent]] >= 0).any(axis=1) & (region >= 0)
-    starts[region[touching]] = True
-    return face_regions(corners[own], region[own], sizes, holds, starts)
+    in_air = np.zeros(count, np.bool_)
+    touching = starts.level | starts.pointed[found.surface.triangles].any(axis=1)
+    in_air[region[touching[parent] & (region >= 0)]] = True
+    return face_regions(corners[own], region[own], sizes, holds, in_air)
 
 
 def _mesh(

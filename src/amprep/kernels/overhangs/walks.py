@@ -55,6 +55,8 @@ class CarryingLimits(NamedTuple):
         Length (mm) at which walks end.
     plate
         Height (mm) up to which a region is on the plate.
+    climb
+        ``(m,)`` how far (mm) a walk from a point of each face to what carries it may rise above the point.
     """
 
     bridge: float
@@ -62,6 +64,7 @@ class CarryingLimits(NamedTuple):
     rise: float
     most: float
     plate: float
+    climb: Floats
 
 
 @helper
@@ -136,6 +139,8 @@ def _chord(
     other, kind, z2, top2 = _walk(faces, face, x, y, z, -dx, -dy, limits.most - one, limits.plate)
     if kind != ANCHOR:
         return np.inf, np.inf
+    if min(top1, top2) > z + limits.climb[face]:
+        return np.inf, np.inf
     bridge = one + other
     rise = max(top1, top2) - max(z1, z2)
     is_arch = rise >= limits.rise * bridge and min(one, other) <= nearest
@@ -152,8 +157,8 @@ def _towards(
 ) -> float:
     """Return the length of a walk to an anchor, infinite where it does not lead to one."""
     x, y, z = point
-    length, kind, _, _ = _walk(faces, face, x, y, z, direction[0], direction[1], limits.most, limits.plate)
-    return length if kind == ANCHOR else np.inf
+    length, kind, _, top = _walk(faces, face, x, y, z, direction[0], direction[1], limits.most, limits.plate)
+    return length if kind == ANCHOR and top <= z + limits.climb[face] else np.inf
 
 
 @njit(cache=True)

@@ -194,3 +194,24 @@ def test_certainly_carried_and_certainly_needed_leave_a_margin_between_them():
         assert surely_needed <= maybe_needed
     assert len(needed_points(placed(ledge(1.0)), strict=True)) > 0
     assert len(needed_points(placed(ledge(1.0)))) == 0
+
+
+def lifted(chamfer):
+    """A block of 10 mm x 10 mm, 3 mm above the plate, with a chamfer of 30 degrees around its underside."""
+    far, rise = 5 + chamfer, chamfer * np.tan(np.radians(30))
+    corners = [(x * h, y * h, z) for h, z in ((5, 3), (far, 3 + rise)) for x in (-1, 1) for y in (-1, 1)]
+    return Solid.hull_points(np.array(corners)) + box((2 * far, 2 * far, 5), (-far, -far, 3 + rise))
+
+
+@pytest.mark.parametrize(("chamfer", "carried"), [(0.6, True), (2.0, False)])
+def test_a_level_start_carries_the_chamfer_beside_it_and_needs_contacts_itself(chamfer, carried):
+    points = needed_points(placed(lifted(chamfer)), kind="face")
+    assert len(points[points[:, 2] == 3.0]) >= 400
+    assert (points[:, 2].max() < 3.1) == carried
+
+
+def test_of_a_bore_with_a_burr_only_the_burr_needs_contacts():
+    base = [(x, y, 18.05) for x in (-0.5, 0.5) for y in (-0.5, 0.5)]
+    points = needed_points(placed(bore(6.0) + Solid.hull_points(np.array([*base, (0.0, 0.0, 17.7)]))))
+    assert len(points) > 0
+    assert np.abs(points[:, :2]).max() < 1.2

@@ -42,7 +42,7 @@ def is_carried(expected, limits):
     if expected.starts:
         return False
     if expected.kind == "edge":
-        return expected.size <= max(limits.bridge, limits.ledge)
+        return expected.size <= (limits.ledge if expected.at_one_end else max(limits.bridge, limits.ledge))
     return expected.size <= limit_of(expected.kind, limits)
 
 

@@ -61,12 +61,14 @@ class _Halves(NamedTuple):
     side: Int64s
 
 
-def region_faces(surface: Surface, normals: Floats, overhanging: Bools, plate: float) -> RegionFaces:
+def region_faces(
+    surface: Surface, normals: Floats, overhanging: Bools, plate: float, base: Bools | None = None
+) -> RegionFaces:
     """Return the faces of overhang regions, with what is beyond their sides.
 
     The part carries a region along an edge if the face on the other side goes down from the edge and the solid has
     an angle of at least 180 degrees there. Along edges on the plate, and where faces reach down to the plate, the
-    plate carries it.
+    plate carries it; along the rim of a base, the base does.
 
     Parameters
     ----------
@@ -76,6 +78,8 @@ def region_faces(surface: Surface, normals: Floats, overhanging: Bools, plate: f
         ``(m,)`` bool, the faces of the regions.
     plate
         Height (mm) up to which geometry is on the plate.
+    base
+        ``(m,)`` bool, overhanging faces that carry those beside them.
     """
     from amprep.kernels.overhangs.walks import ANCHOR, FREE
 
@@ -88,13 +92,18 @@ def region_faces(surface: Surface, normals: Floats, overhanging: Bools, plate: f
     row, column = position[surface.half_face[own]], 2 - halves.side[own]
     paired = partner >= 0
     inner = paired & overhanging[surface.half_face[partner]]
+    from_base = np.zeros(len(own), np.bool_)
+    if base is not None:
+        from_base = inner & base[surface.half_face[partner]] & ~base[surface.half_face[own]]
+        inner &= ~from_base
     across = partner[inner]
     beyond[row[inner], column[inner]] = 3 * position[surface.half_face[across]] + 2 - halves.side[across]
     ends = surface.edges[surface.half_edge[own]]
     anchored = surface.points[ends, 2].max(axis=1) <= plate
-    rim = np.flatnonzero(paired & ~inner)
+    rim = np.flatnonzero(paired & ~inner & ~from_base)
     rim = rim[_goes_down(surface, normals, halves, own[rim], partner[rim])]
     anchored[rim] = True
+    anchored |= from_base
     anchored &= ~inner
     beyond[row[anchored], column[anchored]] = ANCHOR
     label = components_of_faces(surface, overhanging)

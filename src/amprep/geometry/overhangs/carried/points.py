@@ -63,6 +63,9 @@ class Carrier(NamedTuple):
         ``(n,)`` mm of the regions that are part of a cylinder or sphere, else NaN.
     arch
         ``(m,)`` mm, largest chord of an arch over each face.
+    climb
+        ``(m,)`` mm, how far what carries a point of each face may be above it: a layer in regions in which the part
+        starts in the air, because what is higher is printed later; else infinite.
     tree
         Samples of the anchors, with their region as the third coordinate.
     owner
@@ -73,18 +76,21 @@ class Carrier(NamedTuple):
     limits: Limits
     diameters: Floats
     arch: Floats
+    climb: Floats
     tree: "KDTree"
     owner: Int64s
 
-    def ledges(self, points: Floats, face: Int64s) -> Floats:
-        """Return the length ``(n,)`` mm of the shortest ledge at points ``(n, 3)`` on the regions' faces ``(n,)``."""
+    def ledges(self, points: Floats, face: Int64s, *, in_order: bool = False) -> Floats:
+        """Return the length ``(n,)`` mm of the shortest ledge at points ``(n, 3)`` on the regions' faces ``(n,)``.
+
+        With `in_order` only ledges count that are printed no later than the point.
+        """
         from amprep.kernels.overhangs.walks import find_ledges
 
         target, _ = self.nearest(points, face)
         ledges = np.empty(len(points))
-        find_ledges(
-            self._faces(), self._kernel_limits(np.inf), np.ascontiguousarray(points), face, target, ledges
-        )
+        limits = self._kernel_limits(np.inf, in_order=in_order)
+        find_ledges(self._faces(), limits, np.ascontiguousarray(points), face, target, ledges)
         return ledges
 
     def spans(
@@ -95,7 +101,8 @@ class Carrier(NamedTuple):
         Lines along a ring that is carried on one side only are no arches: unless the region is a cylinder or a sphere,
         an end of an arch is hardly farther from a point than its shortest ledge ``(n,)``.
 
-        Without `fully` the search ends as soon as one is within its limit, and it does not find longer ones.
+        Without `fully` the search ends as soon as one is within its limit, it does not find longer ones, and only those
+        count of which one end is printed no later than the point.
         """
         from amprep.kernels.overhangs.walks import find_spans
 
@@ -105,7 +112,7 @@ class Carrier(NamedTuple):
         most = np.inf if fully else self._longest()
         find_spans(
             self._faces(),
-            self._kernel_limits(most),
+            self._kernel_limits(most, in_order=not fully),
             np.ascontiguousarray(points),
             face,
             target,
@@ -117,7 +124,7 @@ class Carrier(NamedTuple):
 
     def carries(self, points: Floats, face: Int64s) -> Bools:
         """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries."""
-        ledges = self.ledges(points, face)
+        ledges = self.ledges(points, face, in_order=True)
         carried = ledges <= self.limits.ledge + TOLERANCE
         left = np.flatnonzero(~carried)
         bridge, arch = self.spans(points[left], face[left], ledges[left])
@@ -167,23 +174,35 @@ class Carrier(NamedTuple):
         bores = self.diameters[self.diameters <= self.limits.bore + TOLERANCE]
         return float(max(self.limits.bridge, chords.max(initial=0.0), 2 * bores.max(initial=0.0)) + TOLERANCE)
 
-    def _kernel_limits(self, most: float) -> "CarryingLimits":
+    def _kernel_limits(self, most: float, *, in_order: bool) -> "CarryingLimits":
         from amprep.kernels.overhangs.walks import CarryingLimits
 
         rise = float(np.tan(np.radians(self.limits.angle_deg) / 2) / 4) - 1e-3
         bridge = self.limits.bridge + TOLERANCE
-        return CarryingLimits(bridge, self.arch + TOLERANCE, rise, most, self.limits.plate)
+        climb = self.climb if in_order else np.full(len(self.arch), np.inf)
+        return CarryingLimits(bridge, self.arch + TOLERANCE, rise, most, self.limits.plate, climb)
 
 
-def make_carrier(regions: RegionFaces, normals: Floats, limits: Limits) -> Carrier:
-    """Prepare the faces of regions for measurements; `normals` are those of all faces of the surface."""
+def make_carrier(regions: RegionFaces, normals: Floats, limits: Limits, hanging: Bools) -> Carrier:
+    """Prepare the faces of regions for measurements.
+
+    Parameters
+    ----------
+    regions, limits
+        The faces, and the limits.
+    normals
+        ``(k, 3)`` unit normals of all faces of the surface.
+    hanging
+        ``(m,)`` bool, faces of the regions in which the part starts in the air.
+    """
     from scipy.spatial import KDTree
 
     diameters = fitted_diameters(regions, normals, int(regions.label.max(initial=-1)) + 1)
     arch = arch_limits(diameters, regions.label, limits.bore + TOLERANCE, limits.angle_deg)
     samples, owner = _samples(regions.anchors)
     keys = np.column_stack([samples, _APART * regions.anchor_label[owner]])
-    return Carrier(regions, limits, diameters, arch, KDTree(keys), owner)
+    climb = np.where(hanging, limits.layer, np.inf)
+    return Carrier(regions, limits, diameters, arch, climb, KDTree(keys), owner)
 
 
 def _samples(segments: Floats) -> tuple[Floats, Int64s]:

@@ -80,9 +80,9 @@ def _judge(carrier: Carrier, corners: Floats, face: Int64s) -> tuple[Bools, Bool
     needed = near - radius > carrier.farthest(face)
     split = np.zeros(len(face), np.bool_)
     left = np.flatnonzero(~needed)
-    left = left[carrier.ledges(middle[left], face[left]) + radius[left] > carrier.limits.ledge]
-    split[left] = radius[left] > _COARSEST
-    left = left[~split[left]]
+    beyond = carrier.ledges(middle[left], face[left], in_order=True) + radius[left] > carrier.limits.ledge
+    split[left] = beyond & (radius[left] > _COARSEST)
+    left = left[(beyond | np.isfinite(carrier.climb[face[left]])) & ~split[left]]
     needed[left] = ~carrier.carries(middle[left], face[left])
     left = left[radius[left] > _SMALL]
     tests = middle[left, None] + _INWARDS * (corners[left] - middle[left, None])
