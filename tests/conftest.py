@@ -5,6 +5,8 @@ import os
 import pytest
 from hypothesis import settings
 
+from amprep import supervision
+
 settings.register_profile("usual", deadline=None, derandomize=True, max_examples=100)
 settings.register_profile("nightly", deadline=None, max_examples=2000, print_blob=True)
 settings.load_profile("usual")
@@ -14,7 +16,11 @@ WITHOUT_COMPILATION = os.environ.get("NUMBA_DISABLE_JIT") == "1"
 
 
 def pytest_configure(config):
-    """Let hashes wrap around where kernels run as plain Python: numpy warns of that, numba does not."""
+    """Keep the process of the tests from forking, and let hashes wrap around where kernels run as plain Python.
+
+    numpy warns of that, numba does not.
+    """
+    supervision.ENABLED = False
     if WITHOUT_COMPILATION:
         config.addinivalue_line("filterwarnings", "ignore:overflow encountered in scalar:RuntimeWarning")
 

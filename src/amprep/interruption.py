@@ -4,12 +4,13 @@ A signal belongs to the process, hence so does the state of this module. The com
 uses the API keeps its own handlers, which then wait while files appear.
 """
 
+import atexit
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -21,15 +22,17 @@ REPEATED_AFTER_S = 0.5
 
 
 @dataclass
-class _State:
+class _SignalState:
     watching: bool = False
     received: int | None = None
     received_at: float = 0.0
     appeared: bool = False
+    tell: Callable[[], None] | None = None
     late: int | None = None
+    ending: bool = False
 
 
-_STATE = _State()
+_STATE = _SignalState()
 
 
 def watch() -> None:
@@ -38,9 +41,21 @@ def watch() -> None:
     The first signal raises `KeyboardInterrupt`. Another one after `REPEATED_AFTER_S` ends the process at once, because
     the code that runs may catch every exception.
     """
-    _STATE.__dict__.update(vars(_State(watching=True)))
+    _STATE.__dict__.update(vars(_SignalState(watching=True)))
     for number in SIGNALS:
         signal.signal(number, _handle)
+
+
+def end() -> None:
+    """Ignore signals from now on: the result is known, and the process ends."""
+    _STATE.ending = True
+    atexit.register(_ignore_signals)
+
+
+def _ignore_signals() -> None:
+    """Keep signals from ending the process by their default actions, which Python restores when it unloads itself."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def received() -> int | None:
@@ -66,6 +81,13 @@ def exit_code() -> int:
 def files_appeared() -> None:
     """Note that all files of the run are in place; from now on a signal changes nothing of the result."""
     _STATE.appeared = True
+    if _STATE.tell is not None:
+        _STATE.tell()
+
+
+def tell_when_files_appear(tell: Callable[[], None]) -> None:
+    """Let `files_appeared` call a function."""
+    _STATE.tell = tell
 
 
 @contextmanager
@@ -88,6 +110,8 @@ def held() -> Iterator[None]:
 
 
 def _handle(number: int, _frame: FrameType | None) -> None:
+    if _STATE.ending:
+        return
     if _STATE.appeared:
         _STATE.late = number
         signal.signal(

@@ -60,5 +60,5 @@ def test_annealing_is_at_least_as_dense_as_extreme_points_on_boxes(capsys):
     rows = {name: run(problem, moves) for name, moves in (("extreme-points", 0), ("annealing", 2000))}
     with capsys.disabled():
         for name, (height, density, spent) in rows.items():
-            print(f"\n{name:15} {height:7.1f} mm  {density:6.1%}  {spent:6.1f} s", end="")  # noqa: T201
+            print(f"\n{name:15} {height:7.1f} mm  {density:6.1%}  {spent:6.1f} s", end="")
     assert rows["annealing"][1] >= rows["extreme-points"][1]

@@ -51,6 +51,6 @@ def test_640_parts_in_contact_are_judged_in_seconds(clearance):
     found, counts = judge_placed(placed, settings, Stop())
     spent = time.process_time() - start
     triangles = sum(len(each.part.mesh.triangles) for each in placed)
-    print(f"{triangles} triangles, clearance {clearance}, {len(found)} violations, {counts}: {spent:.1f} s")  # noqa: T201
+    print(f"{triangles} triangles, clearance {clearance}, {len(found)} violations, {counts}: {spent:.1f} s")
     assert spent < LIMIT
     assert bool(found) == (clearance > 0.0)

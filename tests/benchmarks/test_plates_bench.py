@@ -46,7 +46,7 @@ def test_packers_need_no_more_plates_than_the_nesting_package(scene, packer, rec
     ours, theirs = bench.run(1, SECONDS), spyrrow_plates(scene, seconds=SECONDS, seed=1)
     record_property("plates", ours.plates)
     record_property("ratio", ours.plates / theirs.plates)
-    print(f"{packer} {ours.plates}, spyrrow {theirs.plates} plates, ratio {ours.plates / theirs.plates:.2f}")  # noqa: T201
+    print(f"{packer} {ours.plates}, spyrrow {theirs.plates} plates, ratio {ours.plates / theirs.plates:.2f}")
     assert ours.validated, ours.faults
     assert theirs.validated, theirs.faults
     if packer == "plates":

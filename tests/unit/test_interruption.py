@@ -77,6 +77,16 @@ def test_an_interrupt_without_a_signal_is_raised_by_code():
     assert interruption.is_raised_by_code()
 
 
+def test_signals_are_ignored_when_the_result_is_known(monkeypatch):
+    monkeypatch.setattr("atexit.register", lambda function: function())
+    interruption.watch()
+    interruption.end()
+    for number in interruption.SIGNALS:
+        assert signal.getsignal(number) is signal.SIG_IGN
+        interruption._handle(number, None)
+    assert interruption.received() is None
+
+
 def test_a_second_signal_ends_code_that_catches_everything():
     stubborn = (
         "import os, signal, time\n"

@@ -5,9 +5,6 @@ import signal
 import sys
 from typing import NoReturn
 
-from amprep import interruption
-from amprep.errors import AmprepError, Interrupted
-
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
 """Exit codes: done; done, but something is unplaced, unsupported or broken; wrong input or usage; ended by Ctrl-C."""
 
@@ -18,12 +15,15 @@ def _say(line: str) -> None:
 
 def _end_interrupted(error: BaseException) -> NoReturn:
     """Say that the run was interrupted, and end at once."""
+    from amprep import interruption, supervision
+    from amprep.errors import Interrupted
+
     _say(_line_of(error) if isinstance(error, Interrupted) else "interrupted; nothing was written")
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(
-        interruption.exit_code()
-    )  # Python may crash when it unloads compiled libraries that were interrupted
+    supervision.finish(interruption.exit_code())
+    # Python may crash when it unloads compiled libraries that were interrupted
+    os._exit(interruption.exit_code())
 
 
 def _line_of(error: BaseException) -> str:
@@ -32,6 +32,8 @@ def _line_of(error: BaseException) -> str:
 
 def _say_late() -> None:
     """Tell the user that a signal came too late to stop the run."""
+    from amprep import interruption
+
     late = interruption.came_late()
     if late is not None:
         _say(f"{signal.Signals(late).name} came when the files appeared; all of them are complete")
@@ -39,6 +41,25 @@ def _say_late() -> None:
 
 def main() -> NoReturn:
     """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
+    # until `watch`, because imports that are interrupted print tracebacks
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from amprep import interruption, supervision
+
+    try:
+        _run()
+    except SystemExit as end:
+        interruption.end()
+        supervision.finish(end.code if isinstance(end.code, int) else int(end.code is not None))
+        raise
+    except BaseException:
+        supervision.finish(INCOMPLETE)  # the code of Python for an error that --debug shows
+        raise
+
+
+def _run() -> NoReturn:
+    from amprep import interruption
+    from amprep.errors import AmprepError, Interrupted
+
     debug = "--debug" in sys.argv
     interruption.watch()
     # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
@@ -47,7 +68,6 @@ def main() -> NoReturn:
         from amprep.cli.app import app
 
         app()
-        _say_late()
         sys.exit(DONE)
     except (KeyboardInterrupt, Interrupted) as error:
         _end_interrupted(error)

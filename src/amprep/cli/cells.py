@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
-from amprep.cli.options import AsJson
+from amprep.cli.options import AsJson, supervise_plugins
 
 if TYPE_CHECKING:
     from amprep.pipeline.check_cell import CellReport
@@ -27,6 +27,7 @@ app = typer.Typer(no_args_is_help=True, help="List the available lattice cells, 
 @app.command("list")
 def list_all(as_json: AsJson = False, modules: Modules = None) -> None:
     """List every lattice cell with its kind, its parameters and the plugin that provides it."""
+    supervise_plugins(modules)
     from amprep.host import Host
     from amprep.pipeline.resolve import cell_named
 
@@ -79,6 +80,7 @@ def check(
     Exit codes: 0 if every promise holds, 1 if one is broken, 2 if the cell
     does not exist or cannot be made in this grid.
     """
+    supervise_plugins(modules)
     from amprep.host import Host
     from amprep.pipeline.check_cell import check_cell
     from amprep.pipeline.resolve import cell_named

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from amprep.cli.job import finish
-from amprep.cli.options import NoPlugins, Plugins, ReadingOptions, job_option, output_option, with_options
+from amprep.cli.options import (
+    NoPlugins,
+    Plugins,
+    ReadingOptions,
+    job_option,
+    output_option,
+    supervise_plugins,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from amprep.report.inspection.record import InspectionRecord
@@ -94,6 +102,12 @@ def inspect(
 
 def _inspected(inputs: list[str], volumes: list[str], options: InspectionOptions) -> "InspectionRecord":
     """Call the public API with progress bars."""
+    supervise_plugins(
+        options.plugins,
+        without_plugins=options.no_plugins,
+        output=options.output,
+        time_limit=options.time_limit,
+    )
     from rich.console import Console
 
     from amprep.cli.progress import Bars

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import typer
 
 from amprep import cli
-from amprep.cli.options import BuildOptions, JobOptions
+from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -41,6 +41,12 @@ def call_api(
     own
         Further arguments of the function.
     """
+    supervise_plugins(
+        options.plugins,
+        without_plugins=options.no_plugins,
+        output=own.get("output"),
+        time_limit=own.get("time_limit_s"),
+    )
     from rich.console import Console
 
     from amprep.cli.progress import Bars

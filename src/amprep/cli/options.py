@@ -1,6 +1,7 @@
 """Options that several commands share, each declared once, and a decorator that adds them to a command."""
 
 import inspect
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import partial, wraps
@@ -25,6 +26,36 @@ NoPlugins = Annotated[
     bool, typer.Option("--no-plugins", help="Use the built-in plugins only.", rich_help_panel=_PLUGINS)
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+def supervise_plugins(
+    modules: list[str] | None,
+    *,
+    without_plugins: bool = False,
+    output: Path | None = None,
+    time_limit: float | None = None,
+) -> None:
+    """Watch over this process from a second one if plugins may be loaded that are not built in.
+
+    Call it before any other module is imported: a process with threads must not fork.
+
+    Parameters
+    ----------
+    modules, without_plugins
+        Values of ``-p`` and ``--no-plugins``.
+    output
+        Output folder.
+    time_limit
+        Value of ``--time-limit``.
+    """
+    asked = any(not name.startswith("no:") for name in modules or [])
+    if asked or not (without_plugins or os.environ.get("AMPREP_LOAD_PLUGINS") == ""):
+        from importlib.metadata import entry_points
+
+        from amprep.supervision import supervise
+
+        if asked or entry_points(group="amprep"):
+            supervise(output, time_limit)
 
 
 job_option = partial(typer.Option, rich_help_panel=_JOB)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from amprep import cli
-from amprep.cli.options import AsJson
+from amprep.cli.options import AsJson, supervise_plugins
 
 if TYPE_CHECKING:
     from amprep.hookspecs import Offer
@@ -32,6 +32,7 @@ def list_all(
     no_plugins: Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")] = False,
 ) -> None:
     """List every offer with the plugin that provides it."""
+    supervise_plugins(modules, without_plugins=no_plugins)
     from amprep.host import Host
 
     host = Host.load(modules=modules or [], plugins_enabled=not no_plugins)
@@ -65,6 +66,7 @@ def check(
     Exit codes: 0 if every promise holds, 1 if one is broken, 2 if the plugin
     cannot be loaded.
     """
+    supervise_plugins([package])
     from amprep.testing.conformance import try_plugin
 
     trials = try_plugin(package, samples=sample or [])

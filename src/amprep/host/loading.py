@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import Distribution, EntryPoint, distributions, entry_points
+from itertools import islice
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -25,6 +26,9 @@ BUILT_IN = (
     "amprep.plugins.cells",
 )
 CHOSEN_BY_ENVIRONMENT = "AMPREP_LOAD_PLUGINS"
+
+MOST_OFFERS = 1000
+"""Largest number of offers of one hook; a hook that yields for ever ends there."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +112,10 @@ def offers_of(plugin: object) -> Iterator[tuple[Kind, Offer]]:
 
 def one_line(error: BaseException) -> str:
     """Return an exception as ``ValueError: message`` in one line of at most 300 characters."""
-    text = " ".join(str(error).split())
+    try:
+        text = " ".join(str(error).split())
+    except Exception:  # noqa: BLE001 the class of a stranger
+        text = ""
     line = f"{type(error).__name__}: {text}" if text else type(error).__name__
     return line if len(line) <= 300 else line[:297] + "..."
 
@@ -117,7 +124,9 @@ def _taken(kind: Kind, results: list[Any]) -> list[Offer]:
     hook = KINDS[kind].hook
     if not results:
         raise PluginError(f"{hook} returned nothing; yield the offers, or return a list of them")
-    offers = [offer for result in results for offer in result]
+    offers = list(islice((offer for result in results for offer in result), MOST_OFFERS + 1))
+    if len(offers) > MOST_OFFERS:
+        raise PluginError(f"{hook} yields more than {MOST_OFFERS} offers")
     faults = [fault for offer in offers for fault in faults_of(kind, offer)]
     if faults:
         raise PluginError("; ".join(faults))

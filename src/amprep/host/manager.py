@@ -1,5 +1,6 @@
 """The host: list the offers of all plugins, choose one by name, and guard every call."""
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
@@ -7,15 +8,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, overload
 
-from amprep import typed
-from amprep.errors import AmprepError, InputError, PluginError, nearest_hint
+from amprep import interruption, supervision, typed
+from amprep.errors import AmprepError, InputError, Interrupted, PluginError, nearest_hint
 from amprep.hookspecs import CellEmitter, MeshReader, Offer, Packer, SupportRouter, VolumeMaker
+from amprep.host.answers import fault_of_answer
 from amprep.host.loading import CHOSEN_BY_ENVIRONMENT, Source, built_in, given, installed, offers_of, one_line
 from amprep.host.mismatch import mismatches
 from amprep.host.offers import KINDS, Kind, Listed
 from amprep.model.bounding_volume import BoundingVolume, TurnedVolume
 from amprep.model.cell_shapes import DeclaredCell
 from amprep.model.cells import Cells
+from amprep.model.control import Stop
 from amprep.model.packing import Packing, PackingProblem, require_values
 from amprep.model.part import Part
 from amprep.model.supports import SupportPlan
@@ -161,7 +164,9 @@ class Host:
         ------
         PluginError
             When the plugin raises an exception other than an `AmprepError`, which is then the cause, or returns a
-            value of the wrong type.
+            value of the wrong type. A malformed value of a plugin that is not built in is refused, too.
+        Interrupted
+            When a signal ends the run while a plugin runs that is not built in.
         """
         result = self._guarded(listed, listed.offer.run, *args, **kwargs)
         wanted = KINDS[listed.kind].result
@@ -170,6 +175,9 @@ class Host:
             raise PluginError(f"{listed.title} returned {type(result).__name__}, expected {expected}")
         if wanted == (list,) and not all(isinstance(each, Part) for each in result):
             raise PluginError(f"{listed.title} returned a list with items that are not Part")
+        fault = "" if listed.builtin or not args else fault_of_answer(listed.kind, args[0], result)
+        if fault:
+            raise PluginError(f"{listed.title} returned {fault}")
         return result
 
     def material(
@@ -300,18 +308,33 @@ class Host:
 
     @staticmethod
     def _guarded(listed: Listed[Offer], run: Any, *args: Any, **kwargs: Any) -> Any:
-        try:
-            return run(*args, **kwargs)
-        except AmprepError:
+        part = f" on part {args[0].name!r}" if args and isinstance(args[0], Part) else ""
+        if listed.builtin:
+            return _run(listed.title, part, run, *args, **kwargs)
+        stop = kwargs.get("stop")
+        with supervision.calling(listed.title, stop.deadline if isinstance(stop, Stop) else None):
+            return _run(listed.title, part, run, *args, interruptible=True, **kwargs)
+
+
+def _run(title: str, part: str, run: Any, *args: Any, interruptible: bool = False, **kwargs: Any) -> Any:
+    """Call a function of a plugin; turn all that it raises into an error of one line that names the plugin."""
+    try:
+        return run(*args, **kwargs)
+    except AmprepError:
+        raise
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt) and not interruption.is_raised_by_code():
+            if interruptible and interruption.received() is not None:
+                raise Interrupted(f"interrupted while {title} ran; nothing was written") from error
             raise
-        except (Exception, SystemExit) as error:
-            part = f" on part {args[0].name!r}" if args and isinstance(args[0], Part) else ""
-            raise PluginError(f"{listed.title} failed{part}: {one_line(error)}") from error
+        raise PluginError(f"{title} failed{part}: {one_line(error)}") from error
 
 
 def _two_floats(material: Any, pitch: float, step: float, params: Any) -> tuple[float, float]:
-    vertical, oblique = material(pitch, step, params)
-    return float(vertical), float(oblique)
+    vertical, oblique = map(float, material(pitch, step, params))
+    if not (0.0 <= vertical < math.inf and 0.0 <= oblique < math.inf):
+        raise ValueError(f"volumes of edges must be finite and not negative, got {vertical:g}, {oblique:g}")
+    return vertical, oblique
 
 
 def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]]:
@@ -321,9 +344,12 @@ def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]
     seen: list[object] = []
     for source in sources:
         try:
-            plugin = source.load()
-            offers = [] if any(plugin is each for each in seen) else list(offers_of(plugin))
-        except (Exception, SystemExit) as error:
+            plugin, offers = _loaded(source, seen)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) and not interruption.is_raised_by_code():
+                raise Interrupted(
+                    f"interrupted while {source.title} was loaded; nothing was written"
+                ) from error
             reason = str(error) if isinstance(error, PluginError) else one_line(error)
             if source.asked_for:
                 raise PluginError(f"{source.title} cannot be loaded: {reason}") from error
@@ -335,6 +361,19 @@ def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]
             for kind, offer in offers
         ]
     return listed, warnings
+
+
+def _loaded(source: Source, seen: Sequence[object]) -> tuple[object, list[tuple[Kind, Offer]]]:
+    """Load a plugin; return it with its offers, none if it was seen before."""
+
+    def load() -> tuple[object, list[tuple[Kind, Offer]]]:
+        plugin = source.load()
+        return plugin, [] if any(plugin is each for each in seen) else list(offers_of(plugin))
+
+    if source.builtin:
+        return load()
+    with supervision.calling(source.title):
+        return load()
 
 
 def _not_blocked(blocked: Sequence[str], sources: Sequence[Source]) -> list[str]:

@@ -7,7 +7,8 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from amprep.errors import InputError, JobError, MeshError, PluginError
+from amprep import interruption
+from amprep.errors import InputError, Interrupted, JobError, MeshError, PluginError
 from amprep.hookspecs import (
     CellEmitter,
     MeshReader,
@@ -134,7 +135,15 @@ def test_a_bug_in_a_params_class_is_the_plugins_fault():
 
 
 @pytest.mark.parametrize(
-    "error", [ValueError("bad\nnews"), RecursionError(), MemoryError(), SystemExit(1), StopIteration()]
+    "error",
+    [
+        ValueError("bad\nnews"),
+        RecursionError(),
+        MemoryError(),
+        SystemExit(0),
+        StopIteration(),
+        GeneratorExit(),
+    ],
 )
 def test_whatever_a_plugin_raises_becomes_one_line_with_the_cause_kept(error):
     def run(problem):
@@ -148,7 +157,9 @@ def test_whatever_a_plugin_raises_becomes_one_line_with_the_cause_kept(error):
 
 
 @pytest.mark.parametrize("error", [MeshError("bracket: open"), KeyboardInterrupt()])
-def test_errors_on_purpose_and_interrupts_pass_through(error):
+def test_errors_on_purpose_and_interrupts_pass_through(error, monkeypatch):
+    monkeypatch.setattr(interruption, "is_raised_by_code", lambda: False)
+
     def run(problem):
         raise error
 
@@ -156,6 +167,37 @@ def test_errors_on_purpose_and_interrupts_pass_through(error):
     with pytest.raises(type(error)) as caught:
         host_of(listed).call(listed, None)
     assert caught.value is error
+
+
+def test_an_interrupt_that_no_signal_sent_is_a_failure_of_the_plugin(monkeypatch):
+    monkeypatch.setattr(interruption, "is_raised_by_code", lambda: True)
+
+    def run(problem):
+        raise KeyboardInterrupt
+
+    listed = packer(run)
+    with pytest.raises(PluginError, match=r"^packer 'rows' of dist 1\.2 failed: KeyboardInterrupt$"):
+        host_of(listed).call(listed, None)
+
+
+def test_an_interrupt_of_the_user_names_the_plugin_that_ran(monkeypatch):
+    monkeypatch.setattr(interruption, "received", lambda: 2)
+
+    def run(problem):
+        raise KeyboardInterrupt
+
+    listed = packer(run)
+    with pytest.raises(
+        Interrupted, match=r"^interrupted while packer 'rows' of dist 1\.2 ran; nothing was written$"
+    ):
+        host_of(listed).call(listed, None)
+
+
+@pytest.mark.parametrize("volumes", [(-1.0, 1.0), (float("nan"), 1.0), (1.0, float("inf"))])
+def test_an_estimate_that_is_no_volume_is_refused(volumes):
+    bad = Listed("cell", CellEmitter("b", "y", run=print, material=lambda pitch, step, params: volumes), "p")
+    with pytest.raises(PluginError, match="volumes of edges must be finite and not negative"):
+        host_of(bad).material(bad, 2.0, 3.0, NoParams())
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ from amprep.model.summary import Summarised
 from amprep.overhangs.known import KnownOverhangs
 from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
+from amprep.pipeline.packing.judging import refuse_wrong_packing
 from amprep.pipeline.packing.parts import bound_for_parts
 from amprep.pipeline.packing.placing import placed_part
 from amprep.pipeline.packing.reserve import find_reserves, is_as_good, room_notes, with_room
@@ -148,6 +149,7 @@ def _pack(
         stop=packing_stop(stop, job),
         progress=progress,
     )
+    refuse_wrong_packing(resolved.packer, problem, packing)
     return adjusted(problem, packing, parts, job.packing, stop)
 
 

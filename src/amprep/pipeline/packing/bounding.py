@@ -11,8 +11,9 @@ from amprep.errors import PluginError
 from amprep.hookspecs import PackerAccepts, VolumeMaker
 from amprep.host import Chosen
 from amprep.host.mismatch import narrowed
-from amprep.model import Orientations, Part, Progress, Solid, Stop, TurnedVolume
+from amprep.model import BoundingVolume, Orientations, Part, Progress, Solid, Stop, TurnedVolume
 from amprep.model.bounding_volume import as_turned
+from amprep.pipeline.packing.judging import refuse_wrong_volume
 from amprep.pipeline.reading import LoadedParts
 
 
@@ -51,8 +52,14 @@ def bound_part(part: Part, makers: Sequence[Chosen[VolumeMaker]], seed: int, sto
         When a maker fails, or one before the last does not make a solid.
     """
     for maker in makers[:-1]:
-        part = _bounded_by(part, maker, maker.call(part, rng=np.random.default_rng(seed), stop=stop))
-    return as_turned(makers[-1].call(part, rng=np.random.default_rng(seed), stop=stop))
+        part = _bounded_by(part, maker, _made_by(maker, part, seed, stop))
+    return as_turned(_made_by(makers[-1], part, seed, stop))
+
+
+def _made_by(maker: Chosen[VolumeMaker], part: Part, seed: int, stop: Stop) -> BoundingVolume | TurnedVolume:
+    made: BoundingVolume | TurnedVolume = maker.call(part, rng=np.random.default_rng(seed), stop=stop)
+    refuse_wrong_volume(maker, part, made)
+    return made
 
 
 def offered_orientations(allowed: Orientations, turn: Floats, accepts: PackerAccepts) -> Orientations:
