@@ -1,6 +1,7 @@
 """Measure legs: stretches of support without a brace or a wall beside them."""
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -102,8 +103,7 @@ def legs_of(mesh: Mesh, thickness: float, limit: float, parts: Sequence[Mesh] = 
     first = (_OFFSET + np.floor(vertices[:, 2].min() / thickness) - 1) * thickness
     pieces = pieces_of_slabs(vertices, mesh.triangles, first, thickness)
     pieces = _without_loose_ends(pieces, vertices, parts)
-    measured = (_measured(chain, pieces, thickness) for chain in _chains(pieces))
-    legs = sorted((leg for leg in measured if leg.ratio >= 1.0), reverse=True)
+    legs = sorted(_measured(list(_chains(pieces)), pieces, thickness), reverse=True)
     too_long = tuple(leg for leg in legs if 0.0 < limit * (1 + 1e-9) < leg.ratio)
     return BodyLegs(len(legs), legs[0] if legs else None, too_long)
 
@@ -145,25 +145,58 @@ def _chains(pieces: SlabPieces) -> Iterator[list[int]]:
         yield chain
 
 
-def _measured(chain: list[int], pieces: SlabPieces, thickness: float) -> MeasuredLeg:
-    """Return the stretch of a leg with the greatest ratio of length to width."""
-    widths = np.array(without_bends(pieces.width[chain].tolist()))
-    centres = pieces.centre[chain]
-    ends = np.diff(centres[:, :2], axis=0, prepend=centres[:1, :2])
-    lengths = np.hypot(thickness, np.minimum(np.hypot(*ends.T), thickness))
-    best = MeasuredLeg(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
-    for width in np.unique(widths)[::-1]:
-        if lengths.sum() / width <= best.ratio:
-            continue
-        for first, last in _runs(widths <= width):
-            length = float(lengths[first:last].sum())
-            if length / width > best.ratio:
-                x, y, z = centres[first:last].mean(axis=0).tolist()
-                best = MeasuredLeg(length / float(width), length, float(width), (x, y, z))
+class _Stretch(NamedTuple):
+    """A stretch of a leg: ratio, length and width (mm), the index of its first piece and the index after its last."""
+
+    ratio: float
+    length_mm: float
+    width_mm: float
+    first: int
+    last: int
+
+
+def _measured(chains: Sequence[Sequence[int]], pieces: SlabPieces, thickness: float) -> list[MeasuredLeg]:
+    """Return the worst stretch of each leg that is longer than wide."""
+    begins = np.cumsum([0, *(len(chain) for chain in chains)])
+    members = np.fromiter((piece for chain in chains for piece in chain), np.int64, int(begins[-1]))
+    centres = np.vstack(
+        [pieces.centre[members], np.zeros(3)]
+    )  # with one row more, for sums up to the last one
+    moved = np.diff(centres[:-1, :2], axis=0, prepend=0.0)
+    moved[begins[:-1]] = 0.0
+    lengths = np.hypot(thickness, np.minimum(np.hypot(*moved.T), thickness)).tolist()
+    widths = pieces.width[members].tolist()
+    found = []
+    for begin, end in pairwise(begins.tolist()):
+        worst = _worst_stretch(without_bends(widths[begin:end]), lengths[begin:end])
+        if worst.ratio >= 1.0:
+            found.append(worst._replace(first=begin + worst.first, last=begin + worst.last))
+    ends = np.array([(each.first, each.last) for each in found], np.int64).reshape(-1, 2)
+    sums = np.add.reduceat(centres, ends.ravel())[::2] if found else np.empty((0, 3))
+    middles = (sums / np.diff(ends)).tolist()
+    return [
+        MeasuredLeg(each.ratio, each.length_mm, each.width_mm, (x, y, z))
+        for each, (x, y, z) in zip(found, middles, strict=True)
+    ]
+
+
+def _worst_stretch(widths: Sequence[float], lengths: Sequence[float]) -> _Stretch:
+    """Return the stretch of a leg with the greatest ratio of length to width.
+
+    Strategy. The worst stretch with a given widest piece extends to the nearest wider pieces on both sides. A stack
+    of pieces, each no wider than those below it, yields these for all pieces in linear time.
+    """
+    first, last = [0] * len(widths), [len(widths)] * len(widths)
+    stack: list[int] = []
+    for piece, width in enumerate(widths):
+        while stack and widths[stack[-1]] < width:
+            last[stack.pop()] = piece
+        if stack:
+            first[piece] = first[stack[-1]] if widths[stack[-1]] == width else stack[-1] + 1
+        stack.append(piece)
+    best = _Stretch(0.0, 0.0, 0.0, 0, 0)
+    for piece in sorted(range(len(widths)), key=lambda piece: -widths[piece]):
+        length = sum(lengths[first[piece] : last[piece]])
+        if length / widths[piece] > best.ratio:
+            best = _Stretch(length / widths[piece], length, widths[piece], first[piece], last[piece])
     return best
-
-
-def _runs(chosen: Bools) -> Iterator[tuple[int, int]]:
-    """Yield the first index and the index after the last of each run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
-    return zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
