@@ -51,12 +51,14 @@ def find_unsupported(
         held = find_held(samples.points, placed.mesh, bodies, settings, spacing)
         left = np.flatnonzero(~held)
         areas = triangle_areas(own.mesh.vertices[own.mesh.triangles[own.overhangs.faces]])
-        reasons = np.array(reasons_at(part, samples.points[left]), dtype=object)
-        for number in np.unique(samples.region[left]):
-            here = samples.region[left] == number
+        reasons = np.full(len(held), None, dtype=object)
+        reasons[left] = reasons_at(part, samples.points[left])
+        for number, chosen_samples in _samples_of_regions(samples, np.unique(samples.region[left])):
+            within = _taken(samples, chosen_samples)
             found_region = own.overhangs.regions[number]
-            region = _RegionCoverage(samples, held, found_region, areas, settings.rules, reach)
-            for reason, minor, chosen in region.patches(left[here], reasons[here]):
+            region = _RegionCoverage(within, held[chosen_samples], found_region, areas, settings.rules, reach)
+            open_ones = np.flatnonzero(~region.held)
+            for reason, minor, chosen in region.patches(open_ones, reasons[chosen_samples][open_ones]):
                 found.append(
                     Unsupported(
                         part,
@@ -64,12 +66,26 @@ def find_unsupported(
                         region.region.feature,
                         reason,
                         region.measure(chosen),
-                        _thinned(samples.points[chosen], reach / 3),
+                        _thinned(within.points[chosen], reach / 3),
                         reach,
                         minor,
                     )
                 )
     return tuple(found)
+
+
+def _samples_of_regions(samples: OverhangSamples, numbers: Ints) -> Iterator[tuple[int, Ints]]:
+    """Yield regions and the indices of their samples; all samples are sorted once, since regions may be thousands."""
+    order = np.argsort(samples.region, kind="stable")
+    first, end = (np.searchsorted(samples.region[order], numbers, side=side) for side in ("left", "right"))
+    for number, start, stop in zip(numbers.tolist(), first, end, strict=True):
+        yield number, order[start:stop]
+
+
+def _taken(samples: OverhangSamples, chosen: Ints) -> OverhangSamples:
+    return OverhangSamples(
+        samples.points[chosen], samples.region[chosen], samples.inner[chosen], samples.face[chosen]
+    )
 
 
 def region_name(region: int, label: str) -> str:
@@ -83,7 +99,7 @@ class _RegionCoverage(NamedTuple):
     Attributes
     ----------
     samples, held
-        The samples of the part, and which of them are held.
+        The samples of the region, and which of them are held.
     region
         The region.
     areas
