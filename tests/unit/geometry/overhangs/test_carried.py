@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.shared import bore_shapes
 from tests.shared.examples import examples
 from tests.shared.overhang_shapes import PLATE, SHAPES, bore, box, bridge, ledge
 from tests.shared.solids import arrays
@@ -70,7 +71,7 @@ def closest_profiles(shape):
     return sorted(PROFILES, key=distance)[:2]
 
 
-@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
+@pytest.mark.parametrize("shape", SHAPES + bore_shapes.SHAPES, ids=lambda shape: shape.name)
 def test_a_made_shape_has_the_verdicts_that_follow_from_its_dimensions(shape):
     mesh = arrays(shape.make())
     for profile in closest_profiles(shape):
