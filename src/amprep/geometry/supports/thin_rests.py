@@ -44,6 +44,9 @@ _SEGMENTS = 16
 _SPECK = 1e-3
 """Area (mm2) that offsets of polygons leave by rounding."""
 
+_POINTS = 128
+"""Points that are compared with all contours at once."""
+
 # Strategy. Offsets of whole sections take most of the time of a test for thin places, so they are taken only there
 # where the outline tells that something may be thin.
 # 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees.
@@ -79,6 +82,21 @@ class Contours(NamedTuple):
         boxes = union_of([box(*each) for each in zip(low, high, strict=True)])
         return CrossSection(chosen, FillRule.Positive) ^ boxes
 
+    def cover(self, points: Floats) -> Bools:
+        """Tell which points ``(n, 2)`` mm are inside the region, by winding numbers."""
+        found = np.zeros(len(points), np.bool_)
+        if not self.contours:
+            return found
+        start = np.concatenate(self.contours)
+        end = np.concatenate([np.roll(each, -1, axis=0) for each in self.contours])
+        for first in range(0, len(points), _POINTS):
+            x, y = (each[:, None] for each in points[first : first + _POINTS].T)
+            side = (end - start)[:, 0] * (y - start[:, 1]) - (end - start)[:, 1] * (x - start[:, 0])
+            up = (start[:, 1] <= y) & (end[:, 1] > y) & (side > 0.0)
+            down = (start[:, 1] > y) & (end[:, 1] <= y) & (side < 0.0)
+            found[first : first + _POINTS] = up.sum(axis=1) > down.sum(axis=1)
+        return found
+
 
 def contours_of(region: "CrossSection") -> Contours:
     """Return the outlines of a region, simplified by at most 0.003 mm."""
@@ -90,7 +108,11 @@ def contours_of(region: "CrossSection") -> Contours:
 
 
 def find_thin_rests(
-    region: Contours, width: float, area: float, is_kept: "Callable[[CrossSection], bool]"
+    region: Contours,
+    width: float,
+    area: float,
+    is_kept: "Callable[[CrossSection], bool]",
+    are_held: Callable[[Floats], Bools],
 ) -> "list[CrossSection]":
     """Return the pieces of a section that are thinner than a width, and whole pieces that are smaller than an area.
 
@@ -102,9 +124,12 @@ def find_thin_rests(
         Least width (mm) and least area (mm2).
     is_kept
         Tells whether a piece may stay though it is thin.
+    are_held
+        Tells at which points ``(k, 2)`` mm pieces may stay, so that no narrow end there is looked at.
     """
     found: list[CrossSection] = []
     whole, ends = region, narrow_ends(region, width, area)
+    ends = ends[~are_held(ends)]
     for _ in range(_ROUNDS):
         cut = _rests_at(region, ends, width, area, is_kept) if len(ends) else []
         if not cut:
@@ -115,7 +140,7 @@ def find_thin_rests(
         left = whole.inside(low - around, high + around) - union_of(found).offset(_SMOOTH)
         region = contours_of(left)
         ends = narrow_ends(region, width, area)
-        ends = ends[_are_in(ends, low - width, high + width)]
+        ends = ends[_are_in(ends, low - width, high + width) & ~are_held(ends)]
     return found
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats
+from amprep.arrays import Bools, Floats
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.supports.footprints import box, union_of
@@ -203,6 +203,9 @@ class _RestFinder:
         self._area = max(least.area - 2.0 * _LESS * least.width, 0.0)
         self._contours = cache(lambda height: contours_of(solid.slice(height)))
         self._part_section = cache(lambda number, height: parts[number].slice(height))
+        self._grown_section = cache(
+            lambda number, height: contours_of(parts[number].slice(height).offset(_TOUCH))
+        )
         self._bounds = np.array([part.bounding_box() for part in parts]).reshape(-1, 6)
 
     def around(self, height: float, rest: "CrossSection") -> _Place:
@@ -217,7 +220,11 @@ class _RestFinder:
         if place.around is not None:
             region = contours_of(region.inside(*place.around))
         found = find_thin_rests(
-            region, self._width, self._area, lambda rest: self._is_kept(rest, place.height)
+            region,
+            self._width,
+            self._area,
+            lambda rest: self._is_kept(rest, place.height),
+            lambda ends: self._are_held(ends, place.height),
         )
         if found and place.around is not None:
             low, high = place.around
@@ -226,6 +233,13 @@ class _RestFinder:
             found = [rest ^ inner for rest in found]
         whole = union_of(found)
         return None if whole.is_empty() else whole
+
+    def _are_held(self, points: Floats, height: float) -> Bools:
+        """Tell which points ``(k, 2)`` mm of a section touch a part."""
+        held = np.zeros(len(points), np.bool_)
+        for part in range(len(self._parts)) if len(points) else ():
+            held |= self._grown_section(part, height).cover(points)
+        return held
 
     def _is_kept(self, rest: "CrossSection", height: float) -> bool:
         """Tell whether a rest touches a part, or is a tip that is not too thin."""

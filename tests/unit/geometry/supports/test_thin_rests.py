@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from manifold3d import CrossSection, OpType
 from tests.shared.examples import examples
@@ -12,9 +12,15 @@ from amprep.geometry.supports.thin_rests import contours_of, find_thin_rests, na
 WIDTH, AREA = 0.28, 0.07
 
 
-def rests(region, is_kept=lambda _: False):
+def nowhere(points):
+    return np.zeros(len(points), np.bool_)
+
+
+def rests(region, is_kept=lambda _: False, are_held=nowhere):
     """The rests, which may overlap, as one region."""
-    return CrossSection.batch_boolean(find_thin_rests(contours_of(region), WIDTH, AREA, is_kept), OpType.Add)
+    return CrossSection.batch_boolean(
+        find_thin_rests(contours_of(region), WIDTH, AREA, is_kept, are_held), OpType.Add
+    )
 
 
 def rectangle(width, length, turn=0.0, at=(0.0, 0.0)):
@@ -56,7 +62,7 @@ def test_wide_shapes_with_and_without_holes_have_no_rests(sides):
 
 def test_a_piece_that_is_wide_enough_but_too_small_is_a_rest():
     region = CrossSection.square((0.29, 0.29)) + rectangle(1.0, 1.0, at=(2.0, 0.0))
-    (found,) = find_thin_rests(contours_of(region), WIDTH, 0.09, lambda _: False)
+    (found,) = find_thin_rests(contours_of(region), WIDTH, 0.09, lambda _: False, nowhere)
     assert found.area() == pytest.approx(0.29**2)
 
 
@@ -65,3 +71,20 @@ def test_rests_that_may_stay_are_left_out():
     found = rests(strips, lambda piece: piece.bounds()[1] > 4.0)
     assert found.area() == pytest.approx(0.2)
     assert found.bounds()[3] < 1.0
+
+
+def test_thin_pieces_with_all_ends_where_they_may_stay_are_left_out():
+    strips = rectangle(0.1, 2.0) + rectangle(0.1, 2.0, at=(0.0, 5.0))
+    upper = contours_of(rectangle(1.0, 3.0, at=(-0.5, 4.5)))
+    found = rests(strips, are_held=upper.cover)
+    assert found.area() == pytest.approx(0.2)
+    assert found.bounds()[3] < 1.0
+
+
+@given(x=st.floats(-3.0, 3.0), y=st.floats(-3.0, 3.0))
+@examples(40)
+def test_a_ring_covers_the_points_between_its_circles(x, y):
+    ring = contours_of(CrossSection.circle(2.0, 400) - CrossSection.circle(1.0, 400))
+    radius = float(np.hypot(x, y))
+    assume(min(abs(radius - 1.0), abs(radius - 2.0)) > 0.01)
+    assert ring.cover(np.array([[x, y]])).tolist() == [1.0 < radius < 2.0]
