@@ -1,17 +1,22 @@
-"""Divide the overhangs of a build among passes of planning: regions with equal settings are supported together."""
+"""Divide the overhangs of a build among passes of planning, and plan these in an order.
 
-from collections.abc import Sequence
+Regions with equal settings are supported together. The order is that of the job, unless another one connects more.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Ints
 from amprep.model import PlacedPart
+from amprep.model.supports import ENCLOSED
 from amprep.overhangs.known import KnownOverhangs
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.paint import paint_of, split_by_paint
 from amprep.overhangs.selection import measure_regions, select_regions
 from amprep.pipeline.resolve import ResolvedJob
+from amprep.supports.plan import SupportLayout
 
 
 class TakenRegions(NamedTuple):
@@ -110,3 +115,67 @@ def passes_of(resolved: ResolvedJob, taken: TakenRegions) -> tuple[tuple[RegionP
         else:
             passes.append(RegionPass((number,), own))
     return tuple(passes), excepted
+
+
+class PlannedPass(NamedTuple):
+    """One pass of planning: some of the overhangs of a build, supported with the same settings.
+
+    Attributes
+    ----------
+    rules
+        Numbers of the ``[[rule]]`` entries with these settings, from 1; 0 for the settings of the job.
+    pitch_mm
+        Horizontal size of a voxel of the support grid.
+    layout
+        Layout of the supports.
+    """
+
+    rules: tuple[int, ...]
+    pitch_mm: float
+    layout: SupportLayout
+
+
+PlanPass = Callable[[int, Sequence[PlannedPass]], PlannedPass]
+"""Plans the pass of a number around the passes that were planned before it."""
+
+
+def plan_in_order(count: int, plan: PlanPass) -> tuple[PlannedPass, ...]:
+    """Return all passes, planned one after another; a pass that others enclose is planned first instead.
+
+    Only red squares that have a way without the other passes count as enclosed by them. An order is kept if more red
+    squares are connected in it, so the result is never worse than the order of the job.
+
+    Parameters
+    ----------
+    count
+        Number of passes, which are returned by their numbers.
+    plan
+        Plans one pass.
+    """
+    best = _planned(range(count), plan)
+    for number in range(1, count):
+        enclosed = _enclosed(best[number])
+        if not enclosed or _enclosed(plan(number, ())) >= enclosed:
+            continue
+        again = _planned([number, *(each for each in range(count) if each != number)], plan)
+        if _unconnected(again) < _unconnected(best):
+            best = again
+    return tuple(best)
+
+
+def _planned(order: Iterable[int], plan: PlanPass) -> list[PlannedPass]:
+    """Plan passes in an order, and return them by their numbers."""
+    done: dict[int, PlannedPass] = {}
+    for number in order:
+        done[number] = plan(number, tuple(done.values()))
+    return [done[number] for number in sorted(done)]
+
+
+def _enclosed(planned: PlannedPass) -> int:
+    """Return the number of red squares without a way."""
+    return planned.layout.reasons.count(ENCLOSED)
+
+
+def _unconnected(planned: Sequence[PlannedPass]) -> int:
+    """Return the number of red squares that are not connected."""
+    return sum(int((~each.layout.connected).sum()) for each in planned)

@@ -59,6 +59,7 @@ def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord
         unconnected=tuple(each for layout in layouts for each in _unconnected(supported, layout)),
         shared_supports=tuple(words for layout in layouts for words in layout.shared),
         notes=tuple(words for layout in layouts for words in layout.notes),
+        rules=supported.rules,
     )
 
 
@@ -118,9 +119,21 @@ def run_record(
             *(f"{part.name}: {note}" for part in loaded.parts for note in part.notes),
             *loaded.notes,
             *packed.notes,
+            *_unused_rules(job, builds),
         ),
         by_default=tuple(filter(None, [job.default_distances])),
         settings={name: asdict(getattr(job, name)) for name in ("packing", "supports", "cells")},
+    )
+
+
+def _unused_rules(job: Job, builds: Sequence[BuildRecord]) -> tuple[str, ...]:
+    """Return a sentence on the ``[[rule]]`` entries that take no region of any build; none without supports."""
+    used = frozenset().union(*(entry.rules for entry in builds))
+    unused = [str(number) for number in range(1, len(job.rules) + 1) if number not in used]
+    if not unused or not job.supports.enabled:
+        return ()
+    return (
+        f"no overhang meets the conditions of [[rule]] {', '.join(unused)}, or earlier entries take them",
     )
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
-from amprep.pipeline.passes import TakenRegions, passes_of, take_regions
+from amprep.pipeline.passes import PlannedPass, TakenRegions, passes_of, plan_in_order, take_regions
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
@@ -55,6 +54,8 @@ class SupportedBuild(Summarised):
         Settings to try where something stays unsupported, one sentence each.
     removal
         Figures on the removal of each support body.
+    rules
+        Numbers of the ``[[rule]]`` entries that take a region, from 1; 0 if one is left to the settings of the job.
     """
 
     build: Build
@@ -62,6 +63,7 @@ class SupportedBuild(Summarised):
     overhangs: tuple[PartOverhangs, ...] = ()
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
+    rules: frozenset[int] = frozenset()
 
     def __str__(self) -> str:
         """Summary in one line."""
@@ -71,24 +73,6 @@ class SupportedBuild(Summarised):
             f"{build.settings.build_id}: {len(build.parts)} parts, {len(build.supports)} supports, "
             f"{open_regions} unsupported regions"
         )
-
-
-class PlannedPass(NamedTuple):
-    """One pass of planning: some of the overhangs of a build, supported with the same settings.
-
-    Attributes
-    ----------
-    rules
-        Numbers of the ``[[rule]]`` entries with these settings, from 1; 0 for the settings of the job.
-    pitch_mm
-        Horizontal size of a voxel of the support grid.
-    layout
-        Layout of the supports.
-    """
-
-    rules: tuple[int, ...]
-    pitch_mm: float
-    layout: SupportLayout
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -167,15 +151,18 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     with clock.stage("route") as progress:
         taken = take_regions(build.resolved, build.parts, build.overhangs)
         divided, excepted = passes_of(build.resolved, taken)
-        planned: list[PlannedPass] = []
-        for number, each in enumerate(divided):
+
+        def plan(number: int, earlier: Sequence[PlannedPass]) -> PlannedPass:
+            each = divided[number]
             own = replace(build, resolved=each.resolved)
             pitch = _pitch_of(each.resolved, build.parts)
-            earlier = [done.layout for done in planned]
-            overhangs = taken.chosen(each.rules, excepted)
-            layout = _layout(own, overhangs, earlier, pitch, stop, _part_of(progress, number, len(divided)))
-            planned.append(PlannedPass(each.rules, pitch, layout))
-    return PlannedBuild(build, tuple(planned), taken)
+            taking = taken.chosen(each.rules, excepted)
+            shown = _part_of(progress, number, len(divided))
+            layout = _layout(own, taking, [done.layout for done in earlier], pitch, stop, shown)
+            return PlannedPass(each.rules, pitch, layout)
+
+        planned = plan_in_order(len(divided), plan)
+    return PlannedBuild(build, planned, taken)
 
 
 def _pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:
@@ -237,9 +224,8 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             for words in _wall_advice(resolved.for_rule(each.rules[0]), each.pitch_mm)
         ),
     ]
-    return SupportedBuild(
-        build, planned.layouts, planned.taken.overhangs, tuple(dict.fromkeys(advice)), removal
-    )
+    found, rules = planned.taken.overhangs, frozenset(planned.taken.used)
+    return SupportedBuild(build, planned.layouts, found, tuple(dict.fromkeys(advice)), removal, rules)
 
 
 def _bodies(

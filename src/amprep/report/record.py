@@ -162,6 +162,8 @@ class BuildRecord:
         Mass, use of the plate, layers and hours, for the head of the report.
     blade_edges
         Of each part that has some, the longest edge that the recoater blade meets at once.
+    rules
+        Numbers of the ``[[rule]]`` entries that take a region of it, from 1.
     """
 
     build: Build
@@ -187,6 +189,7 @@ class BuildRecord:
     pairs: PairCounts = field(default_factory=PairCounts)
     printing: PrintingEstimate = field(default_factory=PrintingEstimate)
     blade_edges: tuple[BladeEdge, ...] = ()
+    rules: frozenset[int] = frozenset()
 
     @property
     def unsupported(self) -> tuple[Unsupported, ...]:

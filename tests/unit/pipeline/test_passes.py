@@ -2,6 +2,8 @@
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +18,8 @@ import amprep
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.host import Host
 from amprep.model import Part
-from amprep.model.supports import CONNECTOR_BLOCKED, EXCEPTED
+from amprep.model.supports import CONNECTOR_BLOCKED, ENCLOSED, EXCEPTED, TERRITORY
+from amprep.pipeline.passes import PlannedPass, plan_in_order
 from amprep.threemf import read_build
 
 CELLS = sorted(Host.load(plugins_enabled=False).offers("cell"))
@@ -151,6 +154,23 @@ def test_an_overhang_smaller_than_the_gap_is_listed_and_no_support_is_made():
     assert {each.reason for each in found.build.unsupported} == {CONNECTOR_BLOCKED}
 
 
+def test_rules_that_take_no_region_of_any_build_are_noted(tmp_path):
+    from amprep.stl import write_stl
+
+    write_stl(tree().mesh, tmp_path / "tree.stl")
+    rules = [{"height": [900], "cell": "prism"}, {**ARM, "support": False}, {**ARM, "cell": "prism"}]
+    notes = [
+        amprep.support(
+            tmp_path / "tree.stl", output=tmp_path, settings={**THESIS, "rule": given}, dry_run=True
+        ).notes
+        for given in (rules, rules[1:2])
+    ]
+    assert [[each for each in found if "[[rule]]" in each] for found in notes] == [
+        ["no overhang meets the conditions of [[rule]] 1, 3, or earlier entries take them"],
+        [],
+    ]
+
+
 def test_the_report_adds_the_figures_of_all_passes(tmp_path):
     from amprep.stl import write_stl
 
@@ -172,3 +192,48 @@ def test_the_report_adds_the_figures_of_all_passes(tmp_path):
     assert excepted.faults == 0
     states = [each.supported for each in excepted.builds[0].overhangs if each.reasons == (EXCEPTED,)]
     assert states in (["not"], ["partly"]), "its rim may be on a support of the slab"
+
+
+def planner(lost_after, calls):
+    """Passes of four red squares; `lost_after` gives the squares and the reason that pass a loses after pass b."""
+
+    def plan(number, earlier):
+        calls.append((number, tuple(each.rules[0] for each in earlier)))
+        reasons = [""] * 4
+        for each in earlier:
+            lost, reason = lost_after.get((number, each.rules[0]), (0, ""))
+            reasons[:lost] = [reason] * lost
+        if number == 0:
+            reasons[3] = ENCLOSED  # in a closed room, whatever the order
+        connected = np.array([reason == "" for reason in reasons])
+        layout: Any = SimpleNamespace(reasons=tuple(reasons), connected=connected)
+        return PlannedPass((number,), 1.0, layout)
+
+    return plan
+
+
+def lost(planned):
+    return [int((~each.layout.connected).sum()) for each in planned]
+
+
+@pytest.mark.parametrize(
+    ("lost_after", "expected"),
+    [
+        ({}, [1, 0, 0]),
+        ({(2, 0): (3, ENCLOSED)}, [1, 0, 0]),
+        ({(2, 0): (3, ENCLOSED), (0, 2): (1, ENCLOSED)}, [2, 0, 0]),
+        ({(2, 0): (3, ENCLOSED), (1, 2): (3, ENCLOSED)}, [1, 0, 3]),
+        ({(1, 0): (2, ENCLOSED), (2, 0): (2, ENCLOSED)}, [1, 0, 2]),
+        ({(2, 0): (3, TERRITORY)}, [1, 0, 3]),
+    ],
+)
+def test_the_order_connects_as_many_as_one_pass_moved_to_the_front_can(lost_after, expected):
+    planned = plan_in_order(3, planner(lost_after, []))
+    assert [each.rules for each in planned] == [(0,), (1,), (2,)]
+    assert lost(planned) == expected
+
+
+def test_passes_that_do_not_enclose_each_other_are_planned_once():
+    calls: list[tuple[int, tuple[int, ...]]] = []
+    plan_in_order(3, planner({}, calls))
+    assert calls == [(0, ()), (1, (0,)), (2, (0, 1))]

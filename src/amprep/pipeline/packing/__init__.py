@@ -30,7 +30,7 @@ from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.packing.judging import refuse_wrong_packing
 from amprep.pipeline.packing.parts import bound_for_parts
 from amprep.pipeline.packing.placing import placed_part
-from amprep.pipeline.packing.reserve import find_reserves, is_as_good, room_notes, with_room
+from amprep.pipeline.packing.reserve import find_reserves, has_room, is_as_good, room_notes, with_room
 from amprep.pipeline.packing.turning import turned_off_blade
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
@@ -125,7 +125,9 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
         reserves = find_reserves(parts, problem, packing, job, overhangs, stop)
         if reserves:
             changed, wider = with_room(parts, problem, reserves)
-            again, adjustments = _pack(resolved, wider, parts, stop, progress)
+            again, adjustments = packing, notes
+            if not has_room(wider, packing):
+                again, adjustments = _pack(resolved, wider, parts, stop, progress)
             kept = is_as_good(again, packing)
             if kept:
                 parts, problem, packing, notes = changed, wider, again, adjustments

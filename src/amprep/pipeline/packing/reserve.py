@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.checks.packing.volumes_placed import check_packing
 from amprep.job import Job
 from amprep.model import Orientations, Packing, PackingProblem, Part, Stop
 from amprep.overhangs.known import KnownOverhangs
@@ -108,6 +109,11 @@ def with_room(
         for number, part in enumerate(parts)
     )
     return changed, replace(problem, items=items)
+
+
+def has_room(problem: PackingProblem, packing: Packing) -> bool:
+    """Tell whether a packing is one of the wider volumes too: then the parts have their room where they are."""
+    return not check_packing(problem, packing)
 
 
 def room_notes(parts: Sequence[Part], reserves: Mapping[int, Reserve], *, kept: bool) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from tests.shared.layouts import box, mesh_of
 
 import amprep
 from amprep.model import Part
+from amprep.pipeline.packing.reserve import Reserve, has_room, with_room
 from amprep.threemf import read_build
 
 TABLE = box((20, 20, 3), (0, 0, 10)) + box((6, 6, 10), (7, 7, 0))
@@ -47,6 +48,14 @@ def test_parts_get_room_for_supports_that_stand_beside_them(packer):
     assert margin > 2.0
     assert min(distances(given.builds[0])) >= 4.0 + 2.0 * (margin - 2.0) - 0.3
     assert f"{margin:.1f} mm" in note
+
+
+def test_a_packing_has_room_exactly_if_it_is_one_of_the_wider_volumes():
+    narrow, wide = packed(TABLE, copies=3), packed(BLOCK_BELOW)
+    assert has_room(wide.problem, wide.packing)
+    reserve = Reserve(9.0, 2.0, np.eye(3))
+    _, wider = with_room([placed.part for placed in narrow.builds[0].parts[:1]], narrow.problem, {0: reserve})
+    assert not has_room(wider, narrow.packing)
 
 
 def test_with_room_more_red_squares_are_connected():
