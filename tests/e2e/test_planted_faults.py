@@ -5,6 +5,8 @@ from tests.shared.planted import (
     BEAMS,
     DIALECTS,
     FAULTS,
+    WRONG_BUILDS,
+    as_before,
     bracket_build,
     write_entries,
     write_package,
@@ -49,6 +51,30 @@ def test_a_planted_fault_is_found(amprep, written, tmp_path, planted, dialect):
     else:
         assert outcome.code == 1
         assert planted.promise in broken
+
+
+@pytest.mark.parametrize(
+    ("wrong", "dialect"),
+    [
+        pytest.param(wrong, dialect, id=f"{dialect}: {wrong.name}")
+        for wrong in WRONG_BUILDS
+        for dialect in wrong.dialects
+    ],
+)
+def test_a_wrong_build_is_found_although_its_file_records_it(amprep, tmp_path, wrong, dialect):
+    entries = write_entries(wrong.change(bracket_build(dialect)), tmp_path / "wrong.3mf")
+    outcome, broken = verdict(amprep, entries, tmp_path)
+    assert outcome.code == 1
+    assert wrong.promise in broken
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_a_file_of_an_earlier_version_is_accepted_and_says_what_is_not_judged(
+    amprep, written, tmp_path, dialect
+):
+    outcome, broken = verdict(amprep, as_before(written[dialect]), tmp_path)
+    assert (outcome.code, broken) == (0, [])
+    assert outcome.json["limits_judged"]["support unchanged"].startswith("not judged: an earlier version")
 
 
 def test_there_are_faults_enough_in_every_dialect():

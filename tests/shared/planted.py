@@ -9,6 +9,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from manifold3d import Manifold
@@ -95,7 +96,7 @@ def _beam_body(name: str, part: int, x: float, y: float) -> SupportBody:
     corners = np.array([[5.5, 1.5], [11.5, 1.5], [11.5, 6.5], [5.5, 6.5]]) + (x, y)
     nodes = np.vstack([np.column_stack([corners, np.full(4, z)]) for z in (0.0, 8.2)])
     struts = np.array([[0, 4], [1, 5], [2, 6], [3, 7], [0, 5]], np.int32)
-    radii = np.full((5, 2), 0.75)
+    radii = np.array([[0.75, 0.75]] * 4 + [[0.8, 0.8]])
     plate = box((8, 7, 1.1), (x + 4.5, y + 0.5, 8.0))
     columns = [
         Manifold.cylinder(8.2, 0.75, 0.75, 12).translate((*corner, 0.0)) for corner in corners.tolist()
@@ -203,6 +204,7 @@ FAULTS = (
     Planted("the first object is of type other", sub('type="model"', 'type="other"')),
     Planted("the first object is of type surface", sub('type="model"', 'type="surface"')),
     Planted("the first object is of type support", sub('type="model"', 'type="support"')),
+    Planted("the second item is removed", sub(r"(<item .*?</item>)\s*<item .*?</item>", r"\1"), promise=None),
     Planted("the first item is there twice", sub(r"(<item .*?</item>)", r"\1\1"), promise=None),
     Planted("an object that nothing uses", sub("<resources>", f"<resources>{_STRAY}")),
     Planted("another model in the package", add("3D/other.model", _BLANK)),
@@ -222,6 +224,7 @@ FAULTS = (
         "a support is of type other", sub('type="solidsupport"', 'type="other"'), ("generic", "beams", "cura")
     ),
     Planted("a support is of type surface", sub('type="solidsupport"', 'type="surface"'), COMPONENTS),
+    Planted("a support is not filled", sub('type="solidsupport"', 'type="support"'), COMPONENTS),
     Planted("a support is a model", sub('type="solidsupport"', 'type="model"'), ("generic", "beams")),
     Planted(
         "the group is of type support",
@@ -237,6 +240,24 @@ FAULTS = (
         sub(r"(<component [^>]*/>)\s*<component [^>]*/>", r"\1"),
         COMPONENTS,
         promise=None,
+    ),
+    Planted("supports are exchanged", _swapped, ("generic", "cura"), promise="support unchanged"),
+    Planted(
+        "a support is 0.02 mm off",
+        sub(r'(<component objectid="2" )', r'\1transform="1 0 0 0 1 0 0 0 1 0.02 0 0" '),
+        ("generic", "cura"),
+        promise="support unchanged",
+    ),
+    Planted(
+        "a support is shrunk",
+        sub(r'(<component objectid="2" )', r'\1transform="0.999 0 0 0 0.999 0 0 0 1 0 0 0" '),
+        ("generic", "cura"),
+        promise="support unchanged",
+    ),
+    Planted(
+        "a part is 0.02 mm off",
+        sub(r'transform="1 0 0 0 1 0 0 0 1 10 ', 'transform="1 0 0 0 1 0 0 0 1 10.02 '),
+        promise="part unchanged",
     ),
     Planted("Cura prints a support as a part", sub(r"(cura:support_mesh[^>]*>)True", r"\1False"), CURA),
     Planted(
@@ -306,11 +327,115 @@ FAULTS = (
         "the version is removed", sub(r"<metadata name=.slic3rpe:Version3mf.*?</metadata>", ""), PRUSASLICER
     ),
     Planted("the version is 0", sub(r"(slic3rpe:Version3mf[^>]*>)1", r"\g<1>0"), PRUSASLICER),
+    Planted("all radii times 1.5", scale_radii(1.5), BEAMS, promise="support unchanged"),
+    Planted("all radii times 0.01", scale_radii(0.01), BEAMS, promise="least wall"),
+    Planted(
+        "one radius of 10",
+        sub(r'(<b:beam v1="8" v2="12")', r'\1 r1="10" r2="10"'),
+        BEAMS,
+        promise="support unchanged",
+    ),
+    Planted(
+        "one radius is slightly more",
+        sub(r'(<b:beam v1="8" v2="12")', r'\1 r1="0.76"'),
+        BEAMS,
+        promise="support unchanged",
+    ),
+    Planted("one beam is removed", sub(r"<b:beam v1=[^>]*/>", ""), BEAMS, promise="support unchanged"),
+    Planted(
+        "one beam is there twice", sub(r"(<b:beam v1=[^>]*/>)", r"\1\1"), BEAMS, promise="support unchanged"
+    ),
+    Planted(
+        "one beam ends elsewhere",
+        sub(r'<b:beam v1="8" v2="12"', '<b:beam v1="8" v2="14"'),
+        BEAMS,
+        promise="support unchanged",
+    ),
+    Planted(
+        "the plate of the beams is removed",
+        sub(r"</vertices><triangles>((?!</triangles>).)*</triangles><b:", "</vertices><b:"),
+        BEAMS,
+        promise="coverage",
+    ),
     Planted("another cap", sub('cap="sphere"', 'cap="butt"'), BEAMS),
     Planted("one beam has another cap", sub(r'(<b:beam v1="8" v2="12")', r'\1 cap1="hemisphere"'), BEAMS),
     Planted("beams must be longer", sub('minlength="0.001"', 'minlength="50"'), BEAMS),
     Planted("beams are clipped outside", sub('clippingmode="inside"', 'clippingmode="outside"'), BEAMS),
+    Planted(
+        "beams are not clipped",
+        sub(r'clippingmode="inside" clippingmesh="\d+" ', ""),
+        BEAMS,
+        promise="support unchanged",
+    ),
     Planted("the clipping mesh cuts everything away", sub(r'clippingmesh="\d+"', 'clippingmesh="1"'), BEAMS),
     Planted("the clipping mesh ends at half height", sub(r'z="60.000000"', 'z="4.000000"', count=4), BEAMS),
     Planted("readers need not know beams", sub(r' requiredextensions="b"', ""), BEAMS),
+    Planted(
+        "the mesh for other readers is another one",
+        sub(r'representationmesh="\d+"', 'representationmesh="1"'),
+        BEAMS,
+        promise="support unchanged",
+    ),
 )
+
+
+def _solid_body(
+    size: tuple[float, float, float], corner: tuple[float, float, float]
+) -> Callable[[Build], Build]:
+    """Return a change that adds a box to the first support."""
+
+    def change(build: Build) -> Build:
+        return with_body(build, 0, solid_of(build.supports[0].mesh) + box(size, corner))
+
+    return change
+
+
+def _lattice(**fields: Any) -> Callable[[Build], Build]:
+    """Return a change of the beams of the first support; functions are called with the old value."""
+
+    def change(build: Build) -> Build:
+        first, *others = build.supports
+        assert first.lattice is not None
+        values = {name: value(getattr(first.lattice, name)) for name, value in fields.items()}
+        return replace(build, supports=(replace(first, lattice=replace(first.lattice, **values)), *others))
+
+    return change
+
+
+@dataclass(frozen=True)
+class WrongBuild:
+    """A build that breaks a promise, before it is written; its file records it as it is."""
+
+    name: str
+    change: Callable[[Build], Build]
+    dialects: tuple[str, ...]
+    promise: str
+
+
+_SOLIDS = ("generic", "cura", "prusaslicer")
+
+WRONG_BUILDS = (
+    WrongBuild(
+        "supports overlap", _solid_body((30, 6, 5), (15, 11, 0)), _SOLIDS, "supports enter no other support"
+    ),
+    WrongBuild("too near", _solid_body((18, 4, 5), (20, 12, 0)), _SOLIDS, "distance to other parts"),
+    WrongBuild("touching", _solid_body((20, 4, 5), (20, 12, 0)), _SOLIDS, "distance to other parts"),
+    WrongBuild("island", _solid_body((1.5, 2, 2), (23.5, 12, 0)), _SOLIDS, "support holds its part"),
+    WrongBuild("thin beams", _lattice(radii=lambda radii: 0.01 * radii), BEAMS, "least wall"),
+    WrongBuild(
+        "low beams", _lattice(nodes=lambda nodes: nodes * (1, 1, 0.5)), BEAMS, "support stands on the plate"
+    ),
+    WrongBuild(
+        "no plate", _lattice(solids=lambda _: Mesh(np.empty((0, 3)), np.empty((0, 3)))), BEAMS, "coverage"
+    ),
+    WrongBuild("clipped", _lattice(room=lambda room: room * (1, 1, 0.1)), BEAMS, "printed as planned"),
+)
+
+
+def as_before(entries: Entries) -> Entries:
+    """Return the entries as the version before digests of supports wrote them."""
+    text = re.sub(r', "surface": false, "sha256": "\w+"', "", entries[MODEL])
+    text = re.sub(r', "at": \[[^]]*\]', "", text)
+    text = re.sub(r'\s*<metadata name="amprep:contents".*?</metadata>', "", text)
+    assert text.count("sha256") == 2, "only those of the parts are left"
+    return entries | {MODEL: text}

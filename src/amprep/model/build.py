@@ -1,6 +1,8 @@
 """One finished build, as a build file records it and `amprep verify` reads it back."""
 
+import hashlib
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -82,6 +84,8 @@ class PlacedPart:
         ``(4, 4)`` part coordinates to build coordinates.
     recorded_digest
         `Mesh.digest` that the build file records for this part; empty before the file is written.
+    moved_mm
+        Distance (mm) from the position that the build file records.
     """
 
     label: str
@@ -89,6 +93,7 @@ class PlacedPart:
     matrix: Floats
     orientations: Orientations = field(default_factory=Orientations)
     recorded_digest: str = ""
+    moved_mm: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", frozen(self.matrix, np.float64).reshape(4, 4))
@@ -129,6 +134,38 @@ class Lattice:
         if self.room is not None:
             object.__setattr__(self, "room", frozen(self.room, np.float64, 3))
 
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of beams, meshes and box as 3MF files store them: float32 after rounding to the digits written."""
+        sizes, which = np.unique(self.radii, return_inverse=True)
+        radii = np.array([float(f"{size:.9g}") for size in sizes.tolist()])[which]
+        coordinates = [self.nodes[self.struts], self.solids.vertices[self.solids.triangles]]
+        coordinates += [] if self.room is None else [self.room]
+        parts = [np.round(each, 6).astype("<f4") + np.float32(0.0) for each in coordinates]
+        counts = np.array([len(each) for each in parts], "<i8")
+        arrays = [counts, *parts, radii.astype("<f4")]
+        data = b"".join(each.tobytes() for each in arrays)
+        return hashlib.sha256(data + self.stand_in.digest.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class StoredSupport:
+    """What a build file records of a support, and what is in the file.
+
+    Attributes
+    ----------
+    recorded_digest
+        SHA-256 of the geometry that the file records; empty in files of earlier versions.
+    digest
+        SHA-256 of the geometry in the file.
+    moved_mm
+        Distance (mm) from where the support was written.
+    """
+
+    recorded_digest: str
+    digest: str
+    moved_mm: float
+
 
 @dataclass(frozen=True, eq=False)
 class SupportBody:
@@ -146,6 +183,8 @@ class SupportBody:
         The body as beams, for a file with beams; None for a mesh.
     reach, sizes
         Reach (mm) and sizes of the supports of ``[[rule]]`` entries; None for those of the settings of the build.
+    stored
+        What its file says of it; None for a support that is in no file.
     """
 
     name: str
@@ -155,6 +194,12 @@ class SupportBody:
     lattice: Lattice | None = None
     reach: float | None = None
     sizes: SupportSizes | None = None
+    stored: StoredSupport | None = None
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of its geometry as 3MF files store it."""
+        return self.mesh.digest if self.lattice is None else self.lattice.digest
 
 
 @dataclass(frozen=True, eq=False)

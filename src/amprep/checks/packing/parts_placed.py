@@ -126,8 +126,17 @@ def _moved(checked: Sequence[CheckedPart]) -> list[Violation]:
 
 
 def _unchanged(checked: Sequence[CheckedPart]) -> list[Violation]:
-    """Return the parts whose geometry differs from the digest in the build file."""
-    return [
+    """Return the parts whose geometry differs from the digest in the build file, or that are not where it says."""
+    moved = [
+        Violation(
+            "part unchanged",
+            part.label,
+            f"it is {part.placed.moved_mm:.4g} mm from the position that the build file recorded",
+        )
+        for part in checked
+        if not part.placed.moved_mm <= TOLERANCE
+    ]
+    return moved + [
         Violation(
             "part unchanged", part.label, "its geometry differs from what the build file recorded (SHA-256)"
         )

@@ -5,13 +5,24 @@ from collections.abc import Callable
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats
-from amprep.geometry.supports.beams import balls_too_deep, find_grounded, sample, sphere
+from amprep.geometry.meshes.containment import inside
+from amprep.geometry.supports.beams import (
+    BeamSamples,
+    balls_too_deep,
+    find_grounded,
+    near_surface,
+    sample,
+    sphere,
+)
 from amprep.model.build import Lattice
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 
 _STEP = 0.4
 """Distance between the balls that are judged, in radii; it differs from the one that clips beams."""
+
+_MOST_BALLS = 2_000_000
+"""Number of balls, above which they are farther apart: of beams that are thousands of times as long as thick."""
 
 _DIRECTIONS = sphere(42)
 
@@ -47,7 +58,7 @@ def excess_of(lattice: Lattice, space: BuildVolume) -> float:
 
 def enters_box(lattice: Lattice, lo: Floats, hi: Floats) -> bool:
     """Tell whether a beam enters a box."""
-    places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
+    places = _balls(lattice)
     away = np.maximum(np.maximum(lo - places.centres, places.centres - hi), 0.0)
     return bool((np.linalg.norm(away, axis=1) < places.radii - CONTACT_TOLERANCE).any())
 
@@ -57,7 +68,7 @@ def deepest_place(lattice: Lattice, mesh: Mesh, depth: float) -> Floats | None:
 
     Depth is measured vertically, on balls slightly smaller than the beam, so that contact does not count.
     """
-    places = sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, _STEP)
+    places = _balls(lattice)
     reach = np.maximum(places.radii - 2.0 * CONTACT_TOLERANCE, 0.0)
     triangles = mesh.triangles.astype(np.int64)
     deep = balls_too_deep(places.centres, reach, mesh.vertices, triangles, depth, _DIRECTIONS)
@@ -84,3 +95,31 @@ def count_floating(lattice: Lattice, rests: Callable[[Floats], Bools]) -> int:
         rests,
     )
     return grounded.floating
+
+
+def _balls(lattice: Lattice) -> BeamSamples:
+    """Return the balls along beams that are judged."""
+    ends = lattice.nodes[lattice.struts]
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    count = float((length / (_STEP * lattice.radii.min(axis=1))).sum())
+    step = _STEP * max(1.0, count / _MOST_BALLS)
+    return sample(lattice.nodes, lattice.struts.astype(np.int64), lattice.radii, step)
+
+
+def contacts_of(lattice: Lattice, mesh: Mesh, nudge: float) -> Floats:
+    """Return points ``(k, 3)`` on the surface of beams that are in a solid, or at most `nudge` mm below it."""
+    places = _balls(lattice)
+    arrays = mesh.arrays
+    near = near_surface(places.centres, float(places.radii.max(initial=0.0)) + nudge, *arrays)
+    directions = np.vstack([_DIRECTIONS, (0.0, 0.0, 1.0)])
+    points = (places.centres[near, None] + places.radii[near, None, None] * directions).reshape(-1, 3)
+    if lattice.room is not None:
+        low, high = lattice.room[0] - CONTACT_TOLERANCE, lattice.room[1] + CONTACT_TOLERANCE
+        points = points[((points >= low) & (points <= high)).all(axis=1)]
+    return np.asarray(points[inside(points + (0.0, 0.0, nudge), mesh.vertices, mesh.triangles)])
+
+
+def thinnest_of(lattice: Lattice) -> tuple[float, Floats]:
+    """Return the diameter (mm) of the thinnest end of a beam, and its place ``(3,)``."""
+    beam, end = np.unravel_index(lattice.radii.argmin(), lattice.radii.shape)
+    return 2.0 * float(lattice.radii[beam, end]), np.asarray(lattice.nodes[lattice.struts[beam, end]])

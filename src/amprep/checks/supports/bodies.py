@@ -173,7 +173,7 @@ def _standing(body: JudgedBody, build: Build) -> list[Violation]:
 def _all_reach_plate(body: JudgedBody) -> bool:
     """Tell whether every component reaches the plate even if none of those that share a point are connected."""
     mesh = body.support.mesh
-    used, shell = label_shells(mesh.triangles, len(mesh.vertices))
+    used, shell = body.solids.shells_of(mesh)
     lowest = np.full(used, np.inf)
     np.minimum.at(lowest, shell, mesh.vertices[:, 2][mesh.triangles].min(axis=1))
     return bool((lowest <= TOLERANCE).all())

@@ -1,13 +1,16 @@
 """Judge coverage: every overhang that needs support is within reach of a contact, or listed as unsupported."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from amprep.arrays import Int64s
 from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
 from amprep.checks.overhangs.samples import KINDS, JudgedSamples, judged_overhangs
+from amprep.checks.supports import beams
 from amprep.checks.violation import Violation, place_words
-from amprep.model.build import Build
+from amprep.model.build import Build, SupportBody
 from amprep.overhangs.contacts import NUDGE, find_held, is_near, sample_spacing
 
 PROMISE = "coverage"
@@ -16,8 +19,8 @@ PROMISE = "coverage"
 def check_coverage(build: Build) -> list[Violation]:
     """Judge a finished build from its meshes alone: every sample point of an overhang is held, carried or listed.
 
-    The judge finds the overhangs itself, and what the part itself carries (`amprep.checks.overhangs`), independently of
-    the planner.
+    Beams are judged by their own contacts, not by the mesh that stands in for them. The judge finds the overhangs
+    itself, and what the part itself carries (`amprep.checks.overhangs`), independently of the planner.
     """
     found: list[Violation] = []
     settings = build.settings
@@ -39,12 +42,26 @@ def _left_over(build: Build, part: int, samples: JudgedSamples, spacing: float) 
     """Return the samples of a part that are neither within reach of a contact nor listed."""
     placed = build.parts[part]
     border = NUDGE + border_of(placed)
-    held = find_held(samples.points, placed.mesh, build.supports, build.settings, spacing, border)
+    solid = [each for body in build.supports for each in _without_beams(body)]
+    held = find_held(samples.points, placed.mesh, solid, build.settings, spacing, border)
+    for body in build.supports:
+        if body.lattice is not None and not held.all():
+            left = np.flatnonzero(~held)
+            contacts = beams.contacts_of(body.lattice, placed.mesh, NUDGE)
+            held[left] = is_near(contacts, samples.points[left], build.settings.reach_of(body) + border)
     for listed in build.unsupported:
         if listed.part == part and not held.all():
             left = np.flatnonzero(~held)
             held[left] = is_near(listed.points, samples.points[left], listed.radius + border)
     return np.flatnonzero(~held)
+
+
+def _without_beams(body: SupportBody) -> list[SupportBody]:
+    """Return a support as its solids alone, if it has any."""
+    if body.lattice is None:
+        return [body]
+    solids = body.lattice.solids
+    return [replace(body, mesh=solids, lattice=None)] if len(solids.triangles) else []
 
 
 def _violation(build: Build, part: int, kind: int, samples: JudgedSamples, left: Int64s) -> Violation:

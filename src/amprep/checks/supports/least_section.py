@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.checks.supports import beams
 from amprep.checks.supports.shapes import KnownShapes
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
-from amprep.model.build import Build, BuildSettings, SupportBody
+from amprep.model.build import Build, BuildSettings, Lattice, SupportBody
 from amprep.model.control import Stop
 from amprep.model.supports.sizes import SupportSizes
 
@@ -102,6 +103,8 @@ def check_least_section(
     for body in build.supports:
         if stop.cancelled.is_set():
             break
+        if body.lattice is not None and len(body.lattice.radii):
+            found += _thin_beams(body.name, body.lattice, build.settings)
         if not body.surface:
             thin = judge.thin_places(body)
             sections += thin.sections
@@ -125,6 +128,21 @@ def _violations(body: SupportBody, settings: BuildSettings, places: Sequence[Thi
                 f"{place_words(worst.position_mm)} mm ({len(own)} such sections)"
             )
             found.append(Violation(promise, body.name, message))
+    return found
+
+
+def _thin_beams(name: str, lattice: Lattice, settings: BuildSettings) -> list[Violation]:
+    """Judge the thinnest beam itself; sections are those of the mesh that stands in for beams."""
+    limits = _limits_of(settings)
+    width, place = beams.thinnest_of(lattice)
+    found = []
+    if width < limits.wall:
+        message = f"a beam of {width:.3g} mm, expected at least {settings.rules.least_wall_mm:g} mm, at "
+        found.append(Violation(LEAST_WALL, name, message + f"{place_words(place)} mm"))
+    area = np.pi / 4.0 * width**2
+    if area < limits.contact:
+        message = f"a beam of {area:.3g} mm2, expected at least {settings.rules.least_contact_mm2:g} mm2, at "
+        found.append(Violation(LEAST_CONTACT, name, message + f"{place_words(place)} mm"))
     return found
 
 

@@ -1,8 +1,10 @@
-"""Make the solid of each mesh once for all judges."""
+"""Make the solid of each mesh, and find its components, once for all judges."""
 
 from typing import TYPE_CHECKING
 
+from amprep.arrays import Int64s
 from amprep.geometry.meshes.manifold import as_manifold
+from amprep.geometry.meshes.shells import label_shells
 from amprep.model.mesh import Mesh
 
 if TYPE_CHECKING:
@@ -10,13 +12,20 @@ if TYPE_CHECKING:
 
 
 class KnownSolids:
-    """Solids of meshes, each made when it is first needed."""
+    """Solids and components of meshes, each made when it is first needed."""
 
     def __init__(self) -> None:
         self._known: dict[Mesh, Manifold] = {}
+        self._shells: dict[Mesh, tuple[int, Int64s]] = {}
 
     def of(self, mesh: Mesh) -> "Manifold":
         """Return a mesh as a solid, see `as_manifold`."""
         if mesh not in self._known:
             self._known[mesh] = as_manifold(mesh.vertices, mesh.triangles)
         return self._known[mesh]
+
+    def shells_of(self, mesh: Mesh) -> tuple[int, Int64s]:
+        """Return the number of components of a mesh, and that of each triangle, see `label_shells`."""
+        if mesh not in self._shells:
+            self._shells[mesh] = label_shells(mesh.arrays[1], len(mesh.vertices))
+        return self._shells[mesh]

@@ -59,7 +59,7 @@ def _judged(
     if body.surface or not accepted(solid):
         return []
     own = CrossSection.batch_boolean([shadows[part].polygons for part in body.parts], OpType.Add)
-    limits = [_margin_of(build, part) for part in body.parts]
+    limits = [margin_of(build, part) for part in body.parts]
     grown = [
         shadows[part].polygons.offset(limit + TOLERANCE, JoinType.Round, 2.0, _SEGMENTS)
         for part, limit in zip(body.parts, limits, strict=True)
@@ -131,7 +131,7 @@ def _squares_inside(region: "CrossSection", low: Floats, shape: Ints) -> Bools:
     return found.reshape(shape)
 
 
-def _margin_of(build: Build, part: int) -> float:
+def margin_of(build: Build, part: int) -> float:
     """Return the margin (mm) of a part: its own, for which packing left room, or that of the rules."""
     own = build.parts[part].part.overrides.territory_margin_mm
     return build.settings.rules.territory_margin_mm if own is None else own

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from amprep.checks.neighbours import apart, islands
+from amprep.checks.neighbours.islands import check_islands
 from amprep.checks.packing.pairs import PairCounts
 from amprep.checks.packing.parts_placed import ROUNDING, judge_placed
-from amprep.checks.printed import as_recorded
+from amprep.checks.printed import as_recorded, unchanged
 from amprep.checks.printed.found import PrintedFile
 from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, limits, xy_distance
@@ -25,10 +27,13 @@ PROMISES = (
     "lift",
     "allowed motion",
     "part unchanged",
+    unchanged.PROMISE,
     cells.CLOSED,
     cells.INSIDE,
     cells.STANDING,
     cells.PENETRATION,
+    islands.PROMISE,
+    *apart.PROMISES,
     xy_distance.PROMISE,
     *limits.PROMISES,
     coverage.PROMISE,
@@ -94,8 +99,13 @@ def verify_build(
     solids = KnownSolids()
     progress(0.0, "parts")
     found, pairs = judge_placed(build.parts, build.settings, stop)
+    found += unchanged.check_unchanged(build)
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
         ("supports", lambda: [*check_bodies(build, stop, solids), *check_xy_distance(build, stop)]),
+        (
+            "neighbours",
+            lambda: [*check_islands(build, stop, solids), *apart.check_apart(build, stop, solids)],
+        ),
         ("coverage", lambda: check_coverage(build)),
     )
     for index, (name, judge) in enumerate(judges, start=1):
@@ -105,11 +115,18 @@ def verify_build(
     judged = limits.check_limits(build, stop, solids)
     seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
-    return Verification((*seen, *found, *judged.violations), pairs, judged.extent | _extent(printed))
+    return Verification((*seen, *found, *judged.violations), pairs, judged.extent | _extent(build, printed))
 
 
-def _extent(printed: PrintedFile | None) -> dict[str, str]:
-    """Return how the file was read a second time."""
-    if printed is None:
-        return {as_recorded.PROMISE: f"{limits.NOT_JUDGED}: the build is in no file"}
-    return {as_recorded.PROMISE: f"as {printed.program} reads it, tolerance {ROUNDING:g} mm"}
+def _extent(build: Build, printed: PrintedFile | None) -> dict[str, str]:
+    """Return how the file was read a second time, and how supports were compared and judged beside others."""
+    as_read = (
+        f"{limits.NOT_JUDGED}: the build is in no file"
+        if printed is None
+        else f"as {printed.program} reads it, tolerance {ROUNDING:g} mm"
+    )
+    return {
+        as_recorded.PROMISE: as_read,
+        unchanged.PROMISE: unchanged.extent_of(build, limits.NOT_JUDGED),
+        apart.NEIGHBOURS: apart.extent_of(build, limits.NOT_JUDGED),
+    }

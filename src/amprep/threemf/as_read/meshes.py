@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Int64s
+from amprep.arrays import Bools, Floats, MeshArrays
 from amprep.checks.printed.found import PrintedBeams
 from amprep.model.mesh import Mesh
-from amprep.threemf.read.arrays import fetch_capped_beams, fetch_mesh
+from amprep.threemf.read.arrays import fetch_capped_beams, fetch_geometry
 
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
@@ -23,9 +23,9 @@ class ObjectMeshes:
         while found.MoveNext():
             mesh = found.GetCurrentMeshObject()
             self._objects[mesh.GetModelResourceID()] = mesh
-        self._known: dict[int, tuple[Floats, Int64s]] = {}
+        self._known: dict[int, MeshArrays] = {}
 
-    def of(self, object_id: int) -> tuple[Floats, Int64s]:
+    def of(self, object_id: int) -> MeshArrays:
         """Return vertices ``(n, 3)`` in the file's unit, and triangles ``(m, 3)``.
 
         Raises
@@ -36,8 +36,7 @@ class ObjectMeshes:
         if object_id not in self._objects:
             raise ValueError(f"the build refers to object {object_id}, which has no mesh")
         if object_id not in self._known:
-            raw = fetch_mesh(self._objects[object_id])
-            self._known[object_id] = (raw.vertices, raw.triangles)
+            self._known[object_id] = fetch_geometry(self._objects[object_id])
         return self._known[object_id]
 
     def beams_of(self, object_id: int, matrix: Floats) -> PrintedBeams | None:
@@ -67,10 +66,12 @@ class ObjectMeshes:
         )
 
     def _clipping(self, unique_id: int, matrix: Floats) -> Mesh:
-        raw = fetch_mesh(self._model.GetMeshObjectByID(unique_id))
-        return Mesh(placed(raw.vertices, matrix), raw.triangles)
+        vertices, triangles = fetch_geometry(self._model.GetMeshObjectByID(unique_id))
+        return Mesh(placed(vertices, matrix), triangles)
 
 
 def placed(vertices: Floats, matrix: Floats) -> Floats:
     """Return vertices ``(n, 3)`` under a ``(4, 4)`` matrix for column vectors."""
+    if np.array_equal(matrix, np.eye(4)):
+        return vertices
     return np.asarray(vertices @ matrix[:3, :3].T + matrix[:3, 3])

@@ -7,16 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Floats
 from amprep.checks.printed.found import PrintedFile
 from amprep.errors import InputError
-from amprep.model.build import Build, PlacedPart, SupportBody
+from amprep.model.build import Build, PlacedPart, StoredSupport, SupportBody
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.threemf.as_read import read_as_printed
 from amprep.threemf.build import record
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
-from amprep.threemf.build.values import as_list, from_json, integer, integers, string
+from amprep.threemf.build.values import as_list, boolean, from_json, integer, integers, string, table
 from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
 
@@ -94,6 +95,8 @@ def _build(model: Any, metadata: BuildMetadata) -> Build:
     supports = tuple(
         _support(body, len(parts)) for body in _in_order([body for body in bodies if body.role == "support"])
     )
+    if record.CONTENTS in metadata.model:
+        record.check_contents(_value(metadata.model, record.CONTENTS), len(parts), len(supports))
     regions = as_list(_value(metadata.model, record.UNSUPPORTED), record.UNSUPPORTED)
     return Build(
         settings, parts, supports, tuple(record.unsupported_of(each, len(parts)) for each in regions)
@@ -130,7 +133,20 @@ def _placed_part(body: StoredBody, part: Part) -> PlacedPart:
         body.matrix,
         part.orientations if own is None else record.orientations_of(own),
         string(body.record, "sha256"),
+        _moved(body, table(body.record, "at", 12)) if "at" in body.record else 0.0,
     )
+
+
+def _moved(body: StoredBody, placement: Floats) -> float:
+    """Return how far (mm) a body is from where a placement of twelve numbers puts it, rounded to 1e-4."""
+    if not len(body.mesh.vertices):
+        return 0.0
+    corners = np.vstack(body.mesh.bounds)
+    corners = np.array(
+        [[corners[i, 0], corners[j, 1], corners[k, 2], 1.0] for i, j, k in np.ndindex(2, 2, 2)]
+    )
+    off = (body.matrix[:3] - placement.reshape(3, 4)) @ corners.T
+    return round(float(np.linalg.norm(off, axis=0).max()), 4)
 
 
 def _support(body: StoredBody, parts: int) -> SupportBody:
@@ -146,14 +162,20 @@ def _support(body: StoredBody, parts: int) -> SupportBody:
     mesh = body.mesh.moved(matrix) if lattice is None else lattice.stand_in
     holds = integers(body.record, "holds", below=parts)
     own = body.record
+    stored = StoredSupport(
+        string(own, "sha256") if "sha256" in own else "",
+        body.mesh.digest if body.lattice is None else body.lattice.digest,
+        0.0 if "vertices" in own else _moved(body, np.eye(4)[:3]),
+    )
     return SupportBody(
         string(own, "name"),
         mesh,
         holds,
-        body.surface,
+        boolean(own, "surface") if "surface" in own else body.surface,
         lattice,
         reach=record.own_reach(own),
         sizes=record.sizes_of(own["sizes"]) if "sizes" in own else None,
+        stored=stored,
     )
 
 

@@ -8,7 +8,15 @@ from typing import Any, Literal, cast, get_args
 import numpy as np
 
 from amprep.geometry.meshes.sampling import triangle_areas
-from amprep.model.build import TARGETS, BuildSettings, SupportBody, SupportsAs, Target, Unsupported
+from amprep.model.build import (
+    TARGETS,
+    Build,
+    BuildSettings,
+    SupportBody,
+    SupportsAs,
+    Target,
+    Unsupported,
+)
 from amprep.model.build_volume import BuildVolume
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Freedom, Orientations, Overrides, Part, Region, RegionKind
@@ -33,6 +41,7 @@ FORMAT_VERSION = "1"
 """Version of the metadata; a file with another version is refused."""
 
 FORMAT, SETTINGS, VOLUME, PARTS, UNSUPPORTED = "format", "settings", "volume", "parts", "unsupported"
+CONTENTS = "contents"
 """Names of the model's metadata in amprep's namespace."""
 
 BODIES = "bodies"
@@ -109,11 +118,35 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     )
 
 
-def support_record(index: int, support: SupportBody) -> JsonObject:
-    """Return the record of a support with its index in the build; reach and sizes only if they are its own."""
+def contents_record(build: Build) -> JsonObject:
+    """Return the numbers of bodies, so that a body that is removed with its record is missed."""
+    return {"parts": len(build.parts), "supports": len(build.supports)}
+
+
+def check_contents(record: Any, parts: int, supports: int) -> None:
+    """Raise ValueError unless a file has as many parts and supports as it records."""
+    values = as_object(record, CONTENTS)
+    for name, found in (("parts", parts), ("supports", supports)):
+        if integer(values, name) != found:
+            raise ValueError(f"{values[name]} {name} are recorded, the file has {found}")
+
+
+def support_record(index: int, support: SupportBody, digest: str) -> JsonObject:
+    """Return the record of a support; reach and sizes only if they are its own.
+
+    Parameters
+    ----------
+    index
+        Index of the support in the build.
+    support
+        The support.
+    digest
+        SHA-256 of the geometry that a reader of the file gets.
+    """
     own: JsonObject = {} if support.reach is None else {"reach": support.reach}
     sizes = {} if support.sizes is None else {"sizes": asdict(support.sizes)}
     entry = {"role": "support", "index": index, "name": support.name, "holds": list(support.parts)}
+    entry |= {"surface": support.surface, "sha256": digest}
     return {**entry, **own, **sizes}
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from amprep.arrays import Floats
+from amprep.arrays import Floats, MeshArrays
 
 if TYPE_CHECKING:
     from lib3mf import Lib3MF
@@ -76,11 +76,18 @@ def fetch_mesh(mesh: "Lib3MF.MeshObject") -> RawMesh:
     """Fetch the arrays of a mesh object."""
     from lib3mf import Lib3MF
 
-    vertices = _fetch(mesh, "lib3mf_meshobject_getvertices", Lib3MF.Position, np.float32, 3)
-    triangles = _fetch(mesh, "lib3mf_meshobject_gettriangleindices", Lib3MF.Triangle, np.uint32, 3)
     name = "lib3mf_meshobject_getalltriangleproperties"
     properties = _fetch(mesh, name, Lib3MF.TriangleProperties, np.uint32, 4)
-    return RawMesh(vertices.astype(np.float64), triangles.astype(np.int64), properties.astype(np.int64))
+    return RawMesh(*fetch_geometry(mesh), properties.astype(np.int64))
+
+
+def fetch_geometry(mesh: "Lib3MF.MeshObject") -> MeshArrays:
+    """Fetch vertices ``(n, 3)``, in the file's unit, and triangles ``(m, 3)`` of a mesh object."""
+    from lib3mf import Lib3MF
+
+    vertices = _fetch(mesh, "lib3mf_meshobject_getvertices", Lib3MF.Position, np.float32, 3)
+    triangles = _fetch(mesh, "lib3mf_meshobject_gettriangleindices", Lib3MF.Triangle, np.uint32, 3)
+    return vertices.astype(np.float64), triangles.astype(np.int64)
 
 
 def fetch_beams(lattice: "Lib3MF.BeamLattice") -> tuple[NDArray[np.int64], Floats]:

@@ -93,6 +93,11 @@ def _support_object(
     return MeshObject(support.name, mesh, kind, metadata=metadata, beams=beams)
 
 
+def _digest(build: Build, index: int) -> str:
+    support = build.supports[index]
+    return support.digest if build.settings.target == "generic" else support.mesh.digest
+
+
 def _item(build: Build, parts: Sequence[Part], group: PartGroup, support_objects: Sequence[int]) -> BuildItem:
     placed = [build.parts[index] for index in group.parts]
     objects = [PlacedObject(parts.index(each.part), each.matrix) for each in placed]
@@ -100,6 +105,6 @@ def _item(build: Build, parts: Sequence[Part], group: PartGroup, support_objects
     records = [
         placed_part_record(build, index, parts, build.parts[index].part.mesh.digest) for index in group.parts
     ]
-    records += [support_record(build, index) for index in group.supports]
+    records += [support_record(build, index, _digest(build, index)) for index in group.supports]
     name = " + ".join(each.label for each in placed)
     return BuildItem(tuple(objects), item_metadata(records), f"{name} ({build.settings.build_id})")

@@ -6,7 +6,7 @@ from amprep import __version__
 from amprep.model.build import Build
 from amprep.model.part import Part
 from amprep.threemf.build import record
-from amprep.threemf.build.values import JsonObject, to_json
+from amprep.threemf.build.values import JsonObject, plain, to_json
 from amprep.threemf.names import NAMESPACE
 from amprep.threemf.write.document import Metadata
 
@@ -43,6 +43,7 @@ def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
     """Return the metadata of a build's model; `parts` are its distinct parts."""
     entries = {
         record.FORMAT: record.FORMAT_VERSION,
+        record.CONTENTS: to_json(record.contents_record(build)),
         record.SETTINGS: to_json(record.settings_record(build.settings)),
         record.VOLUME: to_json(record.volume_record(build.settings.space)),
         record.PARTS: to_json([record.part_record(part) for part in parts]),
@@ -71,14 +72,15 @@ def placed_part_record(build: Build, index: int, parts: Sequence[Part], digest: 
         "label": placed.label,
         "part": parts.index(placed.part),
         "sha256": digest,
+        "at": plain(placed.matrix[:3].reshape(-1)),
     }
     own, common = (record.orientations_record(each.orientations) for each in (placed, placed.part))
     return entry if own == common else {**entry, "orientations": own}
 
 
-def support_record(build: Build, index: int) -> JsonObject:
-    """Return the record of the support with this index in the build."""
-    return record.support_record(index, build.supports[index])
+def support_record(build: Build, index: int, digest: str) -> JsonObject:
+    """Return the record of the support with this index in the build; `digest` is that of its geometry in the file."""
+    return record.support_record(index, build.supports[index], digest)
 
 
 def item_metadata(records: Iterable[JsonObject]) -> Metadata:

@@ -74,7 +74,7 @@ def _merged(
     for number in group.supports:
         mesh = build.supports[number].mesh
         meshes.append(Mesh(transform_exactly(mesh.vertices, to_frame), mesh.triangles))
-        records.append(support_record(build, number))
+        records.append(support_record(build, number, meshes[-1].digest))
     labels = [build.parts[number].label for number in group.parts]
     own_parts = [build.parts[number].part for number in group.parts]
     merged = MeshObject(

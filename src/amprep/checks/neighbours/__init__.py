@@ -1,0 +1,1 @@
+"""Judge supports beside other supports and parts, and whether they reach their own."""
