@@ -99,13 +99,34 @@ def legs_of(mesh: Mesh, thickness: float, limit: float, parts: Sequence[Mesh] = 
     parts
         The parts that the solid holds; ends inside of them divide a leg.
     """
+    legs = sorted((leg for leg, _ in _measured_legs(mesh, thickness, parts)[1]), reverse=True)
+    too_long = tuple(leg for leg in legs if 0.0 < limit * (1 + 1e-9) < leg.ratio)
+    return BodyLegs(len(legs), legs[0] if legs else None, too_long)
+
+
+def long_stretches(mesh: Mesh, thickness: float, limit: float, parts: Sequence[Mesh]) -> list[Floats]:
+    """Return boxes ``(k, 2, 3)`` mm around the pieces of the stretches of legs with a greater ratio than a limit.
+
+    Parameters
+    ----------
+    mesh, thickness, limit, parts
+        As for `legs_of`.
+    """
+    pieces, legs = _measured_legs(mesh, thickness, parts)
+    half = np.column_stack([pieces.size / 2, np.full(len(pieces.size), thickness / 2)])
+    boxes = np.stack([pieces.centre - half, pieces.centre + half], axis=1)
+    return [boxes[chain] for leg, chain in legs if leg.ratio > limit * (1 + 1e-9)]
+
+
+def _measured_legs(
+    mesh: Mesh, thickness: float, parts: Sequence[Mesh]
+) -> tuple[SlabPieces, list[tuple[MeasuredLeg, list[int]]]]:
+    """Return the pieces of a solid, and its legs, each with the pieces of its worst stretch."""
     vertices = mesh.vertices
     first = (_OFFSET + np.floor(vertices[:, 2].min() / thickness) - 1) * thickness
     pieces = pieces_of_slabs(vertices, mesh.triangles, first, thickness)
     pieces = _without_loose_ends(pieces, vertices, parts)
-    legs = sorted(_measured(list(_chains(pieces)), pieces, thickness), reverse=True)
-    too_long = tuple(leg for leg in legs if 0.0 < limit * (1 + 1e-9) < leg.ratio)
-    return BodyLegs(len(legs), legs[0] if legs else None, too_long)
+    return pieces, _measured(list(_chains(pieces)), pieces, thickness)
 
 
 def _neighbours(pieces: SlabPieces) -> tuple[Int64s, Int64s]:
@@ -155,8 +176,10 @@ class _Stretch(NamedTuple):
     last: int
 
 
-def _measured(chains: Sequence[Sequence[int]], pieces: SlabPieces, thickness: float) -> list[MeasuredLeg]:
-    """Return the worst stretch of each leg that is longer than wide."""
+def _measured(
+    chains: Sequence[Sequence[int]], pieces: SlabPieces, thickness: float
+) -> list[tuple[MeasuredLeg, list[int]]]:
+    """Return the worst stretch of each leg that is longer than wide, with its pieces."""
     begins = np.cumsum([0, *(len(chain) for chain in chains)])
     members = np.fromiter((piece for chain in chains for piece in chain), np.int64, int(begins[-1]))
     centres = np.vstack(
@@ -175,7 +198,10 @@ def _measured(chains: Sequence[Sequence[int]], pieces: SlabPieces, thickness: fl
     sums = np.add.reduceat(centres, ends.ravel())[::2] if found else np.empty((0, 3))
     middles = (sums / np.diff(ends)).tolist()
     return [
-        MeasuredLeg(each.ratio, each.length_mm, each.width_mm, (x, y, z))
+        (
+            MeasuredLeg(each.ratio, each.length_mm, each.width_mm, (x, y, z)),
+            members[each.first : each.last].tolist(),
+        )
         for each, (x, y, z) in zip(found, middles, strict=True)
     ]
 

@@ -11,6 +11,7 @@ from amprep.model.supports import (
     ENCLOSED,
     NO_FREE_VOXEL_BELOW,
     OUT_OF_TIME,
+    SLENDER,
     TERRITORY,
     Grounding,
 )
@@ -53,6 +54,11 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
             f"{_have(counts[TERRITORY])} a path only outside the territory of the part or with more drift than allowed"
             f"{_stand_on_part(rules.grounding)}; allow such paths: --set supports.territory=shared, or a larger "
             "supports.territory_margin_mm or supports.drift_ratio"
+        )
+    if counts[SLENDER]:
+        yield (
+            f"{_have(counts[SLENDER])} no support, because it would be a leg of more than {rules.leg_ratio:g} to 1 "
+            "without room for a strut; choose a wider cell or a larger pitch, or allow them: --set supports.leg_ratio=0"
         )
     if counts[CAPACITY]:
         yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"

@@ -30,6 +30,7 @@ from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
+from amprep.supports.legs.short_legs import BuiltSupports, without_long_legs
 from amprep.supports.plan import PassScope, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
 from amprep.supports.solids.thin_cells import suitable_pitch, wall_advice
@@ -205,15 +206,20 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         build_settings(resolved.for_rule(each.rules[0]).job, planned.build.build_id, each.pitch_mm)
         for each in planned.passes
     ]
-    if planned.taken is None:
+    taken = planned.taken
+    if taken is None:
         return SupportedBuild(Build(build_settings(job, planned.build.build_id, planned.pitch_mm), parts))
     bodies: list[SupportBody] = []
+    passes = list(planned.passes)
     with clock.stage("cells") as progress:
         for number, own in enumerate(settings):
-            made = _bodies(planned, number, bodies, stop, _part_of(progress, number, len(settings)))
+            built = _built(planned, number, bodies, stop, _part_of(progress, number, len(settings)))
+            made = built.bodies
             bodies += [replace(body, reach=own.reach, sizes=own.sizes) for body in made] if number else made
+            passes[number] = passes[number]._replace(layout=built.layout)
+    planned = replace(planned, passes=tuple(passes))
     with clock.stage("judge"):
-        unsupported = _unsupported(planned, planned.taken, bodies, settings)
+        unsupported = _unsupported(planned, taken, bodies, settings)
         build = Build(settings[0], parts, tuple(bodies), unsupported)
         removal = removal_of(job, build)
     advice = [
@@ -224,40 +230,46 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
             for words in _wall_advice(resolved.for_rule(each.rules[0]), each.pitch_mm)
         ),
     ]
-    found, rules = planned.taken.overhangs, frozenset(planned.taken.used)
+    found, rules = taken.overhangs, frozenset(taken.used)
     return SupportedBuild(build, planned.layouts, found, tuple(dict.fromkeys(advice)), removal, rules)
 
 
-def _bodies(
+def _built(
     planned: PlannedBuild, number: int, earlier: Sequence[SupportBody], stop: Stop, progress: Progress
-) -> tuple[SupportBody, ...]:
-    """Return the support bodies of one pass; they keep out of the bodies of earlier passes."""
+) -> BuiltSupports:
+    """Return the supports of one pass, whose bodies keep out of the bodies of earlier passes."""
     own, parts = planned.passes[number], planned.build.parts
     resolved = planned.build.resolved.for_rule(own.rules[0])
     job = resolved.job
-    bodies = build_supports(
-        own.layout,
-        parts,
-        lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
-        SolidRules(
-            connector=job.cells,
-            base=job.cells,
-            overlap=job.cells.overlap_mm,
-            allow_surface=job.target == "generic",
-            beams=job.beams,
-            gap=job.supports.gap_mm,
-            space=job.printer.space,
-            least=least_section(job),
-            leg_ratio=job.supports.leg_ratio,
-        ),
-        earlier=earlier,
-        later=planned.layouts[number + 1 :],
-        stop=stop,
-        progress=progress,
+    rules = SolidRules(
+        connector=job.cells,
+        base=job.cells,
+        overlap=job.cells.overlap_mm,
+        allow_surface=job.target == "generic",
+        beams=job.beams,
+        gap=job.supports.gap_mm,
+        space=job.printer.space,
+        least=least_section(job),
+        leg_ratio=job.supports.leg_ratio,
     )
+
+    def build(layout: SupportLayout) -> tuple[SupportBody, ...]:
+        return build_supports(
+            layout,
+            parts,
+            lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
+            rules,
+            earlier=earlier,
+            later=planned.layouts[number + 1 :],
+            stop=stop,
+            progress=progress,
+        )
+
+    built = without_long_legs(build, own.layout, parts, rules.leg_ratio)
     if number == 0:
-        return bodies
-    return tuple(replace(body, name=f"{body.name}, rule {own.rules[0]}") for body in bodies)
+        return built
+    name = f"rule {own.rules[0]}"
+    return built._replace(bodies=tuple(replace(body, name=f"{body.name}, {name}") for body in built.bodies))
 
 
 def _unsupported(

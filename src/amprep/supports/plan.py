@@ -12,7 +12,8 @@ from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
 from amprep.model.counting import counted
-from amprep.model.supports.edges import SupportEdges
+from amprep.model.supports import SLENDER
+from amprep.model.supports.edges import SupportEdges, square_keys
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
 from amprep.supports.grid.spacing import are_beside, space_contacts, steps_within
@@ -20,8 +21,9 @@ from amprep.supports.grid.taken import close_taken, taken_by
 from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.legs.cell import CellProperties
+from amprep.supports.legs.leave_out import keep_legs_short, words_of
 from amprep.supports.legs.room import OpenVoxels
-from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
+from amprep.supports.legs.shorten import LegRules
 from amprep.supports.routes.by_part import Routed, route_apart, route_together
 from amprep.supports.routes.network import Route, SupportNetwork
 from amprep.supports.routes.on_part import stand_on_parts
@@ -49,17 +51,21 @@ class PassScope:
     earlier: Sequence[SupportLayout] = ()
 
 
+_PLANNED = 0.95
+"""Fraction of the leg ratio by which legs are planned, because finished legs are a little longer and narrower."""
+
 EVERYTHING = PassScope()
 """The scope of a single pass: all overhangs that the rules find."""
 
 
 class _Supports(NamedTuple):
-    """Edges of the supports, columns that end on parts, the red squares connected, and notes for the user."""
+    """Edges, columns that end on parts, connected red squares, notes for the user, and reasons for other squares."""
 
     edges: SupportEdges
     feet: Ints
     connected: Bools
     notes: tuple[str, ...]
+    reasons: tuple[str, ...]
 
 
 def plan_supports(
@@ -114,7 +120,7 @@ def plan_supports(
     notes = [words if part is None else f"{parts[part].label}: {words}" for part, words in network.notes]
     supports = _shorten_legs(laid, territories, _ground(laid, territories, routed, rules), rules, cell)
     supports = supports._replace(notes=(*notes, *supports.notes))
-    layout = _layout(parts, overhangs, laid, supports, routed.reasons)
+    layout = _layout(parts, overhangs, laid, supports)
     return replace(layout, territories=territories, contact_spacing=rules.contact_spacing_mm, close=close)
 
 
@@ -164,7 +170,11 @@ def _ground(
     edges = SupportEdges.concatenate([routed.edges, grounded.edges]).merged()
     notes = (f"{counted(len(grounded.feet), 'column')} on parts, as supports.grounding allows",)
     return _Supports(
-        edges, grounded.feet, connected | grounded.connected, notes if len(grounded.feet) else ()
+        edges,
+        grounded.feet,
+        connected | grounded.connected,
+        notes if len(grounded.feet) else (),
+        tuple(routed.reasons),
     )
 
 
@@ -175,20 +185,29 @@ def _shorten_legs(
     rules: PlanningRules,
     cell: CellProperties,
 ) -> _Supports:
-    """Brace or thicken legs that are too long for their width, if the rules limit that."""
+    """Brace, thicken or leave out legs that are too long for their width, if the rules limit that."""
     if not rules.leg_ratio or not len(supports.edges):
         return supports
-    held = np.concatenate([laid.red.square[supports.connected], supports.feet[:, :3]])
+    ends = np.flatnonzero(supports.connected)
     opened = [OpenVoxels(laid.voxels, each.first, each.opened) for each in territories]
-    legs = shorten_legs(
+    legs = keep_legs_short(
         laid.grid,
         supports.edges,
-        held,
-        LegRules(rules.leg_ratio, cell.extents_in(laid.grid.pitch)),
+        (laid.red.square[ends], supports.feet[:, :3]),
+        LegRules(_PLANNED * rules.leg_ratio, cell.extents_in(laid.grid.pitch)),
         opened.__getitem__ if opened else lambda _: OpenVoxels(laid.voxels),
     )
-    edges = SupportEdges.concatenate([supports.edges, legs.edges]).merged()
-    return supports._replace(edges=edges, notes=(*supports.notes, *words_of(legs, rules.leg_ratio)))
+    connected, reasons = supports.connected.copy(), np.array(supports.reasons, object)
+    connected[ends[legs.lost]] = False
+    reasons[ends[legs.lost]] = SLENDER
+    stood_on = square_keys(np.concatenate([legs.edges.lower, laid.red.square[connected]]))
+    return _Supports(
+        legs.edges,
+        supports.feet[np.isin(square_keys(supports.feet[:, :3]), stood_on)],
+        connected,
+        (*supports.notes, *words_of(legs, rules.leg_ratio)),
+        tuple(reasons.tolist()),
+    )
 
 
 def _layout(
@@ -196,7 +215,6 @@ def _layout(
     overhangs: Sequence[PartOverhangs],
     laid: SupportGrid,
     supports: _Supports,
-    reasons: Sequence[str],
 ) -> SupportLayout:
     """Return the layout, with the groups that the supports form."""
     connected = supports.connected
@@ -208,7 +226,9 @@ def _layout(
         overhangs=tuple(overhangs),
         red=laid.red,
         connected=connected,
-        reasons=tuple("" if done else why for done, why in zip(connected.tolist(), reasons, strict=True)),
+        reasons=tuple(
+            "" if done else why for done, why in zip(connected.tolist(), supports.reasons, strict=True)
+        ),
         feet=supports.feet,
         edges=replace(supports.edges, group=edge_group),
         red_group=red_group,

@@ -9,7 +9,7 @@ from tests.shared.examples import examples
 from tests.shared.legs import sliced_legs
 from tests.shared.solids import mesh_of
 
-from amprep.measures.legs import legs_of
+from amprep.measures.legs import legs_of, long_stretches
 
 
 def block(low, size):
@@ -90,3 +90,19 @@ def test_no_leg_of_slices_has_a_larger_ratio_than_the_worst_that_is_measured(col
     sliced = sliced_legs(solid, np.arange(0.31, 24, 1.0))
     largest = measured.worst.ratio if measured.worst else 1.0
     assert max(sliced, default=0.0) <= largest + 2 / 3 + 0.05, "slabs differ by at most one slice at each end"
+
+
+def test_posts_that_touch_along_an_edge_only_are_legs_of_their_own():
+    posts = block((0, 0, 0), (1, 1, 24)) + block((1, 1, 0), (1, 1, 24))
+    slab = block((0, 0, 24), (20, 20, 2))
+    found = legs_of(mesh_of(posts + slab), 1.0, 10.0)
+    assert [round(leg.width_mm, 2) for leg in found.too_long] == [1.0, 1.0]
+
+
+def test_boxes_around_long_stretches_contain_the_leg_and_nothing_else():
+    (first, second) = long_stretches(mesh_of(table()), 1.0, 10.0, ())
+    for boxes, low in zip(sorted([first, second], key=lambda each: each[0, 0, 0]), (0.0, 19.0), strict=True):
+        np.testing.assert_allclose(boxes[:, 0, 0], low)
+        np.testing.assert_allclose(boxes[:, 1, 0], low + 1.0)
+        assert np.ptp(boxes[:, :, 2]) == pytest.approx(28, abs=2)
+    assert long_stretches(mesh_of(table()), 1.0, 40.0, ()) == []

@@ -17,6 +17,7 @@ ADVICE = {
     "enclosed": "no path to the build plate; .* --set supports.grounding=anywhere",
     "capacity": "too little capacity; .* --set supports.escalation=cut",
     "time limit": "allow a longer time limit",
+    "slender": "leg of more than .* to 1 .* --set supports.leg_ratio=0",
     "territory": "outside the territory of the part .*grounding=anywhere; .* --set supports.territory=shared",
 }
 

@@ -28,8 +28,8 @@ class SlabPieces(NamedTuple):
         ``(n,)`` int64, number of the slab of each piece, from the lowest.
     width
         ``(n,)`` mm, least width of the convex hull of a piece in plan.
-    centre
-        ``(n, 3)`` mm, centre of its bounding box.
+    centre, size
+        ``(n, 3)`` mm and ``(n, 2)`` mm, centre of its bounding box, and the size of that in plan.
     link
         ``(k, 2)`` int64: upper and lower piece, which a plane divides; each pair once.
     piece
@@ -39,6 +39,7 @@ class SlabPieces(NamedTuple):
     slab: Int64s
     width: Floats
     centre: Floats
+    size: Floats
     link: Int64s
     piece: Int64s
 
@@ -165,15 +166,15 @@ def _measured(
     height[number[:count]], height[below], height[above] = slab, cuts.plane - 1, cuts.plane
     points = np.concatenate([vertices[:, :2], cuts.ends[:, 0], cuts.ends[:, 0]])
     owner = piece[np.concatenate([number[:count], below, above])]
-    width, middle = _widths(points[owner >= 0], owner[owner >= 0])
+    width, middle, size = _widths(points[owner >= 0], owner[owner >= 0])
     kept = height[piece >= 0]
     link = np.unique(np.column_stack([piece[above], piece[below]]), axis=0)
     centre = np.column_stack([middle, first + (kept + 0.5) * thickness])
-    return SlabPieces(kept, width, centre, link[(link >= 0).all(axis=1)], piece[number[:count]])
+    return SlabPieces(kept, width, centre, size, link[(link >= 0).all(axis=1)], piece[number[:count]])
 
 
-def _widths(points: Floats, owner: Int64s) -> tuple[Floats, Floats]:
-    """Return the least width of the points ``(p, 2)`` of each owner, ``(n,)``, and the centre of their box, ``(n, 2)``.
+def _widths(points: Floats, owner: Int64s) -> tuple[Floats, Floats, Floats]:
+    """Return the least width of the points ``(p, 2)`` of each owner, and centre and size of their box, ``(n, 2)``.
 
     The width is measured in a few directions, and then in directions ever nearer to the best one.
     """
@@ -194,5 +195,6 @@ def _widths(points: Floats, owner: Int64s) -> tuple[Floats, Floats]:
             low, high = extremes(angle)
             better = high - low < least
             best, least = np.where(better, angle, best), np.where(better, high - low, least)
-    boxes = [np.add(*extremes(np.full(len(begins), angle))) / 2 for angle in (0.0, np.pi / 2)]
-    return least, np.column_stack(boxes)
+    sides = [extremes(np.full(len(begins), angle)) for angle in (0.0, np.pi / 2)]
+    low, high = (np.column_stack(ends) for ends in zip(*sides, strict=True))
+    return least, (low + high) / 2, high - low

@@ -24,6 +24,7 @@ CONNECTOR_BLOCKED = "connector blocked"
 OUT_OF_TIME = "time limit"
 EXCEPTED = "rule"
 TERRITORY = "territory"
+SLENDER = "slender"
 
 REASONS = {
     NO_FREE_VOXEL_BELOW: "the voxels directly below contain material of a part or are outside the grid",
@@ -35,6 +36,7 @@ REASONS = {
     OUT_OF_TIME: "there is a path, but the routing ended before it was found",
     EXCEPTED: "a `[[rule]]` entry of the job with `support = false` takes the region; it is no fault",
     TERRITORY: "there is a path, but it leaves the territory of the part or drifts too far",
+    SLENDER: "there is a path, but a support there would be a leg longer than `leg_ratio` allows",
 }
 """All reasons why an overhang is unsupported, with their explanations; routers use three of them."""
 

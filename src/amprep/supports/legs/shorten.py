@@ -7,7 +7,6 @@ import numpy as np
 
 from amprep.arrays import Floats, Ints
 from amprep.geometry.voxels.grid import Grid
-from amprep.model.counting import counted
 from amprep.model.supports.edges import SupportEdges
 from amprep.supports.legs.divide import Division
 from amprep.supports.legs.find import RoutedLeg, find_legs
@@ -99,7 +98,7 @@ def shorten_legs(
     whole = edges
     for _ in range(ROUNDS):
         sections = find_sections(grid, whole, held, rules.cell)
-        legs = _too_long(sections, ratio, touching)
+        legs = too_long(sections, ratio, touching)
         room = Room(sections, whole, opened)
         division = Division(room, legs, ratio, longest)
         for number, leg in enumerate(legs):
@@ -115,7 +114,7 @@ def shorten_legs(
         rows += room.rows
         whole = SupportEdges.concatenate([edges, SupportEdges.from_rows(rows)]).merged()
     sections = find_sections(grid, whole, held, rules.cell)
-    left = tuple(_long_leg(leg, sections, grid) for leg in _too_long(sections, ratio, 0.0))
+    left = tuple(long_leg(leg, sections, grid) for leg in too_long(sections, ratio, 0.0))
     return ShortenedLegs(SupportEdges.from_rows(rows), divided, thickened, left)
 
 
@@ -124,31 +123,15 @@ def _longest_strut(grid: Grid, longest_leg: float) -> int:
     return max(1, min(int(LONGEST_STRUT / grid.pitch), int(longest_leg / np.hypot(grid.pitch, grid.step))))
 
 
-def _too_long(sections: Sections, ratio: float, touching: float) -> list[RoutedLeg]:
+def too_long(sections: Sections, ratio: float, touching: float) -> list[RoutedLeg]:
     """Return the legs with a larger ratio, the longest first."""
     legs = [leg for leg in find_legs(sections, touching) if leg.ratio() > ratio]
     return sorted(legs, key=lambda leg: (-sum(leg.lengths), leg.sections))
 
 
-def _long_leg(leg: RoutedLeg, sections: Sections, grid: Grid) -> LongLeg:
+def long_leg(leg: RoutedLeg, sections: Sections, grid: Grid) -> LongLeg:
+    """Return the ratio and the middle of a leg."""
     middle = leg.sections[len(leg.sections) // 2]
     plane, y, x = sections.square[sections.section == middle].mean(axis=0).tolist()
     place = grid.origin + np.array([(x + 0.5) * grid.pitch, (y + 0.5) * grid.pitch, plane * grid.step])
     return LongLeg(leg.ratio(), (float(place[0]), float(place[1]), float(place[2])))
-
-
-def words_of(legs: ShortenedLegs, ratio: float) -> tuple[str, ...]:
-    """Return one sentence about what was done with the legs, none if nothing was to be done."""
-    done = []
-    if legs.divided:
-        done.append(f"struts and columns divide {counted(legs.divided, 'leg')}")
-    if legs.thickened:
-        done.append(f"{counted(legs.thickened, 'leg')} made thicker below")
-    if legs.left:
-        worst = max(legs.left)
-        x, y, z = worst.position_mm
-        done.append(
-            f"{counted(len(legs.left), 'leg')} still longer than {ratio:g} widths, because no voxels near are free "
-            f"for a strut (the worst is {worst.ratio:.1f} widths long, at {x:.0f}, {y:.0f}, {z:.0f} mm)"
-        )
-    return (f"legs: {'; '.join(done)}",) if done else ()

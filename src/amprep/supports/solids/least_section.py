@@ -11,6 +11,7 @@ from amprep.geometry.connectors.tips import grid_prisms
 from amprep.model.supports import CONNECTOR_BLOCKED
 from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
+from amprep.supports.legs.leave_out import leads_to
 from amprep.supports.solids.connectors import ColumnSurfaces
 
 if TYPE_CHECKING:
@@ -52,9 +53,9 @@ def without_columns(layout: SupportLayout, lost: Bools) -> SupportLayout:
         return layout
     connected = layout.connected & ~lost
     ends = square_keys(layout.red.square[connected])
-    used = _leads_to(layout, ends)
+    used = leads_to(layout.edges, ends)
     braces = _braces(layout, used)
-    used = _leads_to(layout, np.concatenate([ends, braces]))
+    used = leads_to(layout.edges, np.concatenate([ends, braces]))
     edges = layout.edges[used]
     stood_on = np.concatenate([square_keys(edges.lower), ends])
     reasons = tuple(
@@ -68,20 +69,6 @@ def without_columns(layout: SupportLayout, lost: Bools) -> SupportLayout:
         red_group=np.where(connected, layout.red_group, -1),
         feet=layout.feet[np.isin(square_keys(layout.feet[:, :3]), stood_on)],
     )
-
-
-def _leads_to(layout: SupportLayout, ends: np.ndarray) -> Bools:
-    """Tell which edges lead up to one of the squares `ends`; edges are looked at plane by plane from above."""
-    edges = layout.edges
-    upper, lower = square_keys(edges.upper), square_keys(edges.lower)
-    used = np.zeros(len(edges), np.bool_)
-    above = np.empty(0, np.int64)
-    for plane in np.unique(edges.plane)[::-1]:
-        own = np.flatnonzero(edges.plane == plane)
-        own = own[np.isin(upper[own], ends) | np.isin(upper[own], above)]
-        used[own] = True
-        above = lower[own]
-    return used
 
 
 def _braces(layout: SupportLayout, used: Bools) -> Int64s:

@@ -52,6 +52,16 @@ def test_braces_end_legs_and_a_removed_brace_is_found():
     assert len(legs(two_posts(30, [6, 12]), 30.0)) == 2
 
 
+@pytest.mark.parametrize("turn", [0, 30, 90])
+def test_posts_that_touch_along_an_edge_only_are_legs_of_their_own(turn):
+    posts = box((1, 1, 24), (0, 0, 0)) + box((1, 1, 24), (1, 1, 0))
+    assert [leg.width_mm for leg in legs(posts.rotate((0, 0, turn)), 24)] == pytest.approx(
+        [1.0, 1.0], rel=0.02
+    )
+    joined = posts + box((1, 1, 24), (1, 0, 0))
+    assert legs(joined, 20) == [], "three squares that share sides are two wide"
+
+
 def test_leaning_legs_count_by_their_height():
     steps = [box((0.8, 0.8, 0.5), (5 + 0.4 * k, 5, 0.45 * k)) for k in range(40)]
     assert len(legs(Manifold.batch_boolean(steps, _add()), 18.0)) == 1

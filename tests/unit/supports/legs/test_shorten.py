@@ -12,9 +12,10 @@ from amprep.model import Grid, SupportEdges, Voxel
 from amprep.model.supports.edges import DIRECTIONS
 from amprep.supports.legs.cell import square_cell
 from amprep.supports.legs.find import find_legs
+from amprep.supports.legs.leave_out import keep_legs_short, words_of
 from amprep.supports.legs.room import OpenVoxels
 from amprep.supports.legs.sections import find_sections
-from amprep.supports.legs.shorten import LegRules, shorten_legs, words_of
+from amprep.supports.legs.shorten import LegRules, shorten_legs
 
 RULES = LegRules(10.0, square_cell(1.0))
 
@@ -102,9 +103,42 @@ def test_what_cannot_be_mended_is_left_with_its_place_and_said_in_words():
     (left,) = legs.left
     assert left.ratio == pytest.approx(24.0, abs=1.5)
     assert left.position_mm == pytest.approx((7.5, 7.5, 12.0), abs=1)
+
+
+def kept_short(grid, voxels, edges, red, feet=()):
+    return keep_legs_short(
+        grid,
+        edges,
+        (np.array(red, np.int32), np.array(feet, np.int32).reshape(-1, 3)),
+        RULES,
+        lambda _: OpenVoxels(voxels),
+    )
+
+
+def test_what_cannot_be_mended_is_left_out_with_what_only_it_carries_and_said_in_words():
+    grid, voxels = empty_grid((slice(None), [6, 8, 7, 7], [7, 7, 6, 8]))
+    short = column(7, 20, 9)
+    edges = SupportEdges.from_rows(column(7, 7, 24) + short)
+    legs = kept_short(grid, voxels, edges, [(24, 7, 7), (9, 7, 20)])
+    assert legs.lost.tolist() == [True, False]
+    assert legs.edges.rows() == SupportEdges.from_rows(short).merged().rows()
     (words,) = words_of(legs, 10.0)
-    assert "1 leg still longer than 10 widths" in words
-    assert "at 8, 8, 12 mm" in words
+    assert "1 leg left out that would be longer than 10 widths" in words
+    assert "24.0 widths long, at 8, 8, 12 mm" in words
+
+
+def test_a_column_that_a_strut_carries_stays_above_a_leg_that_is_left_out():
+    shut = (slice(0, 20), slice(None), [6, 7, 8])
+    grid, voxels = empty_grid(shut)
+    rows = column(7, 12, 32) + column(7, 13, 32) + column(8, 12, 32) + column(8, 13, 32)
+    strut = [[26 - k, 7, 7 + k, 3, 1, 1, 0] for k in range(5)]
+    edges = SupportEdges.from_rows(column(7, 7, 32) + rows + strut)
+    red = [(32, 7, 7), (32, 7, 12)]
+    legs = kept_short(grid, voxels, edges, red)
+    assert not legs.lost.any()
+    assert legs.left_out
+    assert worst_ratio(legs.edges, red) <= 10
+    assert (legs.edges.plane[(legs.edges.x == 7)] > 20).all(), "nothing hangs below the strut"
 
 
 def test_short_legs_and_walls_beside_each_other_stay_as_they_are():
@@ -113,9 +147,8 @@ def test_short_legs_and_walls_beside_each_other_stay_as_they_are():
     assert len(shorten(grid, voxels, short, [(9, 7, 3), (9, 7, 20)]).edges) == 0
     rows = [row for y in range(3, 7) for x in range(3, 7) for row in column(y, x, 36)]
     block = SupportEdges.from_rows(rows)
-    legs = shorten(grid, voxels, block, [(36, 3, 3)])
-    assert len(legs.edges) == 0
-    assert words_of(legs, 10.0) == ()
+    assert len(shorten(grid, voxels, block, [(36, 3, 3)]).edges) == 0
+    assert words_of(kept_short(grid, voxels, block, [(36, 3, 3)]), 10.0) == ()
 
 
 def bent_wall(low, high, top):

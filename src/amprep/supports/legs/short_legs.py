@@ -1,0 +1,131 @@
+"""Leave out supports whose finished solids have legs that are too long for their width.
+
+Planning knows the squares that supports use, but not what territories, walls and holes cut from the finished solids. So
+the solids are measured as well: what they show of legs above the limit goes, and with it what only those carry.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from amprep.arrays import Bools, Floats
+from amprep.measures.legs import long_stretches
+from amprep.model import Mesh, PlacedPart, SupportBody
+from amprep.model.supports import SLENDER
+from amprep.model.supports.edges import square_keys
+from amprep.supports.layout import SupportLayout
+from amprep.supports.legs.leave_out import without_edges
+
+_BESIDE = 0.25
+"""Distance (in pitches) from the box around a leg up to which axes of edges belong to it."""
+
+_MOST_ROUNDS = 40
+"""Largest number of rounds; the distance grows by a pitch in each in which nothing goes."""
+
+
+class BuiltSupports(NamedTuple):
+    """Support bodies, and the layout with the supports that were left out."""
+
+    bodies: tuple[SupportBody, ...]
+    layout: SupportLayout
+
+
+def without_long_legs(
+    build: Callable[[SupportLayout], tuple[SupportBody, ...]],
+    layout: SupportLayout,
+    parts: Sequence[PlacedPart],
+    ratio: float,
+) -> BuiltSupports:
+    """Build supports, and again without those whose legs are too long, until there is none.
+
+    Parameters
+    ----------
+    build
+        Builds the bodies of a layout.
+    layout
+        Routed supports of the build.
+    parts
+        Placed parts of the build.
+    ratio
+        Largest ratio of length to width of a leg; 0 for no limit.
+    """
+    bodies = build(layout)
+    meshes = [placed.mesh for placed in parts]
+    beside = _BESIDE * layout.grid.pitch
+    for _ in range(_MOST_ROUNDS * (ratio > 0.0)):
+        legs = _long_legs(bodies, layout, meshes, ratio)
+        if not legs:
+            break
+        reduced = _reduced(layout, legs, beside)
+        if len(reduced.edges) == len(layout.edges) and (reduced.connected == layout.connected).all():
+            beside += layout.grid.pitch
+            continue
+        layout, bodies = reduced, build(reduced)
+    return BuiltSupports(bodies, layout)
+
+
+class _FinishedLeg(NamedTuple):
+    """The support group of a leg that is too long, and the box ``(2, 3)`` mm around the piece in its middle."""
+
+    group: int
+    box: Floats
+
+
+def _long_legs(
+    bodies: Sequence[SupportBody], layout: SupportLayout, meshes: Sequence[Mesh], ratio: float
+) -> list[_FinishedLeg]:
+    """Return the legs of bodies that are too long."""
+    groups = {parts: group for group, parts in enumerate(layout.group_parts)}
+    legs = []
+    for body in bodies:
+        if not body.surface and len(body.mesh.triangles):
+            held = [meshes[part] for part in body.parts]
+            found = long_stretches(body.mesh, layout.grid.step, ratio, held)
+            legs += [_FinishedLeg(groups[body.parts], boxes[len(boxes) // 2]) for boxes in found]
+    return legs
+
+
+def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:
+    """Tell which edges of its group ``(n,)`` cross the box in the middle of a leg, grown by a distance (mm)."""
+    grid, edges = layout.grid, layout.edges
+    low, high = leg.box
+    middle = (low[2] + high[2]) / 2.0
+    top = grid.origin[2] + edges.plane * grid.step
+    fraction = np.clip((top - middle) / grid.step, 0.0, 1.0)[:, None]
+    ends = [grid.origin[:2] + (each[:, :0:-1] + 0.5) * grid.pitch for each in (edges.upper, edges.lower)]
+    axis = (1.0 - fraction) * ends[0] + fraction * ends[1]
+    inside = ((axis >= low[:2] - beside) & (axis <= high[:2] + beside)).all(axis=1)
+    at_height = (top >= middle - beside) & (top - grid.step <= middle + beside)
+    return np.asarray(inside & at_height & (edges.group == leg.group))
+
+
+def _end_on_plate(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:
+    """Tell which red squares on the plate ``(m,)``, below which there is no edge, are in its box, grown (mm)."""
+    grid, square = layout.grid, layout.red.square
+    axis = grid.origin[:2] + (square[:, :0:-1] + 0.5) * grid.pitch
+    inside = ((axis >= leg.box[0, :2] - beside) & (axis <= leg.box[1, :2] + beside)).all(axis=1)
+    low_enough = leg.box[0, 2] <= (layout.red.rise + 1) * grid.step
+    return np.asarray(inside & low_enough & (square[:, 0] == 0) & (layout.red_group == leg.group))
+
+
+def _reduced(layout: SupportLayout, legs: Sequence[_FinishedLeg], beside: float) -> SupportLayout:
+    """Return a layout without the edges near legs (mm), and without what only they carry."""
+    removed = np.logical_or.reduce([_cross(layout, leg, beside) for leg in legs])
+    gone = np.logical_or.reduce([_end_on_plate(layout, leg, beside) for leg in legs])
+    ends = np.flatnonzero(layout.connected)
+    red, feet = layout.red.square[ends], layout.feet
+    edges, lost = without_edges(layout.edges, removed, red, gone[ends], feet[:, :3])
+    connected, reasons = layout.connected.copy(), list(layout.reasons)
+    for each in ends[lost].tolist():
+        connected[each], reasons[each] = False, SLENDER
+    stood_on = square_keys(np.concatenate([edges.lower, red[~lost]]))
+    return replace(
+        layout,
+        connected=connected,
+        reasons=tuple(reasons),
+        edges=edges,
+        red_group=np.where(connected, layout.red_group, -1),
+        feet=feet[np.isin(square_keys(feet[:, :3]), stood_on)],
+    )
