@@ -51,9 +51,6 @@ class PassScope:
     earlier: Sequence[SupportLayout] = ()
 
 
-_PLANNED = 0.95
-"""Fraction of the leg ratio by which legs are planned, because finished legs are a little longer and narrower."""
-
 EVERYTHING = PassScope()
 """The scope of a single pass: all overhangs that the rules find."""
 
@@ -194,7 +191,7 @@ def _shorten_legs(
         laid.grid,
         supports.edges,
         (laid.red.square[ends], supports.feet[:, :3]),
-        LegRules(_PLANNED * rules.leg_ratio, cell.extents_in(laid.grid.pitch)),
+        LegRules(rules.leg_ratio, cell.extents_in(laid.grid.pitch)),
         opened.__getitem__ if opened else lambda _: OpenVoxels(laid.voxels),
     )
     connected, reasons = supports.connected.copy(), np.array(supports.reasons, object)

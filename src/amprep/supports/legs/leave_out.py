@@ -15,6 +15,9 @@ from amprep.supports.legs.room import OpenVoxels
 from amprep.supports.legs.sections import Sections, find_sections
 from amprep.supports.legs.shorten import LegRules, LongLeg, long_leg, shorten_legs, too_long
 
+_BRACED = 0.95
+"""Fraction of the leg ratio from which legs are divided, because finished legs are a little longer and narrower."""
+
 _ATTEMPTS = 3
 """Number of times that legs are left out and the remaining ones divided again; then they are only left out."""
 
@@ -67,13 +70,14 @@ def keep_legs_short(
         Returns the voxels that the supports of a part may use.
     """
     red, feet = held
+    braced = rules._replace(ratio=max(1.0, _BRACED * rules.ratio))
     lost = np.zeros(len(red), np.bool_)
     divided = thickened = 0
     left_out: list[LongLeg] = []
     for attempt in count():
         stood = np.concatenate([red[~lost], feet])
         if attempt < _ATTEMPTS:
-            found = shorten_legs(grid, edges, stood, rules, opened)
+            found = shorten_legs(grid, edges, stood, braced, opened)
             divided, thickened = divided + found.divided, thickened + found.thickened
             edges = SupportEdges.concatenate([edges, found.edges]).merged()
             if not found.left:

@@ -127,6 +127,14 @@ def test_what_cannot_be_mended_is_left_out_with_what_only_it_carries_and_said_in
     assert "24.0 widths long, at 8, 8, 12 mm" in words
 
 
+@pytest.mark.parametrize(("top", "stays"), [(10, True), (11, False)])
+def test_a_leg_up_to_the_ratio_stays_where_it_cannot_be_braced(top, stays):
+    grid, voxels = empty_grid((slice(None), [6, 8, 7, 7], [7, 7, 6, 8]))
+    legs = kept_short(grid, voxels, SupportEdges.from_rows(column(7, 7, top)), [(top, 7, 7)])
+    assert legs.lost.tolist() == [not stays]
+    assert len(legs.edges) == top * stays
+
+
 def test_a_column_that_a_strut_carries_stays_above_a_leg_that_is_left_out():
     shut = (slice(0, 20), slice(None), [6, 7, 8])
     grid, voxels = empty_grid(shut)
