@@ -107,7 +107,7 @@ def _measured(part: Part, chain: MakerChain, seed: int, stop: Stop) -> Inspected
         return InspectedVolume(chain.name, failure="time limit")
     began = time.process_time()
     try:
-        made = bound_part(part, chain.makers, seed, stop)
+        made = bound_part(part, chain.makers, seed, stop, refuse=False)
         seconds = time.process_time() - began
         volume = volume_of(made.volume)
     except AmprepError as error:

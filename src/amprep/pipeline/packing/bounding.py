@@ -32,7 +32,9 @@ def bound_parts(loaded: LoadedParts, stop: Stop, progress: Progress) -> list[Tur
     return volumes
 
 
-def bound_part(part: Part, makers: Sequence[Chosen[VolumeMaker]], seed: int, stop: Stop) -> TurnedVolume:
+def bound_part(
+    part: Part, makers: Sequence[Chosen[VolumeMaker]], seed: int, stop: Stop, *, refuse: bool = True
+) -> TurnedVolume:
     """Return the bounding volume of one part.
 
     Parameters
@@ -45,21 +47,21 @@ def bound_part(part: Part, makers: Sequence[Chosen[VolumeMaker]], seed: int, sto
         Seed of the random numbers of each maker.
     stop
         Asks the makers to end early.
+    refuse
+        Whether volumes of foreign makers that do not contain the part are refused; else the caller judges them.
 
     Raises
     ------
     PluginError
-        When a maker fails, or one before the last does not make a solid.
+        When a maker fails, its volume is refused, or one before the last does not make a solid.
     """
-    for maker in makers[:-1]:
-        part = _bounded_by(part, maker, _made_by(maker, part, seed, stop))
-    return as_turned(_made_by(makers[-1], part, seed, stop))
-
-
-def _made_by(maker: Chosen[VolumeMaker], part: Part, seed: int, stop: Stop) -> BoundingVolume | TurnedVolume:
-    made: BoundingVolume | TurnedVolume = maker.call(part, rng=np.random.default_rng(seed), stop=stop)
-    refuse_wrong_volume(maker, part, made)
-    return made
+    for number, maker in enumerate(makers, start=1):
+        made: BoundingVolume | TurnedVolume = maker.call(part, rng=np.random.default_rng(seed), stop=stop)
+        if refuse:
+            refuse_wrong_volume(maker, part, made)
+        if number < len(makers):
+            part = _bounded_by(part, maker, made)
+    return as_turned(made)
 
 
 def offered_orientations(allowed: Orientations, turn: Floats, accepts: PackerAccepts) -> Orientations:
