@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.geometry.supports.footprints import box, union_of
+from amprep.geometry.supports.waists import find_waists
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -32,6 +33,9 @@ _CORNER = 1.3
 _AROUND = 8.0
 """Half of the side (in widths) of the squares around narrow ends in which a region is looked at."""
 
+_MOST_SQUARES = 4
+"""Largest number of squares; offsets of the whole section take less time than those in more of them."""
+
 _BORDER = 1.5
 """Distance (in widths) from the border of these squares in which nothing is judged."""
 
@@ -49,8 +53,9 @@ _POINTS = 128
 
 # Strategy. Offsets of whole sections take most of the time of a test for thin places, so they are taken only there
 # where the outline tells that something may be thin.
-# 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees.
-# 2. In a square around each narrow end, the rest is what discs of the least width, grown by the reach of corners, do
+# 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees. A
+#    waist between two wide places has a corner that turns inwards, near to which another side of the outline is.
+# 2. In a square around each of them, the rest is what discs of the least width, grown by the reach of corners, do
 #    not cover. Near the border of the square, which cuts the region, nothing is judged. Only the outlines whose boxes
 #    meet the square are cut to it: no other outline encloses a point of it.
 # 3. Where the rest is cut away, the next narrow end of a long fin appears; so steps 1 and 2 are repeated there.
@@ -70,6 +75,12 @@ class Contours(NamedTuple):
     contours: list[Floats]
     low: Floats
     high: Floats
+
+    def whole(self) -> "CrossSection":
+        """Return the region."""
+        from manifold3d import CrossSection, FillRule
+
+        return CrossSection(self.contours, FillRule.Positive)
 
     def inside(self, low: Floats, high: Floats) -> "CrossSection":
         """Return the region inside the union of rectangles with the corners ``(n, 2)`` mm."""
@@ -113,6 +124,8 @@ def find_thin_rests(
     area: float,
     is_kept: "Callable[[CrossSection], bool]",
     are_held: Callable[[Floats], Bools],
+    *,
+    waists: bool = True,
 ) -> "list[CrossSection]":
     """Return the pieces of a section that are thinner than a width, and whole pieces that are smaller than an area.
 
@@ -126,9 +139,11 @@ def find_thin_rests(
         Tells whether a piece may stay though it is thin.
     are_held
         Tells at which points ``(k, 2)`` mm pieces may stay, so that no narrow end there is looked at.
+    waists
+        Whether waists are looked for, too, which takes several times as long as narrow ends.
     """
     found: list[CrossSection] = []
-    whole, ends = region, narrow_ends(region, width, area)
+    whole, ends = region, narrow_ends(region, width, area, waists=waists)
     ends = ends[~are_held(ends)]
     for _ in range(_ROUNDS):
         cut = _rests_at(region, ends, width, area, is_kept) if len(ends) else []
@@ -151,24 +166,38 @@ def _rests_at(
     area: float,
     is_kept: "Callable[[CrossSection], bool]",
 ) -> "list[CrossSection]":
-    """Return the rests in the squares around narrow ends ``(k, 2)`` mm."""
-    found: list[CrossSection] = []
+    """Return the rests in the squares around narrow places ``(k, 2)`` mm, or everywhere if there are many of them."""
     half = _AROUND * width
-    seen = np.empty((0, 2))
-    for end in ends:
-        if len(seen) and (np.abs(seen - end) < half / 2.0).all(axis=1).any():
-            continue
-        seen = np.concatenate([seen, end[None]])
+    centres = _apart(ends, half / 2.0)
+    if len(centres) > _MOST_SQUARES:
+        whole = region.whole()
+        found = _pieces_of(_beyond_discs(whole, width))
+        found += [each for each in whole.decompose() if each.area() < area]
+        return [rest for rest in found if not is_kept(rest)]
+    found = []
+    judged = half - _BORDER * width
+    for end in centres:
         local = region.inside((end - half)[None], (end + half)[None])
-        judged = half - _BORDER * width
-        thin = _beyond_discs(local, width) ^ box(end - judged, end + judged)
-        rests = [rest for rest in thin.decompose() if rest.area() > _SPECK] if thin.area() > _SPECK else []
+        found += _pieces_of(_beyond_discs(local, width) ^ box(end - judged, end + judged))
         if area > 0.0:
-            rests += [
+            found += [
                 each for each in local.decompose() if each.area() < area and _is_inside(each, end, half)
             ]
-        found += [rest for rest in rests if not is_kept(rest)]
-    return found
+    return [rest for rest in found if not is_kept(rest)]
+
+
+def _apart(points: Floats, distance: float) -> list[Floats]:
+    """Return points ``(k, 2)`` mm of which none is in the square around an earlier one."""
+    chosen = np.empty((0, 2))
+    for point in points:
+        if not len(chosen) or (np.abs(chosen - point) >= distance).any(axis=1).all():
+            chosen = np.concatenate([chosen, point[None]])
+    return list(chosen)
+
+
+def _pieces_of(region: "CrossSection") -> "list[CrossSection]":
+    """Return the pieces of a region but what offsets leave by rounding."""
+    return [piece for piece in region.decompose() if piece.area() > _SPECK] if region.area() > _SPECK else []
 
 
 def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
@@ -179,10 +208,10 @@ def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
     return region - discs.offset((0.5 + _CORNER) * width, JoinType.Round, 2.0, _SEGMENTS)
 
 
-def narrow_ends(region: Contours, width: float, area: float = 0.0) -> Floats:
+def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bool = True) -> Floats:
     """Return the points ``(k, 2)`` mm at which the outline of a region turns back within a width.
 
-    Those of pieces that are smaller than an area (mm2) are among them.
+    Those of pieces that are smaller than an area (mm2), and the corners at waists, are among them.
 
     Parameters
     ----------
@@ -190,6 +219,8 @@ def narrow_ends(region: Contours, width: float, area: float = 0.0) -> Floats:
         A region.
     width, area
         Length (mm) of the outline within which it turns, and area (mm2).
+    waists
+        Whether corners at waists are among the points.
     """
     contours = region.contours
     if not contours:
@@ -207,7 +238,10 @@ def narrow_ends(region: Contours, width: float, area: float = 0.0) -> Floats:
     cross = points[:, 0] * points[after, 1] - points[:, 1] * points[after, 0]
     enclosed = np.add.reduceat(cross, np.cumsum(sizes) - sizes) / 2.0
     is_small = np.repeat((enclosed > 0.0) & (enclosed < area), sizes)
-    return points[_turns_back(turn, length, after, width) | is_small]
+    ends = _turns_back(turn, length, after, width) | is_small
+    if waists:
+        ends[find_waists(points, after, width)] = True
+    return points[ends]
 
 
 def _turns_back(turn: Floats, length: Floats, after: np.ndarray, width: float) -> Bools:

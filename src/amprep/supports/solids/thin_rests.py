@@ -18,10 +18,13 @@ if TYPE_CHECKING:
 _STEP = 0.25
 """Distance (mm) of sections."""
 
-_MOST_TRIANGLES = 4e6
+_EACH_WAIST = 2
+"""In every n-th section waists are looked for, too."""
+
+_MOST_TRIANGLES = 1.6e7
 """Largest product of the numbers of triangles and sections of one support."""
 
-_SECTIONS = (40, 240)
+_SECTIONS = (80, 240)
 """Least and largest value of the number of sections to which that leads."""
 
 _FINE = 0.15
@@ -101,9 +104,9 @@ def without_thin_rests(
     for _ in range(_ROUNDS):
         finder = _RestFinder(solid, parts, least, tip_height)
         cuts: dict[int, CrossSection] = {}
-        for place in places:
-            layer = round(place.height / _FINE)
-            if rest := _beyond(finder.rests(place), cuts.get(layer)):
+        for number, place in enumerate(places):
+            layer, waists = round(place.height / _FINE), place.around is not None or number % _EACH_WAIST == 0
+            if rest := _beyond(finder.rests(place, waists=waists), cuts.get(layer)):
                 _collect(finder, layer, rest, cuts)
         if not cuts:
             break
@@ -214,7 +217,7 @@ class _RestFinder:
         margin = _WINDOW * self._width
         return _Place(height, (low - margin, high + margin))
 
-    def rests(self, place: _Place) -> "CrossSection | None":
+    def rests(self, place: _Place, *, waists: bool = True) -> "CrossSection | None":
         """Return what is too thin in a section; None for nothing. Near the border of the place nothing is judged."""
         region: Contours = self._contours(place.height)
         if place.around is not None:
@@ -225,6 +228,7 @@ class _RestFinder:
             self._area,
             lambda rest: self._is_kept(rest, place.height),
             lambda ends: self._are_held(ends, place.height),
+            waists=waists,
         )
         if found and place.around is not None:
             low, high = place.around

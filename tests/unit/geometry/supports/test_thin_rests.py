@@ -54,6 +54,27 @@ def test_a_wedge_whose_end_is_a_little_wider_than_the_width_has_a_narrow_end():
     assert len(narrow_ends(contours_of(wedge), WIDTH))
 
 
+@given(width=st.floats(0.03, 0.9).filter(lambda width: abs(width - WIDTH) > 0.02), turn=st.floats(0.0, 360.0))
+@examples(30)
+def test_a_waist_between_two_blocks_is_a_rest_exactly_if_it_is_narrower_than_the_width(width, turn):
+    blocks = CrossSection.square((3.0, 3.0)).translate((-3.0, -1.0)) + CrossSection.square(
+        (3.0, 3.0)
+    ).translate((4.0, -1.0))
+    waist = rectangle(width, 4.2, at=(-0.1, 0.0))
+    left = (blocks + waist).rotate(turn)
+    left -= rests(left)
+    kept = 18.0 + (width * 4.0 if width > WIDTH else 0.0)
+    assert kept - 1e-2 <= left.area() <= kept + (width < WIDTH) * width * 4.0 * WIDTH + 1e-2
+
+
+def test_a_bridge_that_tapers_to_a_waist_is_a_rest():
+    block = CrossSection.square((2.0, 2.0))
+    sliver = CrossSection([np.array([[-2.0, 0.0], [0.1, 0.0], [0.1, 0.02], [-0.4, 0.04], [-2.0, 0.5]])])
+    left = block + sliver
+    left -= rests(left).offset(1e-3)
+    assert len(left.decompose()) == 2
+
+
 @pytest.mark.parametrize("sides", [3, 4, 6, 40])
 def test_wide_shapes_with_and_without_holes_have_no_rests(sides):
     region = CrossSection.circle(2.0, sides) - CrossSection.circle(0.4, sides)
