@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 FILE_STEP = 3e-5
 """Largest distance (mm) by which rounding to float32 moves a vertex within 500 mm of the origin."""
 
+_TOLERANCES = (FILE_STEP, 1e-6, 1e-7)
+"""Tolerances (mm) of the simplification of finished solids, from which the first that keeps the volume is taken."""
+
+_SAME_VOLUME = 1e-4
+"""Volume (mm3) by which simplification may change a solid."""
+
 
 def union(solids: Sequence["Manifold"]) -> "Manifold":
     """Unite solids in pairs, and evaluate each union at once.
@@ -59,5 +65,18 @@ def finish(solids: Sequence["Manifold"]) -> tuple[Floats, Int64s]:
     if whole.is_empty():
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
     # moving the vertices takes half as long as reading rounded arrays
-    points, triangles = arrays_of(whole.warp_batch(round_as_stored).simplify(FILE_STEP))
+    points, triangles = arrays_of(_simplified(whole.warp_batch(round_as_stored)))
     return round_as_stored(points), triangles
+
+
+def _simplified(solid: "Manifold") -> "Manifold":
+    """Remove degenerate triangles and, where that keeps the shape, triangles that rounding makes superfluous.
+
+    At needles manifold3d may remove much more than its tolerance says: walls moved by 0.05 mm, and supports entered
+    parts. Then the volume changes, and a smaller tolerance is taken.
+    """
+    for tolerance in _TOLERANCES:
+        found = solid.simplify(tolerance)
+        if abs(found.volume() - solid.volume()) <= _SAME_VOLUME:
+            break
+    return found

@@ -20,6 +20,7 @@ from amprep.threemf.write.document import (
     beam_objects,
     group_parts,
 )
+from amprep.threemf.write.geometry import check_geometry
 from amprep.threemf.write.metadata import (
     build_metadata,
     distinct_parts,
@@ -38,13 +39,21 @@ _BOX_TRIANGLES = (
 
 
 def components_document(build: Build) -> Document:
-    """Return the document of a build; copies of a part share its mesh, supports are in build coordinates."""
+    """Return the document of a build; copies of a part share its mesh, supports are in build coordinates.
+
+    Raises
+    ------
+    AmprepError
+        If 3MF cannot store an object.
+    """
     groups, parts = group_parts(build), distinct_parts(build)
     objects = [_part_object(part) for part in parts]
     support_objects = []
     for support in build.supports:
         objects += _support_objects(build, support, len(objects))
         support_objects.append(len(objects) - 1)
+    for each in objects:  # digests need indices in range
+        check_geometry(each)
     items = [_item(build, parts, group, support_objects) for group in groups]
     return Document(build.settings.build_id, build_metadata(build, parts), tuple(objects), tuple(items))
 
