@@ -19,6 +19,12 @@ TOLERANCE = 0.1
 _SPACING = 1.0
 """Distance (mm) of samples on overhangs and supports."""
 
+_FINE, _MOST_SAMPLES = 0.1, 1_000_000
+"""Distance (mm) of samples where those farther apart may miss what needs support, and their approximate number at most.
+
+Beside a limit of the rules, a strip of a bridge or a bore may be narrow; one that certainly needs support is wider than
+the tolerances of both of its sides."""
+
 _BORDER = 1.5
 """Largest distance of the samples that are left out beside a blocker, over the uncertainty of its border."""
 
@@ -39,6 +45,9 @@ def check_drift(build: Build, stop: Stop) -> list[Violation]:
     square of the support grid more, because drift is planned in squares; at the foot the margin of the base comes on
     top. Supports that parts share may be below the overhangs of any of them. Supports below
     surfaces that enclose no solid are not judged, because their needs are not certain: faces without area have edges.
+
+    Strategy. Few samples of the overhangs decide nearly always. Where a support seems too far away, samples that are
+    closer together look for narrow strips that need support.
     """
     rules = build.settings.rules
     found: list[Violation] = []
@@ -64,14 +73,33 @@ def _targets(placed: PlacedPart, build: Build) -> Floats:
     found = judged_overhangs(placed, build.settings.rules, _SPACING)
     rows = np.arange(len(found.samples.points))
     needed = are_needed(found, build.settings.rules, rows, strict=True)
-    points = found.samples.points[needed]
+    points = found.samples.points[rows[needed]]
     return points[_highest(points)]
+
+
+def _close_targets(placed: PlacedPart, build: Build, below: Floats, beside: float) -> Floats:
+    """Return closer points on overhangs that may need support, at most `beside` mm to the side of some points."""
+    from scipy.spatial import KDTree
+
+    rules, mesh = build.settings.rules, placed.mesh
+    extent = np.ptp(mesh.vertices[:, :2], axis=0)
+    found = judged_overhangs(placed, rules, max(_FINE, float(np.sqrt(extent.prod() / _MOST_SAMPLES))))
+    points = found.samples.points
+    away, _ = KDTree(below[:, :2]).query(points[:, :2], distance_upper_bound=beside)
+    rows = np.flatnonzero(np.isfinite(away) & (points[:, 2] > below[:, 2].min()))
+    return points[rows[are_needed(found, rules, rows, strict=True)]]
 
 
 def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) -> list[Violation]:
     points = _samples(body)
     excess = _excess(points, above, body, build) - uncertain
     far = np.flatnonzero(excess > TOLERANCE)
+    if len(far):
+        beside = _largest_drift(points[far], body, build)
+        close = [_close_targets(build.parts[part], build, points[far], beside) for part in body.parts]
+        again = _excess(points[far], np.concatenate(close), body, build) - uncertain
+        excess[far] = np.minimum(excess[far], again)
+        far = far[excess[far] > TOLERANCE]
     if not len(far):
         return []
     worst = far[excess[far].argmax()]
@@ -102,7 +130,7 @@ def _excess(points: Floats, above: Floats, body: SupportBody, build: Build) -> F
         return least
     limit = rules.drift_mm or np.inf
     square = sizes.square_mm or build.settings.reach_of(body)
-    nearby = np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0)
+    nearby = _nearby(square)
 
     def over(rows: Int64s, targets: Floats) -> Floats:
         """Return the excess of points over each of their targets."""
@@ -123,6 +151,21 @@ def _excess(points: Floats, above: Floats, body: SupportBody, build: Build) -> F
         least[some] = over(some, above[None]).min(axis=1)
     base = points[:, 2] <= sizes.base_height_mm
     return np.asarray(least - np.where(base, sizes.base_margin_mm, 0.0))
+
+
+def _nearby(square: float) -> float:
+    """Return the distance (mm) that is granted everywhere, for squares of the grid of a side (mm)."""
+    return float(np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0))
+
+
+def _largest_drift(points: Floats, body: SupportBody, build: Build) -> float:
+    """Return the largest distance (mm) that some of the points may be away from overhangs of their parts."""
+    rules = build.settings.rules
+    square = build.settings.sizes_of(body).square_mm or build.settings.reach_of(body)
+    top = max(float(build.parts[part].mesh.vertices[:, 2].max()) for part in body.parts)
+    climb = max(top - float(points[:, 2].min()), 0.0)
+    steep = rules.drift_ratio * climb if rules.drift_ratio > 0.0 else np.inf
+    return _nearby(square) + TOLERANCE + float(min(steep, rules.drift_mm or np.inf))
 
 
 def _nearest(points: Floats, above: Floats) -> Int64s:

@@ -62,6 +62,16 @@ def test_what_the_part_carries_itself_carries_no_support():
     assert "no overhang" in violation.message
 
 
+@pytest.mark.parametrize(("span", "needs"), [(2.3, True), (2.6, True), (1.7, False)])
+def test_a_narrow_strip_that_needs_support_between_samples_is_found(span, needs):
+    middle = 4.45
+    sides = box((5, 20, 20), (middle - span / 2 - 5, 0, 0)) + box((5, 20, 20), (middle + span / 2, 0, 0))
+    found = judged(
+        sides + box((10 + span, 20, 5), (middle - span / 2 - 5, 0, 20)), box((1, 1, 20), (4, 5, 0))
+    )
+    assert (found == []) == needs
+
+
 def test_a_base_may_reach_farther_by_its_margin():
     foot = box((1, 1, 10), (0, 0, 0)) + box((9, 9, 0.5), (-4, -4, 0))
     assert len(judged(table(10, corner=(0, 0)), foot.translate((-2.5, 5, 0)))) == 1
