@@ -15,6 +15,8 @@ from amprep.kernels.helper import helper
 # The walk towards the nearest anchor comes first. If it arrives, it is the shortest ledge; and the shortest line
 # between two anchors through the point is often its continuation. All directions are tried only where these do not
 # suffice. No line between two anchors is shorter than twice the shortest ledge.
+# A walk ends where it can no longer matter: beyond the shortest ledge so far, and above the height up to which an
+# anchor counts. Over a noisy mesh, whose triangles are small and many, this is nearly all of the time.
 
 ANCHOR, FREE = -1, -2
 """What is beyond a side at the border of a region: the part carries it there, or it does not."""
@@ -71,15 +73,17 @@ class CarryingLimits(NamedTuple):
 def _walk(
     faces: WalkableFaces,
     face: int,
-    x: float,
-    y: float,
-    z: float,
-    dx: float,
-    dy: float,
+    point: tuple[float, float, float],
+    direction: tuple[float, float],
     most: float,
+    highest: float,
     plate: float,
 ) -> tuple[float, int, float, float]:
-    """Return length, kind of end, height at the end, and greatest height of a walk from a point in a face."""
+    """Return length, kind of end, height at the end, and greatest height of a walk from a point in a face.
+
+    It ends where it is longer than `most` mm or higher than `highest` mm.
+    """
+    (x, y, z), (dx, dy) = point, direction
     corners, beyond = faces.corners, faces.beyond
     came, length, top, height = -1, 0.0, z, z
     for _ in range(_MOST_STEPS):
@@ -109,7 +113,7 @@ def _walk(
             return length + share * (best - length), ANCHOR, plate, top
         top = max(top, height)
         length = best
-        if length > most:
+        if length > most or top > highest:
             return length, _FAR, height, top
         onward = beyond[face, side]
         if onward < 0:
@@ -131,15 +135,14 @@ def _chord(
 
     One end of an arch is at most `nearest` mm from the point.
     """
-    x, y, z = point
-    dx, dy = direction
-    one, kind, z1, top1 = _walk(faces, face, x, y, z, dx, dy, limits.most, limits.plate)
+    back = -direction[0], -direction[1]
+    printed = point[2] + limits.climb[face]
+    one, kind, z1, top1 = _walk(faces, face, point, direction, limits.most, np.inf, limits.plate)
     if kind != ANCHOR:
         return np.inf, np.inf
-    other, kind, z2, top2 = _walk(faces, face, x, y, z, -dx, -dy, limits.most - one, limits.plate)
+    highest = printed if top1 > printed else np.inf
+    other, kind, z2, top2 = _walk(faces, face, point, back, limits.most - one, highest, limits.plate)
     if kind != ANCHOR:
-        return np.inf, np.inf
-    if min(top1, top2) > z + limits.climb[face]:
         return np.inf, np.inf
     bridge = one + other
     rise = max(top1, top2) - max(z1, z2)
@@ -154,11 +157,12 @@ def _towards(
     face: int,
     point: tuple[float, float, float],
     direction: tuple[float, float],
+    most: float,
 ) -> float:
-    """Return the length of a walk to an anchor, infinite where it does not lead to one."""
-    x, y, z = point
-    length, kind, _, top = _walk(faces, face, x, y, z, direction[0], direction[1], limits.most, limits.plate)
-    return length if kind == ANCHOR and top <= z + limits.climb[face] else np.inf
+    """Return the length of a walk to an anchor, infinite where it does not lead to one within `most` mm."""
+    highest = point[2] + limits.climb[face]
+    length, kind, _, _ = _walk(faces, face, point, direction, most, highest, limits.plate)
+    return length if kind == ANCHOR else np.inf
 
 
 @njit(cache=True)
@@ -175,7 +179,7 @@ def find_ledges(
     Parameters
     ----------
     ledges
-        ``(n,)`` out: mm, infinite where no straight line leads to an anchor.
+        ``(n,)`` out: mm, infinite where no straight line within the limit of walks leads to an anchor.
     """
     for n in range(len(points)):
         x, y, z = points[n]
@@ -185,11 +189,12 @@ def find_ledges(
         elif not np.isnan(targets[n, 0]):
             dx, dy = targets[n, 0] - x, targets[n, 1] - y
             size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
-            ledge = _towards(faces, limits, face[n], (x, y, z), (dx / size, dy / size))
+            ledge = _towards(faces, limits, face[n], (x, y, z), (dx / size, dy / size), limits.most)
             if ledge > size + 1e-6:
                 for k in range(2 * _CHORDS):
                     towards = (np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS))
-                    ledge = min(ledge, _towards(faces, limits, face[n], (x, y, z), towards))
+                    most = min(ledge, limits.most)
+                    ledge = min(ledge, _towards(faces, limits, face[n], (x, y, z), towards, most))
         ledges[n] = ledge
 
 

@@ -83,13 +83,15 @@ class Carrier(NamedTuple):
     def ledges(self, points: Floats, face: Int64s, *, in_order: bool = False) -> Floats:
         """Return the length ``(n,)`` mm of the shortest ledge at points ``(n, 3)`` on the regions' faces ``(n,)``.
 
-        With `in_order` only ledges count that are printed no later than the point.
+        With `in_order` only ledges count that are printed no later than the point, and none that is too long to carry
+        it.
         """
         from amprep.kernels.overhangs.walks import find_ledges
 
         target, _ = self.nearest(points, face)
         ledges = np.empty(len(points))
-        limits = self._kernel_limits(np.inf, in_order=in_order)
+        most = max(self.limits.ledge + TOLERANCE, self._longest()) if in_order else np.inf
+        limits = self._kernel_limits(most, in_order=in_order)
         find_ledges(self._faces(), limits, np.ascontiguousarray(points), face, target, ledges)
         return ledges
 
@@ -122,9 +124,13 @@ class Carrier(NamedTuple):
         )
         return spans[:, 0], spans[:, 1]
 
-    def carries(self, points: Floats, face: Int64s) -> Bools:
-        """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries."""
-        ledges = self.ledges(points, face, in_order=True)
+    def carries(self, points: Floats, face: Int64s, ledges: Floats | None = None) -> Bools:
+        """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries.
+
+        The shortest ledges ``(n,)`` in order are measured unless they are given.
+        """
+        if ledges is None:
+            ledges = self.ledges(points, face, in_order=True)
         carried = ledges <= self.limits.ledge + TOLERANCE
         left = np.flatnonzero(~carried)
         bridge, arch = self.spans(points[left], face[left], ledges[left])

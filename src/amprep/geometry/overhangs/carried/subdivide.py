@@ -80,10 +80,12 @@ def _judge(carrier: Carrier, corners: Floats, face: Int64s) -> tuple[Bools, Bool
     needed = near - radius > carrier.farthest(face)
     split = np.zeros(len(face), np.bool_)
     left = np.flatnonzero(~needed)
-    beyond = carrier.ledges(middle[left], face[left], in_order=True) + radius[left] > carrier.limits.ledge
+    ledges = np.zeros(len(face))
+    ledges[left] = carrier.ledges(middle[left], face[left], in_order=True)
+    beyond = ledges[left] + radius[left] > carrier.limits.ledge
     split[left] = beyond & (radius[left] > _COARSEST)
     left = left[(beyond | np.isfinite(carrier.climb[face[left]])) & ~split[left]]
-    needed[left] = ~carrier.carries(middle[left], face[left])
+    needed[left] = ~carrier.carries(middle[left], face[left], ledges[left])
     left = left[radius[left] > _SMALL]
     tests = middle[left, None] + _INWARDS * (corners[left] - middle[left, None])
     at = carrier.carries(tests.reshape(-1, 3), np.repeat(face[left], 3)).reshape(-1, 3)
