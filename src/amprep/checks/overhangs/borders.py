@@ -38,7 +38,7 @@ def regions_of(surface: MergedMesh, faces: Int64s) -> Int64s:
 
 
 def region_edges(
-    surface: MergedMesh, faces: Int64s, region: Int64s, angle: float, plate: float
+    surface: MergedMesh, faces: Int64s, region: Int64s, angle: float, plate: float, *, strict: bool = False
 ) -> RegionEdges:
     """Return the edges of overhang regions, with those parts of edges that are on the plate as anchors.
 
@@ -56,6 +56,9 @@ def region_edges(
         Overhang angle, radians.
     plate
         Height up to which geometry is on the plate, mm.
+    strict
+        Whether only what certainly carries the region is an anchor: where more than two triangles share an edge, two
+        solids may only touch there.
     """
     edge = surface.edge[faces].reshape(-1)
     number, first, count = np.unique(edge, return_index=True, return_counts=True)
@@ -63,7 +66,8 @@ def region_edges(
     start, end = (surface.points[surface.ends[number, side]] for side in (0, 1))
     is_border = count == 1
     is_anchor = np.zeros(len(number), np.bool_)
-    rows = np.flatnonzero(is_border)
+    is_joint = np.bincount(surface.edge.reshape(-1), minlength=len(surface.ends))[number] > 2
+    rows = np.flatnonzero(is_border & ~(is_joint & strict))
     is_anchor[rows] = _turns_down(surface, faces, number[rows], face[rows])
     rows = rows[~is_anchor[rows]]
     is_anchor[rows] = _solid_beyond(surface, start[rows], end[rows], face[rows], angle)

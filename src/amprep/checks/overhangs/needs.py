@@ -90,7 +90,7 @@ def _carried_faces(
     if not len(points):
         return np.zeros(0, np.bool_)
     region = regions_of(surface, faces)
-    edges = region_edges(surface, faces, region, reaches.angle, plate)
+    edges = region_edges(surface, faces, region, reaches.angle, plate, strict=not thorough)
     edges = with_bases(edges, surface, faces, starts.wide)
     corners = surface.triangles[faces]
     touching, in_air = np.zeros((2, int(region.max()) + 1), np.bool_)

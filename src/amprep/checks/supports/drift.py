@@ -77,8 +77,11 @@ def _targets(placed: PlacedPart, build: Build) -> Floats:
     return points[_highest(points)]
 
 
-def _close_targets(placed: PlacedPart, build: Build, below: Floats, beside: float) -> Floats:
-    """Return closer points on overhangs that may need support, at most `beside` mm to the side of some points."""
+def _close_targets(placed: PlacedPart, build: Build, below: Floats, beside: float, lowest: float) -> Floats:
+    """Return closer points on overhangs that may need support, at most `beside` mm to the side of some points.
+
+    `lowest` (mm) is the least height of overhangs that count.
+    """
     from scipy.spatial import KDTree
 
     rules, mesh = build.settings.rules, placed.mesh
@@ -86,7 +89,7 @@ def _close_targets(placed: PlacedPart, build: Build, below: Floats, beside: floa
     found = judged_overhangs(placed, rules, max(_FINE, float(np.sqrt(extent.prod() / _MOST_SAMPLES))))
     points = found.samples.points
     away, _ = KDTree(below[:, :2]).query(points[:, :2], distance_upper_bound=beside)
-    rows = np.flatnonzero(np.isfinite(away) & (points[:, 2] > below[:, 2].min()))
+    rows = np.flatnonzero(np.isfinite(away) & (points[:, 2] > lowest))
     return points[rows[are_needed(found, rules, rows, strict=True)]]
 
 
@@ -96,7 +99,8 @@ def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) ->
     far = np.flatnonzero(excess > TOLERANCE)
     if len(far):
         beside = _largest_drift(points[far], body, build)
-        close = [_close_targets(build.parts[part], build, points[far], beside) for part in body.parts]
+        lowest = float(points[far, 2].min()) - build.settings.overlap - _square_of(body, build)
+        close = [_close_targets(build.parts[part], build, points[far], beside, lowest) for part in body.parts]
         again = _excess(points[far], np.concatenate(close), body, build) - uncertain
         excess[far] = np.minimum(excess[far], again)
         far = far[excess[far] > TOLERANCE]
@@ -129,7 +133,7 @@ def _excess(points: Floats, above: Floats, body: SupportBody, build: Build) -> F
     if not len(above):
         return least
     limit = rules.drift_mm or np.inf
-    square = sizes.square_mm or build.settings.reach_of(body)
+    square = _square_of(body, build)
     nearby = _nearby(square)
 
     def over(rows: Int64s, targets: Floats) -> Floats:
@@ -153,6 +157,11 @@ def _excess(points: Floats, above: Floats, body: SupportBody, build: Build) -> F
     return np.asarray(least - np.where(base, sizes.base_margin_mm, 0.0))
 
 
+def _square_of(body: SupportBody, build: Build) -> float:
+    """Return the side (mm) of the squares of the grid of a support."""
+    return float(build.settings.sizes_of(body).square_mm or build.settings.reach_of(body))
+
+
 def _nearby(square: float) -> float:
     """Return the distance (mm) that is granted everywhere, for squares of the grid of a side (mm)."""
     return float(np.sqrt(2.0) * square + _SPACING / np.sqrt(2.0))
@@ -161,7 +170,7 @@ def _nearby(square: float) -> float:
 def _largest_drift(points: Floats, body: SupportBody, build: Build) -> float:
     """Return the largest distance (mm) that some of the points may be away from overhangs of their parts."""
     rules = build.settings.rules
-    square = build.settings.sizes_of(body).square_mm or build.settings.reach_of(body)
+    square = _square_of(body, build)
     top = max(float(build.parts[part].mesh.vertices[:, 2].max()) for part in body.parts)
     climb = max(top - float(points[:, 2].min()), 0.0)
     steep = rules.drift_ratio * climb if rules.drift_ratio > 0.0 else np.inf

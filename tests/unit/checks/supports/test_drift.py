@@ -72,6 +72,16 @@ def test_a_narrow_strip_that_needs_support_between_samples_is_found(span, needs)
     assert (found == []) == needs
 
 
+def test_what_only_touches_the_part_along_an_edge_may_need_support():
+    """A block hangs from a plate; at its lower edges it touches the side of a shaft without being part of it."""
+    shaft = box((10, 20, 20), (-10, 0, 0))
+    block = box((1.5, 20, 5), (0, 0, 20)) + box((11.5, 20, 5), (-10, 0, 25))
+    column = box((1, 1, 20), (0.2, 9, 0))
+    assert judged(shaft + block, column, ledge_mm=2.0, bridge_mm=4.0) == []
+    joined = shaft + block + box((10, 20, 5), (-10, 0, 20))
+    assert "no overhang" in judged(joined, column, ledge_mm=2.0, bridge_mm=4.0)[0].message
+
+
 def test_a_base_may_reach_farther_by_its_margin():
     foot = box((1, 1, 10), (0, 0, 0)) + box((9, 9, 0.5), (-4, -4, 0))
     assert len(judged(table(10, corner=(0, 0)), foot.translate((-2.5, 5, 0)))) == 1
