@@ -21,6 +21,11 @@ _WEDGE = np.radians(190.0)
 _WEDGE_SPAN = 1.4
 """Length (in widths) of the end of a wedge."""
 
+_STUBBY, _SHORT = 0.6, 6.0
+"""Twice the area over the perimeter, and the perimeter (both in widths), up to which a whole piece may be too thin.
+
+Half a round pin whose radius is the width has 0.61 and 5.1, and its ends are longer than the width."""
+
 _VERTICES = 4
 """Largest number of vertices of a narrow end."""
 
@@ -211,7 +216,8 @@ def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
 def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bool = True) -> Floats:
     """Return the points ``(k, 2)`` mm at which the outline of a region turns back within a width.
 
-    Those of pieces that are smaller than an area (mm2), and the corners at waists, are among them.
+    Those of pieces that are smaller than an area (mm2), those of small pieces that may be too thin, and the corners at
+    waists are among them.
 
     Parameters
     ----------
@@ -237,7 +243,9 @@ def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bo
     turn[after] = (heading[after] - heading + np.pi) % (2.0 * np.pi) - np.pi
     cross = points[:, 0] * points[after, 1] - points[:, 1] * points[after, 0]
     enclosed = np.add.reduceat(cross, np.cumsum(sizes) - sizes) / 2.0
-    is_small = np.repeat((enclosed > 0.0) & (enclosed < area), sizes)
+    around = np.add.reduceat(length, np.cumsum(sizes) - sizes)
+    is_stubby = (around < _SHORT * width) & (2.0 * enclosed < _STUBBY * width * around)
+    is_small = np.repeat((enclosed > 0.0) & ((enclosed < area) | is_stubby), sizes)
     ends = _turns_back(turn, length, after, width) | is_small
     if waists:
         ends[find_waists(points, after, width)] = True

@@ -19,6 +19,9 @@ from amprep.supports.layout import SupportLayout
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+_CRUMB = 1e-4
+"""Volume (mm3) of a void up to which it is a leftover of rounding, and is filled."""
+
 
 class WallClearance:
     """The walls of all parts of a build, and the XY distance that supports keep from them.
@@ -128,6 +131,8 @@ def drop_floating(
 ) -> tuple[Floats, Ints]:
     """Return the disconnected components of a closed mesh that reach the plate or a foot, with their voids.
 
+    Voids of less than 1e-4 mm3, which rounding leaves, are filled.
+
     Parameters
     ----------
     points, triangles
@@ -145,11 +150,12 @@ def drop_floating(
     if not loose.any():
         return points, triangles
     corners = points[triangles[loose]]
-    volume = np.bincount(of_triangle[loose], np.linalg.det(corners), count)
-    stays |= volume < 0.0
+    volume = np.bincount(of_triangle[loose], np.linalg.det(corners), count) / 6.0
+    is_void = volume < -_CRUMB
+    stays |= is_void
     for low, high in zip(*(feet or ()), strict=True):
         stays[shell[((points >= low) & (points <= high)).all(axis=1)]] = True
-    voids = np.flatnonzero(volume < 0.0)
+    voids = np.flatnonzero(is_void)
     if len(voids):
         _drop_voids(stays, voids, points, shell)
     return drop_unused_vertices(points, triangles[stays[of_triangle]])

@@ -109,3 +109,13 @@ def test_a_ring_covers_the_points_between_its_circles(x, y):
     radius = float(np.hypot(x, y))
     assume(min(abs(radius - 1.0), abs(radius - 2.0)) > 0.01)
     assert ring.cover(np.array([[x, y]])).tolist() == [1.0 < radius < 2.0]
+
+
+@pytest.mark.parametrize(
+    ("kept", "is_rest"), [(0.15, True), (0.23, True), (0.26, True), (0.32, False), (0.46, False)]
+)
+def test_what_a_border_leaves_of_a_round_pin_is_a_rest_if_it_is_thinner_than_the_width(kept, is_rest):
+    half = 0.23
+    pin = CrossSection.circle(half / np.cos(np.pi / 8), 8).rotate(22.5)
+    left = pin ^ rectangle(1.0, kept, at=(half - kept, -0.5))
+    assert (left - rests(left)).is_empty() == is_rest

@@ -173,6 +173,16 @@ def test_a_floating_component_and_a_void_are_distinguished():
     assert Mesh(points, triangles).signed_volume == pytest.approx(64 - 1)
 
 
+@pytest.mark.parametrize("inwards", [True, False])
+def test_crumbs_that_rounding_leaves_are_dropped_whether_they_look_like_voids_or_not(inwards):
+    outer, crumb = box((0, 0, 0), (4, 4, 4)), box((1, 1, 1), (1.04, 1.04, 1.04))
+    corners = crumb.triangles[:, ::-1] if inwards else crumb.triangles
+    points = np.vstack([outer.vertices, crumb.vertices])
+    points, triangles = drop_floating(points, np.vstack([outer.triangles, corners + len(outer.vertices)]))
+    assert len(points) == len(outer.vertices)
+    assert Mesh(points, triangles).signed_volume == pytest.approx(64.0)
+
+
 def test_subtracting_parts_leaves_the_overlap_in_held_parts_and_nothing_in_others():
     mesh = box((15, 15, 0), (17, 17, 12))
     post = as_manifold(mesh.vertices, mesh.triangles.astype(np.int64))
