@@ -19,20 +19,27 @@ _STATED = (".3mf", ".step", ".stp", ".glb", ".gltf")
 
 def with_unit_question(part: Part, job: Job) -> Part:
     """Return the part with a warning that asks for its unit, if its size is not plausible; see `unit_question`."""
-    question = unit_question(part, job)
+    question = unit_question(part, job.supports.layer_mm, float(job.printer.space.size.max()))
     return replace(part, warnings=(*part.warnings, question)) if question else part
 
 
-def unit_question(part: Part, job: Job) -> str:
+def unit_question(part: Part, layer_mm: float, longest_mm: float) -> str:
     """Return a question about the unit of a part, or "" if its size is plausible.
 
     A part that is smaller than a layer in every direction may be in inches or metres; a part that is ten times longer
     than the build volume may be in micrometres, or was converted twice.
+
+    Parameters
+    ----------
+    part
+        The part.
+    layer_mm, longest_mm
+        Height of a layer, and the longest side of the build volume.
     """
     length = float(np.ptp(part.mesh.vertices, axis=0).max())
-    if length < max(job.supports.layer_mm, LEAST_MM):
+    if length < max(layer_mm, LEAST_MM):
         question = "is its unit the inch or the metre?"
-    elif length > FACTOR * job.printer.space.size.max():
+    elif length > FACTOR * longest_mm:
         question = "is its unit the micron, or was it converted twice?"
     else:
         return ""

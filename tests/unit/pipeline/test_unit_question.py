@@ -4,7 +4,7 @@ import pytest
 import trimesh
 
 import amprep
-from amprep.errors import JobError
+from amprep.errors import AmprepError, JobError
 
 
 def loaded(tmp_path, size, **settings):
@@ -26,6 +26,15 @@ def test_a_part_smaller_than_a_layer_may_be_in_inches_or_metres(tmp_path):
 def test_a_part_ten_times_longer_than_the_printer_may_be_in_micrometres(tmp_path):
     (warning,) = loaded(tmp_path, 4000.0).warnings
     assert warning == "it is 4e+03 mm long; is its unit the micron, or was it converted twice? use --unit"
+
+
+@pytest.mark.parametrize("factor", [25.4, 1000.0])
+def test_the_question_stands_in_the_error_where_nothing_fits(tmp_path, factor):
+    trimesh.creation.box((200 * factor, 20 * factor, 20)).export(tmp_path / "bracket.stl")
+    with pytest.raises(
+        AmprepError, match=r"too large: bracket\); bracket: it is .* is its unit .* use --unit"
+    ):
+        amprep.pack(amprep.load(tmp_path / "bracket.stl"))
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("micron", 1e-3), ("inch", 25.4), ("metre", 1000.0)])

@@ -1,10 +1,11 @@
-"""Decimation of closed meshes by edge collapses of bounded error."""
+"""Decimation of closed meshes by edge collapses of bounded error, and merging of triangles in one plane."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import Floats, Int64s, Ints, MeshArrays
+from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.geometry.meshes.topology import drop_unused_vertices
 
 Point = tuple[float, float, float]
@@ -14,6 +15,9 @@ _ROUNDS = 8
 
 _LEAST_COSINE = 0.5
 """Least cosine of the angle by which a collapse may turn the normal of a triangle."""
+
+COPLANAR = 1e-6
+"""Distance (mm) from a plane within which triangles are in it."""
 
 
 class _EditableMesh(NamedTuple):
@@ -55,6 +59,24 @@ def decimate(points: Floats, triangles: Int64s, tolerance: float, planes: Int64s
         if not _round(surface, tolerance):
             break
     return drop_unused_vertices(points, np.array(list(surface.triangles.values()), np.int64).reshape(-1, 3))
+
+
+def merge_coplanar(vertices: Floats, triangles: Ints) -> MeshArrays | None:
+    """Return a closed mesh with fewer triangles in its planes, or None if manifold3d rejects it as a solid.
+
+    The vertices are some of those given, and the surface moves by at most `COPLANAR`. The time is nearly linear in the
+    number of triangles.
+
+    Parameters
+    ----------
+    vertices, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    """
+    solid = as_manifold(vertices, triangles)
+    if not accepted(solid) or solid.is_empty():
+        return None
+    mesh = solid.simplify(COPLANAR).to_mesh64()
+    return np.asarray(mesh.vert_properties[:, :3], np.float64), np.asarray(mesh.tri_verts, np.int64)
 
 
 def _round(surface: _EditableMesh, tolerance: float) -> int:

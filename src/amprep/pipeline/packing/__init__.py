@@ -35,6 +35,7 @@ from amprep.pipeline.packing.turning import turned_off_blade
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
+from amprep.pipeline.unit_question import unit_question
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -236,6 +237,11 @@ def _nothing_placed(parts: Sequence[Part], problem: PackingProblem, packing: Pac
         return f"the packer was stopped before it placed a part ({names}); give it more time or choose a faster packer"
     size = " x ".join(f"{value:g}" for value in problem.space.size)
     advice = "choose a larger printer, less clearance or lift, or allow rotations"
+    for part in parts:
+        question = unit_question(part, 0.0, float(problem.space.size.max()))
+        if question:
+            advice = f"{part.name}: {question}"
+            break
     return f"none of the parts fits the build volume of {size} mm ({', '.join(reasons)}: {names}); {advice}"
 
 

@@ -167,13 +167,13 @@ def _is_beside(square: Ints, present: Bools) -> Bools:
 
 def _neighbours(square: Ints, present: Bools) -> Bools:
     """Tell on which of eight sides squares have a present neighbour, at most one plane higher or lower, ``(8, m)``."""
-    keys = square_keys(square[present])
-    return np.array(
-        [
-            np.any([np.isin(square_keys(square + (plane, y, x)), keys) for plane in (-1, 0, 1)], axis=0)
-            for y, x in _AROUND
-        ]
-    )
+    keys = np.append(np.unique(square_keys(square[present])), np.iinfo(np.int64).max)
+
+    def is_present(shift: tuple[int, int, int]) -> Bools:
+        wanted = square_keys(square + shift)
+        return np.asarray(keys[np.searchsorted(keys, wanted)] == wanted)
+
+    return np.array([np.any([is_present((plane, y, x)) for plane in (-1, 0, 1)], axis=0) for y, x in _AROUND])
 
 
 def _first_layers(own: PartOverhangs, layer: float) -> Floats:
