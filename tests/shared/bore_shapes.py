@@ -33,6 +33,29 @@ def octagon(across_flats):
     return profile_bore(polygon(across_flats / np.cos(np.pi / 8), 8, flat_above=True))
 
 
+def dodecagon(diameter):
+    """A bore of twelve sides, with a corner above."""
+    return profile_bore(polygon(diameter, 12, flat_above=False))
+
+
+def taper(narrow, wide, length=12.0):
+    """A block with an opening that becomes wider from one end to the other."""
+    outline = [
+        (-narrow / 2, -1e-3),
+        (narrow / 2, -1e-3),
+        (wide / 2, length + 1e-3),
+        (-wide / 2, length + 1e-3),
+    ]
+    gap = manifold3d.CrossSection([np.array(outline)])
+    return box((40, length, 20), (-20, 0, 0)) - Solid.extrude(gap, 13).translate((0, 0, -1))
+
+
+def steep_bore(diameter, tilt_deg):
+    """A thick wall with a steep bore."""
+    hole = Solid.cylinder(60, diameter / 2, diameter / 2, 36, True).rotate((0, 90 - tilt_deg, 0))
+    return box((10, 30, 30), (-5, -15, 0)) - hole.translate((0, 0, 15))
+
+
 def teardrop(diameter, roof_deg, flat=0.0):
     """A round bore with a roof of two planes, cut off by a flat of the width given."""
     radius, slope = diameter / 2, np.radians(roof_deg)
@@ -91,6 +114,12 @@ def _shapes():
     yield "teardrop with a wide flat", lambda: teardrop(14, 46, 4.6), [("bridge", 4.6)]
     for tilt in (10, 25):
         yield f"bore tilted by {tilt}", lambda tilt=tilt: bore(6.2, 36, tilt, 11), [("bore", 6.2)]
+    side = 3.1 * (np.sin(np.radians(40)) - np.sin(np.radians(20)))
+    edges = [("edge", side, False, True)] * 2
+    yield "steep bore", lambda: steep_bore(6.2, 40), [("bore", 6.2), *edges]
+    yield "twelve sides with a corner above", lambda: dodecagon(6.5), [("bore", 6.5)]
+    for wide in (3.4, 5.0):
+        yield f"bridge that widens to {wide}", lambda wide=wide: taper(wide - 1.4, wide), [("bridge", wide)]
     yield "stepped bore", lambda: stepped_bore(4.4, 8.8), [("bore", 4.4), ("bore", 8.8)]
     yield "pointed arch", lambda: pointed_arch(5), [("bore", 2 * (5 * FLAT - 2.5) / FLAT)]
     cross = slot(3, 20) + slot(20, 3)

@@ -21,7 +21,9 @@ from amprep.kernels.helper import helper
 ANCHOR, FREE = -1, -2
 """What is beyond a side at the border of a region: the part carries it there, or it does not."""
 
-_FAR = -3
+FAR = -3
+"""How a walk ends that is longer than asked."""
+
 _CHORDS = 32
 _MOST_STEPS = 100_000
 
@@ -53,6 +55,8 @@ class CarryingLimits(NamedTuple):
         ``(m,)`` largest chord of an arch over each face, mm.
     rise
         Least rise of an arch as a fraction of its chord.
+    tilt
+        ``(m, 2)`` rise of the axis of the bore that each face is part of, mm per mm along x and y; 0 where unknown.
     most
         Length (mm) at which walks end.
     plate
@@ -64,13 +68,35 @@ class CarryingLimits(NamedTuple):
     bridge: float
     arch: Floats
     rise: float
+    tilt: Floats
     most: float
     plate: float
     climb: Floats
 
 
+class _WalkEnd(NamedTuple):
+    """The end of a walk.
+
+    Attributes
+    ----------
+    length, kind, face
+        Length of the walk, what is beyond its end, and the face that it ends in.
+    height, top
+        Height at the end, and the greatest height on the way, mm.
+    crown
+        Greatest height above a line through the point that the walk starts from, mm.
+    """
+
+    length: float
+    kind: int
+    face: int
+    height: float
+    top: float
+    crown: float
+
+
 @helper
-def _walk(
+def walk(
     faces: WalkableFaces,
     face: int,
     point: tuple[float, float, float],
@@ -78,14 +104,16 @@ def _walk(
     most: float,
     highest: float,
     plate: float,
-) -> tuple[float, int, float, float]:
-    """Return length, kind of end, height at the end, and greatest height of a walk from a point in a face.
+    slope: float,
+) -> _WalkEnd:
+    """Walk from a point in a face; the crown is measured from a line with the slope given.
 
-    It ends where it is longer than `most` mm or higher than `highest` mm.
+    The walk ends where it is longer than `most` mm or higher than `highest` mm.
     """
-    (x, y, z), (dx, dy) = point, direction
     corners, beyond = faces.corners, faces.beyond
-    came, length, top, height = -1, 0.0, z, z
+    x, y, z = point
+    dx, dy = direction
+    came, length, top, height, crown = -1, 0.0, z, z, z
     for _ in range(_MOST_STEPS):
         best, side = np.inf, -1
         for i in range(3):
@@ -99,7 +127,7 @@ def _walk(
                     if at < best:
                         best, side = at, i
         if side < 0:
-            return length, FREE, height, top
+            return _WalkEnd(length, FREE, face, height, top, crown)
         best = max(best, length)
         j = side + 1 if side < 2 else 0
         ex = corners[face, j, 0] - corners[face, side, 0]
@@ -110,16 +138,17 @@ def _walk(
         height = corners[face, side, 2] + along * (corners[face, j, 2] - corners[face, side, 2])
         if height <= plate:
             share = (low - plate) / (low - height) if low > height else 0.0
-            return length + share * (best - length), ANCHOR, plate, top
+            return _WalkEnd(length + share * (best - length), ANCHOR, face, plate, top, crown)
         top = max(top, height)
         length = best
+        crown = max(crown, height - slope * length)
         if length > most or top > highest:
-            return length, _FAR, height, top
+            return _WalkEnd(length, FAR, face, height, top, crown)
         onward = beyond[face, side]
         if onward < 0:
-            return length, onward, height, top
+            return _WalkEnd(length, onward, face, height, top, crown)
         face, came = onward // 3, onward % 3
-    return length, FREE, height, top
+    return _WalkEnd(length, FREE, face, height, top, crown)
 
 
 @helper
@@ -135,18 +164,21 @@ def _chord(
 
     One end of an arch is at most `nearest` mm from the point.
     """
-    back = -direction[0], -direction[1]
+    dx, dy = direction
+    slope = limits.tilt[face, 0] * dx + limits.tilt[face, 1] * dy
     printed = point[2] + limits.climb[face]
-    one, kind, z1, top1 = _walk(faces, face, point, direction, limits.most, np.inf, limits.plate)
-    if kind != ANCHOR:
+    one = walk(faces, face, point, (dx, dy), limits.most, np.inf, limits.plate, slope)
+    if one.kind != ANCHOR:
         return np.inf, np.inf
-    highest = printed if top1 > printed else np.inf
-    other, kind, z2, top2 = _walk(faces, face, point, back, limits.most - one, highest, limits.plate)
-    if kind != ANCHOR:
+    highest = printed if one.top > printed else np.inf
+    most = limits.most - one.length
+    other = walk(faces, face, point, (-dx, -dy), most, highest, limits.plate, -slope)
+    if other.kind != ANCHOR:
         return np.inf, np.inf
-    bridge = one + other
-    rise = max(top1, top2) - max(z1, z2)
-    is_arch = rise >= limits.rise * bridge and min(one, other) <= nearest
+    bridge = one.length + other.length
+    feet = max(one.height - slope * one.length, other.height + slope * other.length)
+    rise = max(one.crown, other.crown) - feet
+    is_arch = rise >= limits.rise * bridge and min(one.length, other.length) <= nearest
     return bridge, bridge if is_arch else np.inf
 
 
@@ -161,8 +193,8 @@ def _towards(
 ) -> float:
     """Return the length of a walk to an anchor, infinite where it does not lead to one within `most` mm."""
     highest = point[2] + limits.climb[face]
-    length, kind, _, _ = _walk(faces, face, point, direction, most, highest, limits.plate)
-    return length if kind == ANCHOR else np.inf
+    end = walk(faces, face, point, direction, most, highest, limits.plate, 0.0)
+    return end.length if end.kind == ANCHOR else np.inf
 
 
 @njit(cache=True)

@@ -17,7 +17,7 @@ from amprep.materials.catalogue import find_material
 
 LAYER = 0.04
 PROFILES = ("metal", "metal-tolerant", "metal-cautious")
-BY_NAME = {shape.name: shape for shape in SHAPES}
+BY_NAME = {shape.name: shape for shape in SHAPES + bore_shapes.SHAPES}
 
 
 def limits_of(name):
@@ -87,6 +87,12 @@ TURNED = (
     "T-slot beside",
     "cove",
     "dome",
+    "bore tilted by 10",
+    "bore tilted by 25",
+    "steep bore",
+    "twelve sides with a corner above",
+    "bridge that widens to 3.4",
+    "bridge that widens to 5.0",
 )
 
 

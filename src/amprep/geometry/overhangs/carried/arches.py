@@ -11,6 +11,12 @@ _FLAT = 1e-4
 _NEAR = 0.01
 """Largest distance of vertices from the surface fitted to them, as a fraction of its radius, and in mm."""
 
+_IN_LINE = 1e-4
+"""Distance (mm) from the line between its neighbours up to which a vertex is inside a facet, not at its corner."""
+
+_ALONG = 1e-3
+"""Greatest cosine of the angle between the axis of a cylinder and the normals of faces that may belong to it."""
+
 ANY_CHORD = 1e9
 """Limit (mm) of chords in regions whose diameter is known and within its limit."""
 
@@ -18,10 +24,11 @@ _FEWEST_LINES, _FEWEST_POINTS = 4, 8
 """Fewest lines of vertices that define a cylinder, and fewest vertices that define a sphere."""
 
 
-def fitted_diameters(regions: RegionFaces, normals: Floats, count: int) -> Floats:
+def fitted_bores(regions: RegionFaces, normals: Floats, count: int) -> tuple[Floats, Floats]:
     """Return the diameter (mm) of the cylinder or sphere that each of `count` regions is part of, else NaN.
 
-    Two faces define a cylinder only together with the faces beside them: a roof ridge is none.
+    The other array ``(count, 2)`` is the rise of the axis of cylinders, mm per mm along x and y, else 0. Two faces
+    define a cylinder only together with the faces beside them: a roof ridge is none.
 
     Parameters
     ----------
@@ -32,7 +39,7 @@ def fitted_diameters(regions: RegionFaces, normals: Floats, count: int) -> Float
     count
         Number of regions.
     """
-    diameters = np.full(count, np.nan)
+    diameters, tilts = np.full(count, np.nan), np.zeros((count, 2))
     order, beside = (np.argsort(each, kind="stable") for each in (regions.label, regions.outer_label))
     first, last = (
         np.searchsorted(regions.outer_label[beside], np.arange(count), side=s) for s in ("left", "right")
@@ -40,30 +47,68 @@ def fitted_diameters(regions: RegionFaces, normals: Floats, count: int) -> Float
     for group in np.split(order, np.flatnonzero(np.diff(regions.label[order])) + 1):
         if len(group) >= _FEWEST_LINES:
             own = regions.label[group[0]]
-            outer = regions.outer[beside[first[own] : last[own]]]
-            diameters[own] = _diameter(regions.corners[group], normals[regions.face[group]], outer)
-    return diameters
+            rows = beside[first[own] : last[own]]
+            outer = regions.outer[rows], regions.outer_normal[rows]
+            diameters[own], tilts[own] = _bore(regions.corners[group], normals[regions.face[group]], outer)
+    return diameters, tilts
 
 
-def _diameter(corners: Floats, normals: Floats, outer: Floats) -> float:
-    """Return the diameter of one region with the corners ``(n, 3, 3)``.
+def _bore(corners: Floats, normals: Floats, outer: tuple[Floats, Floats]) -> tuple[float, Floats]:
+    """Return diameter and rise of the axis of one region with the corners ``(n, 3, 3)``.
 
-    The normals of a cylinder are in a plane through 0, those of a cone in another plane.
+    `outer` are points beyond the border, and the normals of their faces. The normals of a cylinder are in a plane
+    through 0, those of a cone in another plane.
     """
     weight = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight /= weight.sum()
     spread, weighted = np.einsum("n,ni,nj->ij", weight, normals, normals), weight @ normals
     values, axes = np.linalg.eigh(spread)
     points = corners.reshape(-1, 3)
+    level = np.zeros(2)
     if values[1] < _FLAT:
-        return float("nan")
+        return float("nan"), level
     if values[0] < _FLAT:
-        section = _distinct(points @ axes[:, 1:])
+        axis, across = axes[:, 0], axes[:, 1:]
+        section = _corners_of(points @ across, weighted @ across)
         if len(section) < _FEWEST_LINES:
-            section = _distinct(np.concatenate([points, outer]) @ axes[:, 1:])
-        return _fitted(section) if len(section) >= _FEWEST_LINES else float("nan")
+            more = outer[0][np.abs(outer[1] @ axis) < _ALONG]
+            section = _corners_of(np.concatenate([points, more]) @ across, weighted @ across)
+        tilt = axis[2] * axis[:2] / max(float(axis[:2] @ axis[:2]), 1e-12)
+        return _fitted(section) if len(section) >= _FEWEST_LINES else float("nan"), tilt
     is_cone = np.linalg.eigvalsh(spread - np.outer(weighted, weighted))[0] < _FLAT
-    return float("nan") if is_cone or len(points) < _FEWEST_POINTS else _fitted(_distinct(points))
+    return float("nan") if is_cone or len(points) < _FEWEST_POINTS else _fitted(_distinct(points)), level
+
+
+def _corners_of(points: Floats, normal: Floats) -> Floats:
+    """Return the points ``(n, 2)`` of the section of an arch at which its facets meet, and its two ends.
+
+    Parameters
+    ----------
+    points
+        Vertices in the section, some of them inside facets.
+    normal
+        ``(2,)`` mean normal of the facets.
+    """
+    points = _distinct(points)
+    up = normal / max(float(np.linalg.norm(normal)), 1e-12)
+    side = points @ np.array([-up[1], up[0]])
+    middle = points.mean(axis=0)
+    if (middle - points[[side.argmin(), side.argmax()]].mean(axis=0)) @ up < 0:
+        up = -up
+    offset = points - middle
+    order = np.argsort(np.arctan2(offset @ np.array([-up[1], up[0]]), offset @ up), kind="stable")
+    kept: list[int] = []
+    for each in order.tolist():
+        while len(kept) > 1 and _off_line(points[kept[-1]], points[kept[-2]], points[each]) < _IN_LINE:
+            kept.pop()
+        kept.append(each)
+    return points[kept]
+
+
+def _off_line(point: Floats, start: Floats, end: Floats) -> float:
+    """Return the distance of a point in plan from the line between two others."""
+    (ax, ay), (bx, by) = (point - start).tolist(), (end - start).tolist()
+    return float(abs(ax * by - ay * bx) / max((bx * bx + by * by) ** 0.5, 1e-12))
 
 
 def _distinct(points: Floats) -> Floats:

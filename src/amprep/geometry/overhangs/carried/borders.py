@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
+from amprep.geometry.overhangs.carried.facets import facets_of
 from amprep.geometry.overhangs.regions import components_of_faces
 from amprep.geometry.overhangs.surface import Surface
 
@@ -32,8 +33,9 @@ class RegionFaces(NamedTuple):
         ``(a, 2, 2)`` mm in plan: segments along which the part or the plate carries regions.
     anchor_label
         ``(a,)`` region of each.
-    outer, outer_label
-        ``(b, 3)`` mm: corners, beyond the border, of the faces along which the part carries regions; and the regions.
+    outer, outer_normal, outer_label
+        ``(b, 3)`` mm: corners of the facets, beyond the border, along which the part carries regions; the normals of
+        these; and the regions.
     """
 
     face: Int64s
@@ -43,6 +45,7 @@ class RegionFaces(NamedTuple):
     anchors: Floats
     anchor_label: Int64s
     outer: Floats
+    outer_normal: Floats
     outer_label: Int64s
 
 
@@ -109,6 +112,7 @@ def region_faces(
     label = components_of_faces(surface, overhanging)
     corners = surface.points[surface.triangles[faces]][:, [0, 2, 1]]
     contact, contact_label = _plate_contact(corners, label, plate)
+    beside = facets_of(surface, normals, surface.half_face[partner[rim]], label[row[rim]])
     return RegionFaces(
         faces,
         label,
@@ -116,8 +120,9 @@ def region_faces(
         beyond,
         np.concatenate([surface.points[ends[anchored], :2], contact]),
         np.concatenate([label[row[anchored]], contact_label]),
-        surface.points[surface.opposite[partner[rim]]],
-        label[row[rim]],
+        surface.points[surface.triangles[beside.face]].reshape(-1, 3),
+        np.repeat(normals[beside.face], 3, axis=0),
+        np.repeat(beside.label, 3),
     )
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.overhangs.carried.arches import ANY_CHORD, arch_limits, fitted_diameters
+from amprep.geometry.overhangs.carried.arches import ANY_CHORD, arch_limits, fitted_bores
 from amprep.geometry.overhangs.carried.borders import RegionFaces
 
 if TYPE_CHECKING:
@@ -21,6 +21,15 @@ _SPACING = 0.25
 
 _APART = 1e5
 """Distance (mm) between the samples of two regions in the third coordinate of the search tree."""
+
+_RIM = 0.25
+"""Width (mm) of the strip along borders without anchors that is carried as what is beside it.
+
+At the open end of a bridge or bore no straight line may lead from anchor to anchor, as the border is oblique or bent.
+"""
+
+TWICE = 2.1
+"""Lines through a point that lead straight across are at most so many times its shortest ledge."""
 
 _OBLIQUE = 1.5
 """Largest distance of a point from the nearer end of an arch, as a multiple of its shortest ledge."""
@@ -59,8 +68,9 @@ class Carrier(NamedTuple):
     ----------
     regions, limits
         The faces, and the limits.
-    diameters
-        ``(n,)`` mm of the regions that are part of a cylinder or sphere, else NaN.
+    diameters, tilts
+        ``(n,)`` mm of the regions that are part of a cylinder or sphere, else NaN; and ``(n, 2)`` rise of the axes of
+        cylinders, mm per mm along x and y.
     arch
         ``(m,)`` mm, largest chord of an arch over each face.
     climb
@@ -75,6 +85,7 @@ class Carrier(NamedTuple):
     regions: RegionFaces
     limits: Limits
     diameters: Floats
+    tilts: Floats
     arch: Floats
     climb: Floats
     tree: "KDTree"
@@ -104,13 +115,38 @@ class Carrier(NamedTuple):
         an end of an arch is hardly farther from a point than its shortest ledge ``(n,)``.
 
         Without `fully` the search ends as soon as one is within its limit, it does not find longer ones, and only those
-        count of which one end is printed no later than the point.
+        count of which one end is printed no later than the point. Near a border without anchors, the lines through a
+        point a little farther inside count where those through the point itself do not suffice.
+        """
+        bridge, arch = self._spans_at(points, face, _OBLIQUE * ledges, fully=fully)
+        straight_across = np.isfinite(arch) | (bridge <= TWICE * ledges)
+        left = np.flatnonzero(~(straight_across if fully else self._within_spans(bridge, arch, face)))
+        inner, on = self._from_rims(points[left], face[left])
+        left, inner, on = left[on >= 0], inner[on >= 0], on[on >= 0]
+        more = self._spans_at(inner, on, TWICE / 2 * self.ledges(inner, on), fully=fully)
+        bridge[left], arch[left] = np.minimum(bridge[left], more[0]), np.minimum(arch[left], more[1])
+        return bridge, arch
+
+    def _from_rims(self, points: Floats, face: Int64s) -> tuple[Floats, Int64s]:
+        """Return points moved away from near borders without anchors, and their faces, -1 where there is none."""
+        from amprep.kernels.overhangs.rims import step_from_rims
+
+        moved, on = np.empty_like(points), np.empty(len(points), np.int64)
+        step_from_rims(self._faces(), np.ascontiguousarray(points), face, _RIM, self.limits.plate, moved, on)
+        return moved, on
+
+    def _spans_at(
+        self, points: Floats, face: Int64s, nearest: Floats, *, fully: bool
+    ) -> tuple[Floats, Floats]:
+        """Return the shortest bridge and arch of the lines through points themselves.
+
+        Where the diameter is unknown, an end of an arch is at most `nearest` ``(n,)`` mm from the point.
         """
         from amprep.kernels.overhangs.walks import find_spans
 
         target, _ = self.nearest(points, face)
         spans = np.empty((len(points), 2))
-        nearest = np.where(np.isnan(self.diameters[self.regions.label[face]]), _OBLIQUE * ledges, np.inf)
+        nearest = np.where(np.isnan(self.diameters[self.regions.label[face]]), nearest, np.inf)
         most = np.inf if fully else self._longest()
         find_spans(
             self._faces(),
@@ -134,10 +170,12 @@ class Carrier(NamedTuple):
         carried = ledges <= self.limits.ledge + TOLERANCE
         left = np.flatnonzero(~carried)
         bridge, arch = self.spans(points[left], face[left], ledges[left])
-        carried[left] = (bridge <= self.limits.bridge + TOLERANCE) | (
-            arch <= self.arch[face[left]] + TOLERANCE
-        )
+        carried[left] = self._within_spans(bridge, arch, face[left])
         return np.asarray(carried)
+
+    def _within_spans(self, bridge: Floats, arch: Floats, face: Int64s) -> Bools:
+        """Tell which bridges and arches over faces are within their limits."""
+        return np.asarray((bridge <= self.limits.bridge + TOLERANCE) | (arch <= self.arch[face] + TOLERANCE))
 
     def nearest(self, points: Floats, face: Int64s) -> tuple[Floats, Floats]:
         """Return the point ``(n, 2)`` of the nearest anchor, and a lower bound ``(n,)`` mm on its distance in plan.
@@ -164,7 +202,7 @@ class Carrier(NamedTuple):
         chord = np.maximum(
             self.limits.bridge, np.where(self.arch[face] < ANY_CHORD, self.arch[face], self._width(face))
         )
-        return np.asarray(np.maximum(self.limits.ledge, chord / 2) + TOLERANCE)
+        return np.asarray(np.maximum(self.limits.ledge, chord / 2 + _RIM) + TOLERANCE)
 
     def _width(self, face: Int64s) -> Floats:
         return np.nan_to_num(self.diameters[self.regions.label[face]])
@@ -186,7 +224,8 @@ class Carrier(NamedTuple):
         rise = float(np.tan(np.radians(self.limits.angle_deg) / 2) / 4) - 1e-3
         bridge = self.limits.bridge + TOLERANCE
         climb = self.climb if in_order else np.full(len(self.arch), np.inf)
-        return CarryingLimits(bridge, self.arch + TOLERANCE, rise, most, self.limits.plate, climb)
+        tilt = self.tilts[self.regions.label]
+        return CarryingLimits(bridge, self.arch + TOLERANCE, rise, tilt, most, self.limits.plate, climb)
 
 
 def make_carrier(regions: RegionFaces, normals: Floats, limits: Limits, hanging: Bools) -> Carrier:
@@ -203,12 +242,12 @@ def make_carrier(regions: RegionFaces, normals: Floats, limits: Limits, hanging:
     """
     from scipy.spatial import KDTree
 
-    diameters = fitted_diameters(regions, normals, int(regions.label.max(initial=-1)) + 1)
+    diameters, tilts = fitted_bores(regions, normals, int(regions.label.max(initial=-1)) + 1)
     arch = arch_limits(diameters, regions.label, limits.bore + TOLERANCE, limits.angle_deg)
     samples, owner = _samples(regions.anchors)
     keys = np.column_stack([samples, _APART * regions.anchor_label[owner]])
     climb = np.where(hanging, limits.layer, np.inf)
-    return Carrier(regions, limits, diameters, arch, climb, KDTree(keys), owner)
+    return Carrier(regions, limits, diameters, tilts, arch, climb, KDTree(keys), owner)
 
 
 def _samples(segments: Floats) -> tuple[Floats, Int64s]:

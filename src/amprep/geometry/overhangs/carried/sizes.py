@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.geometry.overhangs.carried.points import TOLERANCE, Carrier, Limits
+from amprep.geometry.overhangs.carried.points import TOLERANCE, TWICE, Carrier, Limits
 from amprep.geometry.overhangs.regions import Kind
 
 _PRECISION, _RELATIVE = 0.025, 0.005
@@ -19,8 +19,6 @@ _INWARDS = 1e-3
 
 _UNSEEN = 1e6
 """Ledge (mm) at points from which no straight line leads to an anchor: longer than any other."""
-
-_NEARLY = 1.05
 
 # Strategy. The worst point of a region is that with the longest shortest ledge: no bridge through it is shorter than
 # twice that ledge, and at the middle of a bridge it is half the span. The kind is told from the bridge and arch at this
@@ -142,8 +140,8 @@ def _named(carrier: Carrier, worst: _Points, holds: Bools) -> dict[int, RegionSi
     diameter = carrier.diameters[carrier.regions.label[worst.face]]
     by_width = arch / np.sin(np.radians(carrier.limits.angle_deg))
     bore = np.where(np.isnan(diameter) | np.isinf(arch), by_width, diameter)
-    looks_round = np.isfinite(arch) & (~np.isnan(diameter) | (arch <= 2 * _NEARLY * worst.ledge))
-    spanned = bridge <= 2 * _NEARLY * worst.ledge
+    looks_round = np.isfinite(arch) & (~np.isnan(diameter) | (arch <= TWICE * worst.ledge))
+    spanned = bridge <= TWICE * worst.ledge
     sizes = {}
     for row, number in enumerate(worst.region.tolist()):
         kind: Kind = "bore" if looks_round[row] else "bridge" if spanned[row] else "ledge"
