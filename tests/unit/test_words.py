@@ -59,6 +59,7 @@ ALLOWED = {
     ("src/amprep/checks/supports/bodies.py", "standing"): "the promise that supports stand on the plate",
     ("src/amprep/checks/supports/bodies.py", "STANDING"): "the promise that supports stand on the plate",
     ("src/amprep/pipeline/verifying/build.py", "STANDING"): "the promise that supports stand on the plate",
+    ("src/amprep/pipeline/verifying/extents.py", "STANDING"): "the promise that supports stand on the plate",
     (
         "src/amprep/plugins/cells/hatch/__init__.py",
         "THINNING",

@@ -1,5 +1,6 @@
 """Write a build job and verify it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from amprep.api.arguments import require_record
@@ -55,6 +56,7 @@ def verify(
     printer: str | None = None,
     report: str | Path | None = None,
     key: str | Path | None = None,
+    removability: bool = False,
     stop: Stop | None = None,
     progress: Progress = silent,
 ) -> Verification:
@@ -73,6 +75,8 @@ def verify(
         JSON report of the run, which states the SHA-256 of the file.
     key
         Key file of the seal beside the file; see `amprep seal`.
+    removability
+        Whether trapped powder and the access to contacts are judged as well, which takes long.
     stop
         Ends the work early.
     progress
@@ -92,17 +96,21 @@ def verify(
     every promise holds
     """
     if isinstance(build, str | Path):
-        return verify_file(Path(build), _demands(job, printer, report, key), stop=stop, progress=progress)
+        demands = replace(_demands(job, printer, report, key), removability=removability)
+        return verify_file(Path(build), demands, stop=stop, progress=progress)
     require_record(build, (SupportedBuild, Build), "verify", "pass a path or the result of emit_cells")
     if any(each is not None for each in (job, printer, report, key)):
         raise InputError("job, printer, report and key apply to a build file; pass its path")
     judged = build.build if isinstance(build, SupportedBuild) else build
-    return verify_build(judged, stop=stop, progress=progress)
+    return verify_build(judged, removability=removability, stop=stop, progress=progress)
 
 
 def _demands(
     job: str | Path | Job | None, printer: str | None, report: str | Path | None, key: str | Path | None
 ) -> Demands:
     ordered = None if job is None else job_and_host((job,), {}, ())
-    paths = (None if each is None else Path(each) for each in (report, key))
-    return Demands(ordered, printer, *paths)
+    return Demands(ordered, printer, _path(report), _path(key))
+
+
+def _path(file: str | Path | None) -> Path | None:
+    return None if file is None else Path(file)

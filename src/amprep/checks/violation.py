@@ -1,6 +1,9 @@
 """The record of a broken promise."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from amprep.arrays import Floats
 
@@ -28,6 +31,6 @@ class Violation:
         return f"{self.promise}: {self.subject}: {self.message}"
 
 
-def place_words(point: Floats, digits: int = 2) -> str:
+def place_words(point: Floats | Sequence[float], digits: int = 2) -> str:
     """Return the coordinates of a point as all messages and reports state them: ``(12.5, -3, 0.04)``."""
-    return f"({', '.join(f'{round(value, digits) + 0.0:.9g}' for value in point.tolist())})"
+    return f"({', '.join(f'{round(value, digits) + 0.0:.9g}' for value in np.asarray(point).tolist())})"

@@ -44,6 +44,9 @@ def verify(
             rich_help_panel=_AGAINST,
         ),
     ] = None,
+    removability: Annotated[
+        bool, typer.Option("--removability", help="Judge trapped powder and access to contacts, too (slow).")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells the result.")
@@ -66,7 +69,10 @@ def verify(
     """
     from amprep import api
 
-    results = {file: api.verify(file, job=job, printer=printer, report=report, key=key) for file in files}
+    results = {
+        file: api.verify(file, job=job, printer=printer, report=report, key=key, removability=removability)
+        for file in files
+    }
     if as_json:
         records = [_json(file, result) for file, result in results.items()]
         typer.echo(json.dumps(records[0] if len(records) == 1 else records, indent=2))
@@ -108,7 +114,5 @@ def _show(file: Path, result: "Verification") -> None:
         table.add_row(violation.promise, "[red]broken", escape(violation.subject), escape(violation.message))
     console = Console()
     console.print(table)
-    if result.pairs.total:
-        console.print(f"distances of parts checked exactly: {result.pairs}", highlight=False)
     for words in result.weaker:
         console.print(f"weaker than usual, as the file states: {words}", markup=False, highlight=False)

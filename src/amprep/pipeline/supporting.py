@@ -156,7 +156,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
         def plan(number: int, earlier: Sequence[PlannedPass]) -> PlannedPass:
             each = divided[number]
             own = replace(build, resolved=each.resolved)
-            pitch = _pitch_of(each.resolved, build.parts)
+            pitch = pitch_of(each.resolved, build.parts)
             taking = taken.chosen(each.rules, excepted)
             shown = _part_of(progress, number, len(divided))
             layout = _layout(own, taking, [done.layout for done in earlier], pitch, stop, shown)
@@ -166,7 +166,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     return PlannedBuild(build, planned, taken)
 
 
-def _pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:
+def pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:
     """Return the pitch (mm) that the job gives, or one that suits parts, memory and cell."""
     rules = resolved.job.supports
     pitch = choose_pitch(parts, resolved.job.printer.space, rules)

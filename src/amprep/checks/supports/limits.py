@@ -11,6 +11,7 @@ from amprep.model.build import Build
 from amprep.model.control import Stop
 from amprep.model.counting import counted
 from amprep.model.supports.rules import SupportRules
+from amprep.overhangs.contacts import sample_spacing
 
 PROMISES = (LEAST_WALL, LEAST_CONTACT, legs.PROMISE, territory.PROMISE, drift.PROMISE)
 """Names of the promises."""
@@ -64,7 +65,9 @@ def _coverage_extent(build: Build) -> str:
     rules = build.settings.rules
     if not build.settings.supported:
         return f"{NOT_JUDGED}: the job asked for no supports"
+    spacings = [sample_spacing(placed, build.supports, build.settings) for placed in build.parts]
+    points = f"points at most {max(spacings, default=0.0):.2g} mm apart"
     if not rules.has_limits:
-        return f"all overhangs flatter than {rules.overhang_angle_deg:g} degrees"
+        return f"all overhangs flatter than {rules.overhang_angle_deg:g} degrees, {points}"
     sizes = f"ledges {rules.ledge_mm:g}, bridges {rules.bridge_mm:g}, bores {rules.bore_mm:g} mm"
-    return f"{sizes} are carried, tolerance {GRANT_MM:g} mm"
+    return f"{sizes} are carried, tolerance {GRANT_MM:g} mm, {points}"

@@ -3,12 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from amprep.checks.listed import free_below
 from amprep.checks.neighbours import apart, islands
 from amprep.checks.neighbours.islands import check_islands
 from amprep.checks.packing.pairs import PairCounts
-from amprep.checks.packing.parts_placed import ROUNDING, judge_placed
+from amprep.checks.packing.parts_placed import judge_placed
 from amprep.checks.printed import as_recorded, unchanged
 from amprep.checks.printed.found import PrintedFile
+from amprep.checks.removal import access, powder
 from amprep.checks.supports import bodies as cells
 from amprep.checks.supports import coverage, limits, xy_distance
 from amprep.checks.supports.bodies import check_bodies
@@ -17,6 +19,7 @@ from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, silent
+from amprep.pipeline.verifying.extents import extents_of, removal_extents
 
 PROMISES = (
     as_recorded.PROMISE,
@@ -37,6 +40,9 @@ PROMISES = (
     xy_distance.PROMISE,
     *limits.PROMISES,
     coverage.PROMISE,
+    free_below.PROMISE,
+    powder.PROMISE,
+    access.PROMISE,
 )
 """Names of all promises, in the order in which they are judged."""
 
@@ -79,6 +85,7 @@ def verify_build(
     build: Build,
     *,
     printed: PrintedFile | None = None,
+    removability: bool = False,
     stop: Stop | None = None,
     progress: Progress = silent,
 ) -> Verification:
@@ -90,6 +97,8 @@ def verify_build(
         The build.
     printed
         What the target of its file would print; None for a build that is in no file.
+    removability
+        Whether powder and access to contacts are judged, which takes long.
     stop
         Ends the check of parts and supports early.
     progress
@@ -106,8 +115,9 @@ def verify_build(
             "neighbours",
             lambda: [*check_islands(build, stop, solids), *apart.check_apart(build, stop, solids)],
         ),
-        ("coverage", lambda: check_coverage(build)),
-    )
+        ("coverage", lambda: [*check_coverage(build), *free_below.check_listed(build)]),
+        ("removal", lambda: [*powder.check_powder(build, stop), *access.check_access(build, stop)]),
+    )[: None if removability else -1]
     for index, (name, judge) in enumerate(judges, start=1):
         progress(index / (len(judges) + 2), name)
         found += judge()
@@ -115,18 +125,5 @@ def verify_build(
     judged = limits.check_limits(build, stop, solids)
     seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
-    return Verification((*seen, *found, *judged.violations), pairs, judged.extent | _extent(build, printed))
-
-
-def _extent(build: Build, printed: PrintedFile | None) -> dict[str, str]:
-    """Return how the file was read a second time, and how supports were compared and judged beside others."""
-    as_read = (
-        f"{limits.NOT_JUDGED}: the build is in no file"
-        if printed is None
-        else f"as {printed.program} reads it, tolerance {ROUNDING:g} mm"
-    )
-    return {
-        as_recorded.PROMISE: as_read,
-        unchanged.PROMISE: unchanged.extent_of(build, limits.NOT_JUDGED),
-        apart.NEIGHBOURS: apart.extent_of(build, limits.NOT_JUDGED),
-    }
+    extent = extents_of(build, pairs, printed) | judged.extent | removal_extents(removability)
+    return Verification((*seen, *found, *judged.violations), pairs, extent)

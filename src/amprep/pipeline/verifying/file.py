@@ -38,12 +38,15 @@ class Demands:
         The JSON report of the run; None for none.
     key
         The key of its seal; None checks a seal, if there is one, without a key.
+    removability
+        Whether powder and access to contacts are judged.
     """
 
     job: tuple[Job, Host] | None = None
     printer: str | None = None
     report: Path | None = None
     key: Path | None = None
+    removability: bool = False
 
 
 NO_DEMANDS = Demands()
@@ -84,7 +87,9 @@ def verify_file(
         found += order.check_order(build, each)
         extent[order.PROMISE] = f"by {each.source}"
         build = order.as_ordered(build, each)
-    judged = verify_build(build, printed=file.printed, stop=stop, progress=progress)
+    judged = verify_build(
+        build, printed=file.printed, removability=demands.removability, stop=stop, progress=progress
+    )
     return replace(
         judged, violations=(*found, *judged.violations), extent=judged.extent | extent, weaker=tuple(weaker)
     )

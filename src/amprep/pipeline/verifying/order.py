@@ -12,10 +12,13 @@ from amprep.job import Job, job_from_inputs, override
 from amprep.model import Build, BuildSettings
 from amprep.model.supports.sizes import SupportSizes
 from amprep.pipeline.reading import read_job
-from amprep.pipeline.resolve import resolve
+from amprep.pipeline.resolve import ResolvedJob, resolve
 from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import build_settings
+from amprep.pipeline.supporting import build_settings, pitch_of
 from amprep.supports.grid.sizing import choose_pitch
+
+_MOST_FOR_CELL = 2.0
+"""Length (mm) by which the pitch of a file may be larger than usual because its cell needs it."""
 
 
 def usual_settings(build: Build) -> BuildSettings:
@@ -29,19 +32,20 @@ def usual_settings(build: Build) -> BuildSettings:
     except JobError:
         job = override(job, {})
     printer = replace(job.printer, space=build.settings.space)
-    return settings_for(replace(job, printer=printer, target=build.settings.target), build)
+    job = replace(job, printer=printer, target=build.settings.target)
+    pitch = choose_pitch(build.parts, printer.space, job.supports)
+    of_cell = min(build.settings.sizes.square_mm, pitch + _MOST_FOR_CELL)  # cells with thick walls need more
+    return build_settings(job, build.settings.build_id, max(pitch, of_cell))
 
 
-def settings_for(job: Job, build: Build) -> BuildSettings:
+def settings_for(resolved: ResolvedJob, build: Build) -> BuildSettings:
     """Return the settings that a job gives to a build with these placed parts.
 
     Reach and sizes are the largest of its passes.
     """
     passes = [
-        build_settings(
-            own, build.settings.build_id, choose_pitch(build.parts, own.printer.space, own.supports)
-        )
-        for own in (job.for_rule(number) for number in range(len(job.rules) + 1))
+        build_settings(own.job, build.settings.build_id, pitch_of(own, build.parts))
+        for own in (resolved.for_rule(number) for number in range(len(resolved.job.rules) + 1))
     ]
     sizes = reduce(SupportSizes.enlarged, (each.sizes for each in passes))
     return replace(passes[0], reach=max(each.reach for each in passes), sizes=sizes)
@@ -70,7 +74,7 @@ def order_of_job(
     AmprepError
         When the job is wrong or its inputs cannot be read.
     """
-    loaded = read_job(resolve(job, host), Clock(watcher), allow_surface=allow_surface)
-    return Order(
-        job.source if job.folder is None else Path(job.source).name, settings_for(job, build), loaded.parts
-    )
+    resolved = resolve(job, host)
+    loaded = read_job(resolved, Clock(watcher), allow_surface=allow_surface)
+    name = job.source if job.folder is None else Path(job.source).name
+    return Order(name, settings_for(resolved, build), loaded.parts)

@@ -56,7 +56,7 @@ def test_rules_of_the_thesis_ask_for_none_of_them():
     assert {promise for promise, text in result.extent.items() if text.startswith(NOT_JUDGED)} == set(
         PROMISES
     )
-    assert result.extent["coverage"] == "all overhangs flatter than 45 degrees"
+    assert result.extent["coverage"] == "all overhangs flatter than 45 degrees, points at most 1 mm apart"
 
 
 def test_a_job_without_supports_says_that_coverage_is_not_judged():

@@ -7,6 +7,7 @@ from tests.shared.supported import box, build_of, table
 
 from amprep.checks.supports.limits import NOT_JUDGED, PROMISES
 from amprep.model.supports.sizes import SupportSizes
+from amprep.pipeline.verifying.build import PROMISES as ALL_PROMISES
 from amprep.pipeline.verifying.build import verify_build
 from amprep.pipeline.verifying.file import verify_file
 from amprep.threemf import write_build
@@ -37,7 +38,8 @@ def test_a_file_keeps_the_rules_and_sizes_that_judges_need(tmp_path):
     write_build(build, tmp_path / "a.3mf")
     judged = verify_file(tmp_path / "a.3mf")
     assert "0.3 mm, tolerance 0.03 mm" in judged.extent["least wall"]
-    assert judged.extent["coverage"] == "ledges 1, bridges 2, bores 8 mm are carried, tolerance 0.08 mm"
+    covered = "ledges 1, bridges 2, bores 8 mm are carried, tolerance 0.08 mm, points at most 0.1 mm apart"
+    assert judged.extent["coverage"] == covered
 
 
 def test_builds_by_the_rules_of_the_thesis_are_judged_by_none_of_the_limits(tmp_path):
@@ -46,7 +48,23 @@ def test_builds_by_the_rules_of_the_thesis_are_judged_by_none_of_the_limits(tmp_
     write_build(thin, tmp_path / "a.3mf")
     judged = verify_file(tmp_path / "a.3mf")
     assert {each.promise for each in judged.violations} == {"coverage"}
-    assert {promise for promise, text in judged.extent.items() if text.startswith(NOT_JUDGED)} == {
-        *PROMISES,
-        "distance to other parts",
-    }
+    assert all(judged.extent[promise].startswith(NOT_JUDGED) for promise in PROMISES)
+
+
+def test_every_promise_says_what_was_judged(tmp_path):
+    write_build(ledge_build(3.0, supported=True), tmp_path / "a.3mf")
+    judged = verify_file(tmp_path / "a.3mf")
+    assert set(judged.extent) == set(ALL_PROMISES)
+    assert all(judged.extent.values())
+    assert judged.extent["inside build volume"] == "exact on the triangles, tolerance 0.0011 mm: 1 part"
+    assert judged.extent["outside forbidden zones"] == f"{NOT_JUDGED}: no zones"
+
+
+def test_removability_is_judged_when_it_is_asked_for(tmp_path):
+    hollow = box((20, 20, 10.05), (0, 0, 0)) - box((10, 10, 5), (5, 5, 2))
+    build = build_of([table(10)], [hollow])
+    assert "powder can leave" not in {each.promise for each in verify_build(build).violations}
+    found = verify_build(build, removability=True)
+    (powder,) = (each for each in found.violations if each.promise == "powder can leave")
+    assert "1 pocket" in powder.message
+    assert "0.2 mm" in found.extent["powder can leave"]
