@@ -63,7 +63,8 @@ def test_what_reaches_the_plate_still_does(amprep, tmp_path):
     table = Solid.cube((30, 30, 3)).translate((0, 0, 20)) + Solid.cube((6, 6, 20)).translate((12, 12, 0))
     _, _, plate = supported(amprep, tmp_path, table, "--cell", "prism")
     _, supports, anywhere = supported(amprep, tmp_path, table, "--cell", "prism", "--grounding", "anywhere")
-    assert supports["notes"] == supports["shared_supports"] == []
+    assert not [words for words in supports["notes"] if "columns on parts" in words]
+    assert supports["shared_supports"] == []
     assert anywhere.supports[0].mesh.digest == plate.supports[0].mesh.digest
 
 

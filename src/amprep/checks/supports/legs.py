@@ -92,7 +92,9 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
             tip = build.settings.sizes_of(body).tip_height_mm
             free = ~_touches(slices, chain, build, tip) & ~_beside_braces(slices, chain, _LAYERS * cell)
             legs += [_worst(slices, own) for own in _runs(chain, free)]
-    return [leg for leg in legs if leg.length_mm > cell and leg.ratio > limit * _GRANT]
+    # planes do not meet the ends of a leg: its length is known to one distance of planes
+    too_long = [leg for leg in legs if leg.length_mm - step > limit * leg.width_mm]
+    return [leg for leg in too_long if leg.length_mm > cell and leg.ratio > limit * _GRANT]
 
 
 def _chains(slices: Slices) -> list[Int64s]:

@@ -49,7 +49,8 @@ def _extent(rules: SupportRules, sections: int) -> dict[str, str]:
     known = {
         LEAST_WALL: f"{rules.least_wall_mm:g} mm, {cut}" if rules.least_wall_mm > 0.0 else "",
         LEAST_CONTACT: f"{rules.least_contact_mm2:g} mm2, {cut}" if rules.least_contact_mm2 > 0.0 else "",
-        legs.PROMISE: f"length at most {rules.leg_ratio:g} times the width, by planes {legs.STEP:g} mm apart"
+        legs.PROMISE: f"length at most {rules.leg_ratio:g} times the width, by planes {legs.STEP:g} mm apart, "
+        "tolerance one such distance"
         if rules.leg_ratio > 0.0
         else "",
         territory.PROMISE: margin if own else "",
