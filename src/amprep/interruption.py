@@ -70,7 +70,7 @@ def came_late() -> int | None:
 
 def is_raised_by_code() -> bool:
     """Tell whether a `KeyboardInterrupt` that was caught comes from code, since no signal came."""
-    return _STATE.watching and _STATE.received is None
+    return _STATE.watching and received() is None
 
 
 def exit_code() -> int:

@@ -23,7 +23,7 @@ def test_the_commands_list_and_check(tmp_path):
     rows = {row["name"]: row for row in json.loads(run(app, ["list", "--json"]).output)}
     assert rows["bcc"]["kinds"] == ["graph"]
     assert rows["x-wall"]["kinds"] == ["code"]
-    assert rows["hatch"]["params"]["wall_mm"] == 0.25
+    assert rows["hatch"]["params"]["wall_mm"] is None  # as thick as the limits ask for
     assert "strut" in run(app, ["list"]).output
 
     path, picture = tmp_path / "tripod.toml", tmp_path / "tripod.png"

@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.kernels.meshes.equal_rows import first_of_equal
 
 _LEAST_HASHED = 20_000
 """Rows from which hashing is faster than sorting; both find the same."""
@@ -15,6 +14,8 @@ def first_of_equal_rows(rows: NDArray[np.generic]) -> Int64s:
     if len(rows) == 0:
         return np.empty(0, np.int64)
     if len(rows) >= _LEAST_HASHED and rows.dtype.itemsize == 8:
+        from amprep.kernels.meshes.equal_rows import first_of_equal
+
         first = np.empty(len(rows), np.int64)
         same_zeros = np.add(rows, rows.dtype.type(0))  # -0.0 becomes 0.0
         if first_of_equal(np.ascontiguousarray(same_zeros).view(np.uint64), first):
