@@ -168,7 +168,6 @@ class BuildRecord:
 
     build: Build
     file: str = ""
-    sha256: str = ""
     picture: str = ""
     density: float = 0.0
     height_mm: float = 0.0
@@ -189,6 +188,7 @@ class BuildRecord:
     pairs: PairCounts = field(default_factory=PairCounts)
     printing: PrintingEstimate = field(default_factory=PrintingEstimate)
     blade_edges: tuple[BladeEdge, ...] = ()
+    sha256: str = ""
     rules: frozenset[int] = frozenset()
 
     @property
