@@ -1,5 +1,6 @@
 """Atomic file writing, and temporary folders that show whether their process lives."""
 
+import json
 import os
 import re
 import shutil
@@ -7,8 +8,9 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
-from amprep.errors import AmprepError
+from amprep.errors import AmprepError, InputError
 
 PREFIX = ".amprep-"
 _OWNER = re.compile(re.escape(PREFIX) + r"(\d+)-(\d+)-\w+")
@@ -118,3 +120,30 @@ def taking_turns(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
+
+
+def read_json(path: Path, what: str, largest: int) -> Any:
+    """Return the value in a JSON file of a limited size.
+
+    Parameters
+    ----------
+    path
+        The file.
+    what
+        What it should be, with its article, for messages.
+    largest
+        Largest size, bytes.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is too large, or is not JSON.
+    """
+    try:
+        if path.stat().st_size > largest:
+            raise InputError(f"{path}: not {what}: larger than {largest} bytes")
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not {what}: not JSON") from error

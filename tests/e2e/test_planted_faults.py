@@ -5,12 +5,12 @@ from tests.shared.planted import (
     BEAMS,
     DIALECTS,
     FAULTS,
-    WRONG_BUILDS,
     as_before,
     bracket_build,
     write_entries,
     write_package,
 )
+from tests.shared.wrong_builds import WRONG_BUILDS
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from amprep.errors import InputError
-from amprep.files import replacing
+from amprep.files import read_json, replacing
 from amprep.sealing.keys import Key, read_key
 
 FORMAT = "amprep seal 1"
@@ -140,14 +140,7 @@ def _read_seal(path: Path) -> dict[str, str]:
     InputError
         If it cannot be read or is not a seal.
     """
-    try:
-        if path.stat().st_size > _LARGEST_SEAL:
-            raise InputError(f"{path}: not a seal: larger than {_LARGEST_SEAL} bytes")
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot read the seal: {error.strerror or error}") from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a seal: not JSON") from error
+    record = read_json(path, "a seal", _LARGEST_SEAL)
     known = isinstance(record, dict) and all(isinstance(each, str) for each in record.values())
     if not known or record.get("format") != FORMAT or not {"sha256", "method"} <= record.keys():
         raise InputError(f"{path}: not a seal of this version of amprep")

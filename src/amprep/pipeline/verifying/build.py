@@ -116,8 +116,11 @@ def verify_build(
             lambda: [*check_islands(build, stop, solids), *apart.check_apart(build, stop, solids)],
         ),
         ("coverage", lambda: [*check_coverage(build), *free_below.check_listed(build)]),
-        ("removal", lambda: [*powder.check_powder(build, stop), *access.check_access(build, stop)]),
-    )[: None if removability else -1]
+    )
+    if removability:
+        judges += (
+            ("removal", lambda: [*powder.check_powder(build, stop), *access.check_access(build, stop)]),
+        )
     for index, (name, judge) in enumerate(judges, start=1):
         progress(index / (len(judges) + 2), name)
         found += judge()

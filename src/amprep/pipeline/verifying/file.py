@@ -1,6 +1,5 @@
 """Verify a build file against more than itself: a job, a printer, the report of its run, and its seal."""
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ from amprep.checks.ordered import order
 from amprep.checks.ordered.weaker import most_lenient, weaker_settings
 from amprep.checks.violation import Violation
 from amprep.errors import InputError
+from amprep.files import read_json
 from amprep.host import Host
 from amprep.job import Job
 from amprep.model import Build, Progress, Stop, silent
@@ -133,14 +133,7 @@ def _builds(report: Path) -> list[dict[str, Any]]:
     InputError
         If it cannot be read or is not a report of amprep.
     """
-    try:
-        if report.stat().st_size > _LARGEST_REPORT:
-            raise InputError(f"{report}: larger than {_LARGEST_REPORT} bytes")
-        record = json.loads(report.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{report}: cannot be read: {error.strerror or error}") from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{report}: not a report of amprep: not JSON") from error
+    record = read_json(report, "a report of amprep", _LARGEST_REPORT)
     builds = record.get("builds") if isinstance(record, dict) else None
     if not isinstance(builds, list) or not all(isinstance(each, dict) for each in builds):
         raise InputError(f"{report}: not a report of amprep: it lists no builds")
