@@ -347,9 +347,8 @@ def _load_all(sources: Sequence[Source]) -> tuple[list[Listed[Offer]], list[str]
             plugin, offers = _loaded(source, seen)
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt) and not interruption.is_raised_by_code():
-                raise Interrupted(
-                    f"interrupted while {source.title} was loaded; nothing was written"
-                ) from error
+                loading = "" if source.builtin else f" while {source.title} was loaded"
+                raise Interrupted(f"interrupted{loading}; nothing was written") from error
             reason = str(error) if isinstance(error, PluginError) else one_line(error)
             if source.asked_for:
                 raise PluginError(f"{source.title} cannot be loaded: {reason}") from error

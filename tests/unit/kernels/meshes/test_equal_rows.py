@@ -5,6 +5,7 @@ import pytest
 
 from amprep.geometry.meshes import topology
 from amprep.geometry.meshes.topology import first_of_equal_rows
+from amprep.kernels.meshes import equal_rows
 from amprep.kernels.meshes.equal_rows import first_of_equal
 
 
@@ -21,9 +22,11 @@ def test_hashing_and_sorting_find_the_same_rows(monkeypatch, kind):
 
 def test_rows_are_sorted_where_the_kernel_gives_up(monkeypatch):
     monkeypatch.setattr(topology, "_LEAST_HASHED", 1)
-    monkeypatch.setattr(topology, "first_of_equal", lambda rows, first: False)
+    calls = []
+    monkeypatch.setattr(equal_rows, "first_of_equal", lambda rows, first: calls.append(len(rows)))
     rows = np.array([[1.0, 2.0], [0.0, 1.0], [1.0, 2.0]])
     assert first_of_equal_rows(rows).tolist() == [0, 1, 0]
+    assert calls == [3]
 
 
 def test_equal_rows_need_one_probe_each():
