@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,7 +14,7 @@ from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.model.control import Stop, silent
 from amprep.model.supports import CAPACITY
 from amprep.plugins.routers.min_cost_certificate import find_optimality_violations
-from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
+from amprep.plugins.routers.min_cost_flow import cost_of, solve_min_cost_flow
 
 ROUTERS = ["min-cost-flow", "push-relabel", "shortest-paths"]
 
@@ -67,6 +68,37 @@ def test_every_red_square_with_a_way_is_served_and_what_was_raised_was_needed(se
         plan = route(router, task)
         assert check_plan(task, plan) == check_raises(task, plan) == []
     assert find_optimality_violations(solve_min_cost_flow(task, stop=Stop(), progress=silent)) == []
+
+
+def graph_of(task):
+    """The flow problem as a graph of networkx; a red square sends a unit, which passes its own square."""
+    network, (square, edge, each) = task.network, task.capacities
+    graph = nx.DiGraph()
+    graph.add_nodes_from(["red", "plate"])
+    for red in task.start[task.reachable].tolist():
+        graph.add_edge("red", (red, "in"), capacity=1)
+    for u in range(network.stride, network.passable.size):
+        graph.add_edge((u, "in"), (u, "out"), capacity=int(square[u * each]), weight=0)
+        for direction, step in enumerate(network.offset.tolist()):
+            below = u - network.stride + step
+            cost = task.problem.costs[direction > 0]
+            if network.passable[below]:
+                head = "plate" if below < network.stride else (below, "in")
+                tail = ((u, direction), head)
+                graph.add_edge((u, "out"), tail, capacity=int(edge[(5 * u + direction) * each]), weight=cost)
+                graph.add_edge(tail, head)
+    return graph
+
+
+@examples(15)
+@given(st.integers(0, 100_000), st.sampled_from(["cut", "uniform"]))
+def test_the_flow_is_the_cheapest_for_the_raised_capacities_in_networkx(seed, escalation):
+    task = random_problem(seed, escalation=escalation)
+    solved = solve_min_cost_flow(task, stop=Stop(), progress=silent)
+    graph = graph_of(solved.task)
+    flow = nx.max_flow_min_cost(graph, "red", "plate")
+    assert sum(flow["red"].values()) == solved.connected.sum()
+    assert nx.cost_of_flow(graph, flow) == cost_of(solved.task, solved.flow)
 
 
 def test_the_judge_finds_raises_that_are_not_allowed_not_used_or_not_needed():

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Bytes, Float32s, Int32s, Int64s
-from amprep.kernels.flow.records import Flow, FlowNetwork
+from amprep.kernels.flow.records import Capacities, Flow, FlowNetwork
 from amprep.kernels.helper import inlined, kernel
 
 FAR = np.float32(1e30)
@@ -89,11 +89,20 @@ class EdgePrices(NamedTuple):
 
 
 class PathLimits(NamedTuple):
-    """Greatest number of paths in a square, in a square of the plate, and on an edge."""
+    """Greatest number of paths in squares above the plate and on edges, and in a square of the plate."""
 
-    square: int
+    capacities: Capacities
     plate: int
-    edge: int
+
+
+@inlined
+def _square_limit(limits: PathLimits, u: int) -> int:
+    return limits.capacities.square[u * limits.capacities.each]
+
+
+@inlined
+def _edge_limit(limits: PathLimits, u: int, d: int) -> int:
+    return limits.capacities.edge[(5 * u + d) * limits.capacities.each]
 
 
 @inlined
@@ -120,14 +129,14 @@ def _repriced_distance(
     If neither the square nor a neighbour is in use, the square is no longer repriced.
     """
     beside = _is_beside_used(network, state.flow, u)
-    if state.flow.square[u] >= limits.square:
+    if state.flow.square[u] >= _square_limit(limits, u):
         return FAR
     if state.flow.square[u] == 0 and not beside:
         state.repriced[u] = 0
     best = FAR
     for d in range(5):
         flow = state.flow.edge[u, d]
-        if flow < limits.edge:
+        if flow < _edge_limit(limits, u, d):
             below = state.distance[u - network.stride + network.offset[d]]
             best = min(best, below + _price(prices, flow, d, beside))
     return best
@@ -176,8 +185,8 @@ def _cheapest_direction(
     for d in range(5):
         v = u - network.stride + network.offset[d]
         flow = state.flow.edge[u, d]
-        limit = limits.plate if v < network.stride else limits.square
-        if flow < limits.edge and state.flow.square[v] < limit and state.dead_end[v] != batch:
+        limit = limits.plate if v < network.stride else _square_limit(limits, v)
+        if flow < _edge_limit(limits, u, d) and state.flow.square[v] < limit and state.dead_end[v] != batch:
             cost = state.distance[v] + _price(prices, flow, d, beside)
             if cost < best:
                 best, chosen = cost, d
@@ -230,7 +239,7 @@ def route(
         if paths.routed[r]:
             continue
         trail[0] = paths.start[r]
-        length = -1 if state.flow.square[trail[0]] >= limits.square else 0
+        length = -1 if state.flow.square[trail[0]] >= _square_limit(limits, trail[0]) else 0
         while length >= 0 and trail[length] >= network.stride:
             u = trail[length]
             d = _cheapest_direction(network, state, prices, limits, u, batch)

@@ -61,9 +61,9 @@ class Routing:
             problem.node_capacity or problem.edge_capacity or not params.paths_per_square
         )
         self.limits = (
-            PathLimits(params.paths_per_square, params.paths_per_square, UNBOUNDED)
+            _soft_limits(params.paths_per_square)
             if self.has_soft_limit
-            else PathLimits(problem.node_capacity or UNBOUNDED, UNBOUNDED, problem.edge_capacity or UNBOUNDED)
+            else PathLimits(_equal(problem.node_capacity, problem.edge_capacity), UNBOUNDED)
         )
         self.plain_prices = self._prices((1.0,), 0.0, problem.costs)
         self.set_prices(params.g, params.neighbour_discount, costs or problem.costs)
@@ -72,7 +72,7 @@ class Routing:
     def _find_reachable(self) -> Int64s:
         """Return the reachable red squares; make squares impassable from which no path leads to the plate."""
         passable, distance = self.network.passable, self.state.distance
-        sweep(self.network, self.state, self.plain_prices, PathLimits(UNBOUNDED, UNBOUNDED, UNBOUNDED))
+        sweep(self.network, self.state, self.plain_prices, PathLimits(_equal(), UNBOUNDED))
         np.logical_and(passable, distance < FAR, out=passable.view(np.bool_))
         ends = self.paths.start[:, None] - self.network.stride + self.network.offset
         return np.flatnonzero((distance[ends] < FAR).any(axis=1))
@@ -91,25 +91,41 @@ class Routing:
         return EdgePrices(table, np.float32(vertical), np.float32(oblique), np.float32(1.0 - discount))
 
     def connect_all(self, stop: Stop, progress: Progress) -> None:
-        """Route the first paths at plain prices; raise limits until every reachable red square has one, if allowed."""
+        """Route the first paths at plain prices; raise limits until every reachable red square has one, if allowed.
+
+        Where capacities are raised, all paths are routed again, as if the problem had had them from the start: those
+        that the smaller capacities had led around a full square may be long.
+        """
         self._route(self.reachable, self.plain_prices)
         while self.has_soft_limit and self._unrouted().size and not stop():
-            square = self.limits.square + max(1, self.limits.square // 4)
-            self.limits = PathLimits(square, square, UNBOUNDED)
+            self.limits = _soft_limits(self.limits.plate + max(1, self.limits.plate // 4))
             self._route(self._unrouted(), self.plain_prices)
-        if self.problem.escalation == "uniform" and not self.has_soft_limit:
-            self.escalate(stop, progress)
+        may_raise = not self.has_soft_limit and self.problem.escalation != "none"
+        if may_raise and self.unrouted_count and self._raise_capacities(stop, progress):
+            rip_up(self.network, self.state, self.paths, self.reachable)
+            self._route(self.reachable, self.plain_prices)
+
+    def _raise_capacities(self, stop: Stop, progress: Progress) -> bool:
+        """Raise capacities for the unrouted red squares as `problem.escalation` says; tell whether it finished."""
+        connected = self.paths.routed == 1
+        self._task, connected, stop_reason = escalate(
+            self._task, self.flow, connected, stop=stop, progress=progress
+        )
+        self.paths.routed[:] = connected
+        self.limits = self.limits._replace(capacities=self._task.capacities)
+        self._read_paths()
+        return stop_reason == "finished"
 
     def adopt(self, solved: MinCostFlow) -> None:
         """Replace all paths by those of a minimum-cost flow, and the limits by those that it keeps."""
         self.paths.routed[:] = solved.connected
         self.flow.edge[:], self.flow.square[:] = solved.flow
         self._read_paths()
-        capacities = solved.task.capacities
-        square, edge = int(capacities.square[0]), int(capacities.edge[0])
         if self.has_soft_limit:
-            square = max(self.limits.square, int(self.flow.square.max(initial=0)))
-        self.limits = PathLimits(square, square if self.has_soft_limit else UNBOUNDED, edge)
+            self.limits = _soft_limits(max(self.limits.plate, int(self.flow.square.max(initial=0))))
+        else:
+            self._task = self._task._replace(capacities=solved.task.capacities)
+            self.limits = self.limits._replace(capacities=solved.task.capacities)
 
     @property
     def unrouted_count(self) -> int:
@@ -179,12 +195,11 @@ class Routing:
 
     def _augment_within_limits(self) -> None:
         """Augment one by one: soft limits bind squares of the plate too, and leave only few red squares out."""
-        square, edge = (np.array([limit], np.int32) for limit in (self.limits.square, self.limits.edge))
         plate = self.limits.plate - self.flow.square[: self.network.stride].astype(np.int32)
         augmentation, served = Augmentation(self.network, self.flow, plate), np.ones(1, np.bool_)
         while served.any():
             unrouted = self._unrouted()
-            served, _ = augmentation.augment(Capacities(square, edge, 0), self.paths.start[unrouted])
+            served, _ = augmentation.augment(self.limits.capacities, self.paths.start[unrouted])
             self.paths.routed[unrouted[served]] = 1
 
     def _read_paths(self) -> None:
@@ -211,21 +226,14 @@ class Routing:
             self.problem, self.network, self.flow, connected, reachable, stop_reason=stop_reason
         )
 
-    def escalate(self, stop: Stop, progress: Progress) -> str:
-        """Raise capacities for the unrouted red squares as `problem.escalation` says; return why it ended."""
-        if not self.unrouted_count:
-            return "finished"
-        connected = self.paths.routed == 1
-        task, connected, stop_reason = escalate(
-            self._task, self.flow, connected, stop=stop, progress=progress
-        )
-        self.paths.routed[:] = connected
-        if not task.capacities.each:
-            self._task = task
-            square, edge = task.capacities.square, task.capacities.edge
-            self.limits = PathLimits(int(square[0]), UNBOUNDED, int(edge[0]))
-        self._read_paths()
-        return stop_reason
+
+def _equal(square: int = 0, edge: int = 0) -> Capacities:
+    """Return the same capacities everywhere; 0 is no limit."""
+    return Capacities(np.array([square or UNBOUNDED], np.int32), np.array([edge or UNBOUNDED], np.int32), 0)
+
+
+def _soft_limits(paths_per_square: int) -> PathLimits:
+    return PathLimits(_equal(paths_per_square), paths_per_square)
 
 
 def _initial_state(network: FlowNetwork, most: int) -> RoutingState:

@@ -25,9 +25,8 @@ def route_shortest_paths(
 
     Capacities are never exceeded: full edges and squares are closed to further paths, and red squares that find
     no path are connected by augmentation, so that the flow is maximal. If capacities may be raised for the red
-    squares that are left, all grow alike before the first round (``uniform``), or those of a minimum cut grow
-    after the last round (``cut``). If the problem has no capacities, `paths_per_square` takes their place and
-    grows until every reachable red square is connected.
+    squares that are left, they grow before the first round, and all paths are routed again with them. If the problem
+    has no capacities, `paths_per_square` takes their place and grows until every reachable red square is connected.
 
     A round takes ``O(squares)``, plus ``O(planes)`` for each chosen path. The plan is the same for the same state
     of `rng`, unless a time limit ends the rounds.
@@ -42,6 +41,4 @@ def route_shortest_paths(
             break
         routing.reroute(chosen)
         progress((done + 1) / params.rounds, "rerouting paths")
-    if stop_reason == "finished":
-        stop_reason = routing.escalate(stop, progress)
     return routing.plan(stop_reason)

@@ -7,7 +7,6 @@ import numpy as np
 
 from amprep.arrays import Int64s
 from amprep.model.control import Progress, Stop, silent
-from amprep.model.counting import counted
 from amprep.model.supports import SupportPlan, SupportProblem
 from amprep.plugins.routers.min_cost_flow import solve_min_cost_flow
 from amprep.plugins.routers.params import ShortestPathsParams, TreeParams
@@ -50,23 +49,18 @@ def route_tree(
         best.adopt(flow)
     best.set_prices(_G, 0.0, problem.material)
     stop_reason = _improve(best, params, rng, stop, progress)
-    before, left = best.material, best.unrouted_count
-    if stop_reason == "finished":
-        stop_reason = best.escalate(stop, progress)
-    raised = left - best.unrouted_count
+    material = best.material
     note = (
-        f"tree takes {before:.6g} mm3 of material{' before capacities are raised' if raised else ''}: "
-        f"{_less(before, paths_material)} shortest-paths, {_less(before, flow_material)} min-cost-flow"
+        f"tree takes {material:.6g} mm3 of material: "
+        f"{_less(material, paths_material)} shortest-paths, {_less(material, flow_material)} min-cost-flow"
     )
-    if raised:
-        note += f"; with raised capacities {best.material:.6g} mm3 for {counted(raised, 'square')} more"
     return replace(best.plan(stop_reason), notes=(note,) if best.paths.routed.any() else ())
 
 
 def _with_capacities(problem: SupportProblem, params: TreeParams) -> SupportProblem:
     """Return the problem with the capacities that rip up and reroute keeps."""
     if problem.node_capacity or problem.edge_capacity or not params.paths_per_square:
-        return replace(problem, escalation="uniform" if problem.escalation == "uniform" else "none")
+        return problem
     return replace(problem, node_capacity=params.paths_per_square, escalation="uniform")
 
 
