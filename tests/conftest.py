@@ -1,4 +1,8 @@
-"""Hypothesis profiles: the usual one repeats the same examples, ``--hypothesis-profile=nightly`` explores new ones."""
+"""Hypothesis profiles: how many examples property tests try.
+
+The usual one repeats the same examples, 40 where a test asks for 100; ``--hypothesis-profile=full`` repeats all that
+tests ask for, and ``--hypothesis-profile=nightly`` explores new ones.
+"""
 
 import os
 
@@ -7,7 +11,8 @@ from hypothesis import settings
 
 from amprep import supervision
 
-settings.register_profile("usual", deadline=None, derandomize=True, max_examples=100)
+settings.register_profile("usual", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("full", deadline=None, derandomize=True, max_examples=100)
 settings.register_profile("nightly", deadline=None, max_examples=2000, print_blob=True)
 settings.load_profile("usual")
 

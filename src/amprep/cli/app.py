@@ -5,10 +5,12 @@ from typing import Annotated
 import typer
 
 from amprep import __version__
-from amprep.cli import bench, cells, plugins, run, seal, support, verify
-from amprep.cli import infill as lattice
-from amprep.cli import inspect as inspection
-from amprep.cli.catalogues import materials, printers
+from amprep.cli import bench
+from amprep.cli.builds import seal, verify
+from amprep.cli.catalogues import cells, materials, plugins, printers
+from amprep.cli.jobs import infill as lattice
+from amprep.cli.jobs import inspect as inspection
+from amprep.cli.jobs import run, support
 
 app = typer.Typer(
     name="amprep",

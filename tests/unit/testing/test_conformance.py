@@ -7,7 +7,7 @@ import sys
 import pytest
 from typer.testing import CliRunner
 
-from amprep.cli.plugins import app
+from amprep.cli.catalogues.plugins import app
 from amprep.errors import PluginError
 from amprep.host import KINDS, Host
 from amprep.host.scaffold import make_plugin

@@ -1,1 +1,1 @@
-"""Commands that list and show printers and materials."""
+"""Commands that list, show and check printers, materials, cells and plugins."""

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.job import build_and_report, explain_and_report
+from amprep.cli.jobs.reporting import build_and_report, explain_and_report
 from amprep.cli.options import BuildOptions, with_options
 
 

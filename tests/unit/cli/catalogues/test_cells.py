@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from amprep.cli.cells import app
+from amprep.cli.catalogues.cells import app
 
 TOML = """
 name = "tripod"

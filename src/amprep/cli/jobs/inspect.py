@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep.cli.job import finish
+from amprep.cli.jobs.reporting import finish
 from amprep.cli.options import (
     NoPlugins,
     Plugins,

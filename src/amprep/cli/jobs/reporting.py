@@ -14,7 +14,7 @@ from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from amprep.cli.inspect import InspectionOptions
+    from amprep.cli.jobs.inspect import InspectionOptions
     from amprep.report.infill import InfillRecord
     from amprep.report.inspection.record import InspectionRecord
     from amprep.report.record import RunRecord

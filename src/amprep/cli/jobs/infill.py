@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.job import call_api, finish, output_options
+from amprep.cli.jobs.reporting import call_api, finish, output_options
 from amprep.cli.options import JobOptions, with_options
 
 
