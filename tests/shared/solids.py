@@ -1,7 +1,7 @@
 """Solids for tests, made with manifold3d: printable shapes, and random ones."""
 
 import numpy as np
-from manifold3d import CrossSection, Manifold, OpType
+from manifold3d import CrossSection, Manifold, Mesh64, OpType
 
 from amprep.model import Mesh, Solid
 
@@ -14,6 +14,15 @@ def arrays(solid):
 
 def mesh_of(solid):
     return Mesh(*arrays(solid))
+
+
+def stacked(*solids):
+    """Solids as shells of one mesh, not united."""
+    meshes = [arrays(solid) for solid in solids]
+    first = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    corners = [triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]
+    vertices = np.concatenate([each for each, _ in meshes])
+    return Manifold(Mesh64(vertices, np.concatenate(corners).astype(np.uint64)))
 
 
 def volume_of_solid(solid):

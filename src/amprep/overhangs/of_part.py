@@ -7,6 +7,7 @@ import numpy as np
 from amprep.geometry.meshes.decimation import merge_coplanar
 from amprep.geometry.overhangs.carried.points import Limits
 from amprep.geometry.overhangs.find import find_overhangs
+from amprep.geometry.overhangs.joints import join_touching
 from amprep.geometry.overhangs.limited import find_limited_overhangs
 from amprep.geometry.overhangs.regions import Overhangs
 from amprep.model.build import PlacedPart
@@ -21,8 +22,9 @@ MANY_TRIANGLES = 5000
 class PartOverhangs(NamedTuple):
     """The overhangs of a placed part, and the mesh that their indices refer to.
 
-    The mesh is the part's own mesh in build coordinates. If it has many triangles in common planes, these are merged,
-    but not in a part with marked regions or painted triangles, which are given by their triangles. Where the border of
+    The mesh is the part's own mesh in build coordinates. With limits, bodies of it that touch face to face are joined.
+    If it has many triangles in common planes, these are merged. Both are left out in a part with marked regions or
+    painted triangles, which are given by their triangles. Where the border of
     a blocker or enforcer crosses triangles, these are subdivided, and so are those that a limit divides. Where a limit
     divides a knife edge, the point there is a vertex without triangles.
     """
@@ -51,7 +53,7 @@ def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: floa
     modified = ModifiedMesh(placed.mesh, None)
     searched = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32))
     if own.supports is not False:
-        modified = apply_regions(_planned_mesh(placed), placed.part.regions, placed.matrix)
+        modified = apply_regions(_planned_mesh(placed, rules), placed.part.regions, placed.matrix)
         searched = modified.mesh
     if rules.has_limits and own.supports is not False:
         return _limited(modified, rules, angle + add_angle_deg)
@@ -66,10 +68,18 @@ def overhangs_of(placed: PlacedPart, rules: SupportRules, *, add_angle_deg: floa
     return PartOverhangs(modified.mesh, overhangs)
 
 
-def _planned_mesh(placed: PlacedPart) -> Mesh:
-    """Return the mesh of a part for planning: triangles in one plane are merged if that halves their number."""
+def _planned_mesh(placed: PlacedPart, rules: SupportRules) -> Mesh:
+    """Return the mesh of a part for planning.
+
+    With limits, bodies that touch face to face are joined. Triangles in one plane are merged if that halves their
+    number.
+    """
     mesh, part = placed.mesh, placed.part
-    if len(mesh.triangles) <= MANY_TRIANGLES or part.regions or part.appearance.triangle_colours is not None:
+    if part.regions or part.appearance.triangle_colours is not None:
+        return mesh
+    joined = join_touching(mesh.vertices, mesh.triangles) if rules.has_limits else None
+    mesh = mesh if joined is None else Mesh(*joined)
+    if len(mesh.triangles) <= MANY_TRIANGLES:
         return mesh
     merged = merge_coplanar(mesh.vertices, mesh.triangles)
     return mesh if merged is None or 2 * len(merged[1]) > len(mesh.triangles) else Mesh(*merged)

@@ -2,7 +2,8 @@
 
 With the rules of the thesis all of them do. With limits the judge flags only what is certainly not carried: it grants
 the planner `GRANT_MM` on every limit. Where the part starts in the air, the start needs contacts, and so does what only
-higher anchors would carry, because these are printed later. A level start that is wide carries what is beside it.
+higher anchors would carry, because these are printed later. A level start that is wide carries what is beside it. So
+does another body of the part that touches the face from below.
 """
 
 import numpy as np
@@ -11,6 +12,7 @@ from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.overhangs.along_edges import carried_along
 from amprep.checks.overhangs.bases import JudgedStarts, judged_starts, widths, with_bases
 from amprep.checks.overhangs.borders import region_edges, regions_of
+from amprep.checks.overhangs.joints import stand_on_bodies
 from amprep.checks.overhangs.lines import Reaches, carried
 from amprep.checks.overhangs.samples import ENFORCED, JudgedOverhangs
 from amprep.checks.overhangs.search import ROUNDING
@@ -60,6 +62,10 @@ def are_needed(found: JudgedOverhangs, rules: OverhangRules, rows: Int64s, *, st
     needed[on_faces] = ~_carried_faces(
         found, samples.points[on_faces], samples.owner[on_faces], starts, reaches, plate, not strict
     )
+    on_faces = on_faces[needed[on_faces]]
+    inner = _inwards(found.surface, samples.points[on_faces], faces[samples.owner[on_faces]])
+    reach = 0.0 if strict else max(reaches.ledge, reaches.bridge / 2.0)
+    needed[on_faces] = ~stand_on_bodies(found.surface, inner, reach)
     on_edges = np.flatnonzero(needed & (samples.kind == 1))
     needed[on_edges] = ~_carried_edges(
         found, samples.points[on_edges], samples.owner[on_edges], starts, reaches, plate
