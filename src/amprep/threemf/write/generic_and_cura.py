@@ -8,6 +8,7 @@ from amprep.model.build import Build, SupportBody
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.threemf.build import record
+from amprep.threemf.build.identifier import object_name, title_of
 from amprep.threemf.names import CURA_NAMESPACE
 from amprep.threemf.write.document import (
     BeamSet,
@@ -54,7 +55,8 @@ def components_document(build: Build) -> Document:
         support_objects.append(len(objects) - 1)
     for each in objects:  # digests need indices in range
         check_geometry(each)
-    items = [_item(build, parts, group, support_objects) for group in groups]
+    title = title_of(build)
+    items = [_item(build, parts, group, support_objects, title) for group in groups]
     return Document(build.settings.build_id, build_metadata(build, parts), tuple(objects), tuple(items))
 
 
@@ -107,7 +109,9 @@ def _digest(build: Build, index: int) -> str:
     return support.digest if build.settings.target == "generic" else support.mesh.digest
 
 
-def _item(build: Build, parts: Sequence[Part], group: PartGroup, support_objects: Sequence[int]) -> BuildItem:
+def _item(
+    build: Build, parts: Sequence[Part], group: PartGroup, support_objects: Sequence[int], title: str
+) -> BuildItem:
     placed = [build.parts[index] for index in group.parts]
     objects = [PlacedObject(parts.index(each.part), each.matrix) for each in placed]
     objects += [PlacedObject(support_objects[index], np.eye(4)) for index in group.supports]
@@ -116,4 +120,4 @@ def _item(build: Build, parts: Sequence[Part], group: PartGroup, support_objects
     ]
     records += [support_record(build, index, _digest(build, index)) for index in group.supports]
     name = " + ".join(each.label for each in placed)
-    return BuildItem(tuple(objects), item_metadata(records), f"{name} ({build.settings.build_id})")
+    return BuildItem(tuple(objects), item_metadata(records), object_name(name, title))

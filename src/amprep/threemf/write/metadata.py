@@ -6,6 +6,7 @@ from amprep import __version__
 from amprep.model.build import Build
 from amprep.model.part import Part
 from amprep.threemf.build import record
+from amprep.threemf.build.identifier import identifier_of
 from amprep.threemf.build.values import JsonObject, plain, to_json
 from amprep.threemf.names import NAMESPACE
 from amprep.threemf.write.document import Metadata
@@ -43,6 +44,7 @@ def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
     """Return the metadata of a build's model; `parts` are its distinct parts."""
     entries = {
         record.FORMAT: record.FORMAT_VERSION,
+        record.IDENTIFIER: identifier_of(build),
         record.CONTENTS: to_json(record.contents_record(build)),
         record.SETTINGS: to_json(record.settings_record(build.settings)),
         record.VOLUME: to_json(record.volume_record(build.settings.space)),

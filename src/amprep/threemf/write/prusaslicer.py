@@ -15,6 +15,7 @@ from amprep.arrays import Floats
 from amprep.model.build import Build
 from amprep.model.mesh import Mesh, join_meshes
 from amprep.model.part import Appearance, Part
+from amprep.threemf.build.identifier import object_name, title_of
 from amprep.threemf.build.values import JsonObject, plain, xml_text
 from amprep.threemf.names import PRUSASLICER_NAMESPACE
 from amprep.threemf.slicer_volumes import PRUSASLICER_NAMES, SlicerVolume
@@ -40,7 +41,7 @@ from amprep.threemf.write.metadata import (
 
 def merged_document(build: Build) -> Document:
     """Return the document of a build: one object per group, in the coordinates of the group's first part."""
-    parts = distinct_parts(build)
+    parts, title = distinct_parts(build), title_of(build)
     objects: list[MeshObject] = []
     items: list[BuildItem] = []
     shared: dict[Part, int] = {}  # copies without supports are instances of one object
@@ -48,7 +49,7 @@ def merged_document(build: Build) -> Document:
         part = build.parts[group.parts[0]].part
         alone = len(group.parts) + len(group.supports) == 1
         index = shared.get(part, len(objects)) if alone else len(objects)
-        merged, item = _merged(build, parts, group, index)
+        merged, item = _merged(build, parts, group, index, title)
         if index == len(objects):
             objects.append(merged)
         if alone:
@@ -59,7 +60,7 @@ def merged_document(build: Build) -> Document:
 
 
 def _merged(
-    build: Build, parts: Sequence[Part], group: PartGroup, index: int
+    build: Build, parts: Sequence[Part], group: PartGroup, index: int, title: str
 ) -> tuple[MeshObject, BuildItem]:
     """Return the merged object of a group, which has this index in the file, and the item that places it."""
     first = build.parts[group.parts[0]]
@@ -78,7 +79,7 @@ def _merged(
     labels = [build.parts[number].label for number in group.parts]
     own_parts = [build.parts[number].part for number in group.parts]
     merged = MeshObject(
-        f"{' + '.join(labels)} ({build.settings.build_id})",
+        object_name(" + ".join(labels), title),
         join_meshes(meshes),
         part_number=first.part.part_number,
         appearance=_joined_appearance(own_parts, meshes),

@@ -13,6 +13,7 @@ from amprep.files import replacing
 from amprep.model import TARGETS, Mesh, SupportBody
 from amprep.threemf import write as writing
 from amprep.threemf import write_build
+from amprep.threemf.build.identifier import read_identifier
 from amprep.threemf.write import metadata as writing_metadata
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
@@ -196,10 +197,11 @@ def test_prusaslicer_shows_copies_without_supports_as_instances(make_build, writ
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_names_contain_part_and_build(written, target):
+def test_names_contain_part_build_and_identifier(written, target):
     path = written(target)
     names = [each.get("name") for each in objects_of(path).values()]
-    assert {"plate & <tray> (job.build-1)", "bar (job.build-1)"} <= set(names)
+    own = read_identifier(path)
+    assert {f"plate & <tray> (job.build-1 {own})", f"bar (job.build-1 {own})"} <= set(names)
 
 
 @pytest.mark.parametrize("target", TARGETS)

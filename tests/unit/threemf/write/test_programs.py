@@ -12,6 +12,7 @@ import pytest
 from tests.shared.optional import present
 
 from amprep.threemf import write_build
+from amprep.threemf.build.identifier import object_name, title_of
 
 PRUSA_SLICER = shutil.which("prusa-slicer")
 SYSTEM_PYTHON = "/usr/bin/python3"
@@ -77,7 +78,7 @@ def test_prusaslicer_prints_parts_and_supports_in_their_positions(make_build, tm
     printed = extents(slice_with_prusa_slicer(tmp_path / "job.3mf"))
     groups = [([1, 2], [1])] if share else [([1], [1])]
     for parts, supports in [([0], [0]), *groups]:
-        label = " + ".join(build.parts[index].label for index in parts) + " (job.build-1)"
+        label = object_name(" + ".join(build.parts[index].label for index in parts), title_of(build))
         meshes = [build.parts[index].mesh for index in parts] + [
             build.supports[index].mesh for index in supports
         ]

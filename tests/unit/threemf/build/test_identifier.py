@@ -1,0 +1,48 @@
+"""The identifier of a build: follows from what is built, is in the file, and survives what slicers do to names."""
+
+import re
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from amprep.model import TARGETS
+from amprep.threemf import write_build
+from amprep.threemf.build.identifier import identifier_of, identifiers_in, read_identifier, title_of
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_file_states_the_identifier_of_its_build(make_build, tmp_path, target):
+    build = make_build(target)
+    write_build(build, tmp_path / "job.3mf")
+    assert read_identifier(tmp_path / "job.3mf") == identifier_of(build)
+
+
+def test_equal_builds_have_one_identifier_and_others_have_others(make_build):
+    build = make_build()
+    moved = np.eye(4)
+    moved[0, 3] = 0.5
+    shifted = replace(build.parts[0], matrix=moved @ build.parts[0].matrix)
+    others = [
+        replace(build, settings=replace(build.settings, build_id="other.build-1")),
+        replace(build, parts=(shifted, *build.parts[1:])),
+        replace(build, supports=()),
+    ]
+    assert identifier_of(make_build()) == identifier_of(build)
+    assert len({identifier_of(each) for each in (build, *others)}) == 4
+
+
+@pytest.mark.parametrize("kept", ["[^0-9a-zA-Z]", r"[^\w.]", "[ ]"])
+def test_it_is_found_in_a_name_whose_special_characters_a_slicer_replaced(make_build, kept):
+    build = make_build()
+    name = re.sub(kept, "_", f"plate-2 ({title_of(build)})")
+    assert identifiers_in(f"{name}_id_0_copy_0") == [identifier_of(build)]
+
+
+def test_other_files_have_none(tmp_path):
+    text, archive = tmp_path / "text.3mf", tmp_path / "zip.3mf"
+    text.write_text("no zip", encoding="utf-8")
+    with zipfile.ZipFile(archive, "w") as package:
+        package.writestr("3D/3dmodel.model", "<model><resources/></model>")
+    assert [read_identifier(each) for each in (text, archive, tmp_path / "missing.3mf")] == [None] * 3
