@@ -1,5 +1,6 @@
 """Find profiles of printers and of materials: built-in ones, those of the project, and those of the user."""
 
+import json
 import os
 import re
 import sys
@@ -7,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Generic, Literal, Protocol, TypeVar
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from amprep.errors import JobError
 from amprep.validation import read_table
@@ -114,6 +115,16 @@ def stated_names(path: Path) -> list[str]:
     aliases = table.get("aliases", [])
     stated = [table.get("name"), *(aliases if isinstance(aliases, list) else [])]
     return [name for name in stated if isinstance(name, str)]
+
+
+def profile_text(record: Mapping[str, Any]) -> str:
+    """Return the text of a profile file with these keys; a key whose value is None is left out."""
+    lines = [
+        f"{key} = {json.dumps(value, ensure_ascii=False)}"
+        for key, value in record.items()
+        if value is not None
+    ]
+    return "\n".join([*lines, ""])
 
 
 def user_folder(env: Mapping[str, str], kind: str, platform: str = sys.platform) -> Path:

@@ -130,6 +130,8 @@ def test_documented_defaults_are_the_real_ones(name):
         plain = field.default is not MISSING and field.default not in (None, "", ())
         if plain and field.name not in BY_OTHER_KEYS:
             shown = f'"{field.default}"' if isinstance(field.default, str) else str(field.default)
+            if isinstance(field.default, tuple):
+                shown = f"[{', '.join(f'{value:g}' for value in field.default)}]"
             assert f"`{shown.lower() if isinstance(field.default, bool) else shown}`" in keys[field.name], (
                 field.name
             )

@@ -48,6 +48,8 @@ class BuildSettings:
         Type that a generic file gives to solid supports.
     sizes
         Sizes of supports that judges need, for bodies that state none.
+    plate_origin
+        Corner of the plate, x and y in mm, in the coordinates in which the target of the file places objects.
     """
 
     build_id: str
@@ -62,6 +64,7 @@ class BuildSettings:
     supported: bool = True
     supports_as: SupportsAs = "support"
     sizes: SupportSizes = field(default_factory=SupportSizes)
+    plate_origin: tuple[float, float] = (0.0, 0.0)
 
     def reach_of(self, body: "SupportBody") -> float:
         """Return the largest distance (mm) of a supported overhang from a contact of a body."""

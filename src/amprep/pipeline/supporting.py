@@ -16,6 +16,7 @@ from amprep.model import (
     Progress,
     Stop,
     SupportBody,
+    Target,
     Unsupported,
 )
 from amprep.model.summary import Summarised
@@ -28,6 +29,7 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import PlannedPass, TakenRegions, passes_of, plan_in_order, take_regions
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
+from amprep.printers.catalogue import Printer
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
 from amprep.supports.legs.short_legs import BuiltSupports, without_long_legs
@@ -323,7 +325,16 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         supported=job.supports.enabled,
         supports_as=job.supports.write_as,
         sizes=_sizes(job, pitch),
+        plate_origin=plate_origin(job.printer, job.target),
     )
+
+
+def plate_origin(printer: Printer, target: Target) -> tuple[float, float]:
+    """Return where files for a target place the corner of the plate of a printer, x and y in mm.
+
+    PrusaSlicer counts from the origin of the machine, other programs from the corner of the plate.
+    """
+    return printer.plate_origin if target == "prusaslicer" else (0.0, 0.0)
 
 
 def _sizes(job: Job, pitch: float) -> SupportSizes:

@@ -38,6 +38,8 @@ class PrinterProfile:
         Size of the build volume: x, y, z of a box, or diameter and height of a cylinder.
     zones
         Forbidden zones, each x0, y0, z0, x1, y1, z1 in build coordinates.
+    origin_mm
+        Corner of the plate in the coordinates of PrusaSlicer, whose origin may lie elsewhere on the bed.
     recoater_deg, gas_flow_deg
         Directions in which the recoater moves and the gas flows, in degrees from x to y; None for what is usual.
     source
@@ -49,6 +51,7 @@ class PrinterProfile:
     technology: Technology = "metal-powder-bed"
     shape: Literal["box", "cylinder"] = "box"
     zones: tuple[tuple[float, float, float, float, float, float], ...] = ()
+    origin_mm: tuple[float, float] = (0.0, 0.0)
     recoater_deg: float | None = None
     gas_flow_deg: float | None = None
     source: str = ""
@@ -56,6 +59,8 @@ class PrinterProfile:
     def __post_init__(self) -> None:
         require(min(self.size_mm) > 0, "size_mm must be above 0", list(self.size_mm))
         require(max(self.size_mm) <= 10_000, "size_mm must be at most 10000", list(self.size_mm))
+        far = max(map(abs, self.origin_mm))
+        require(far <= 10_000, "origin_mm must be within 10000 of 0", list(self.origin_mm))
         require_bounds(self, "recoater_deg", "gas_flow_deg", at_least=0, at_most=360)
         expected = "diameter and height" if self.shape == "cylinder" else "x, y and z"
         count = 2 if self.shape == "cylinder" else 3
@@ -81,6 +86,8 @@ class Printer:
         Source of its sizes.
     origin
         Whether the profile is built in, or belongs to the project, the user or the job.
+    plate_origin
+        Corner of the plate, x and y in mm, in the coordinates of PrusaSlicer.
     """
 
     name: str
@@ -90,6 +97,7 @@ class Printer:
     gas_flow_deg: float | None = None
     source: str = ""
     origin: Origin = "built-in"
+    plate_origin: tuple[float, float] = (0.0, 0.0)
 
     @property
     def packing_defaults(self) -> dict[str, Any]:
@@ -155,7 +163,8 @@ def printer_from_table(table: Mapping[str, Any], where: str, name: str, origin: 
         usual[0] if profile.recoater_deg is None else profile.recoater_deg,
         usual[1] if profile.gas_flow_deg is None else profile.gas_flow_deg,
     )
-    return Printer(profile.name or name, profile.technology, space, recoater, gas, profile.source, origin)
+    named = profile.name or name
+    return Printer(named, profile.technology, space, recoater, gas, profile.source, origin, profile.origin_mm)
 
 
 def _catalogue(folder: Path | None, env: Mapping[str, str]) -> Catalogue[Printer]:

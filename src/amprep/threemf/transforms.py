@@ -33,6 +33,18 @@ def inverse(matrix: Floats) -> Floats:
     return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
+def from_origin(matrix: Floats, origin: tuple[float, float]) -> Floats:
+    """Return a ``(4, 4)`` placement on the plate in coordinates in which the corner of the plate is at `origin`, mm."""
+    moved = matrix.copy()
+    moved[:2, 3] += origin
+    return moved
+
+
+def from_corner(matrix: Floats, origin: tuple[float, float]) -> Floats:
+    """Return the inverse of `from_origin`: a ``(4, 4)`` placement from the corner of the plate."""
+    return from_origin(matrix, (-origin[0], -origin[1]))
+
+
 def transform_exactly(vertices: Floats, matrix: Floats) -> Floats:
     """Return the transformed vertices, with the same bits on every machine.
 

@@ -1,5 +1,8 @@
 """Transforms of 3MF files are read and applied exactly."""
 
+import re
+import zipfile
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amprep.checks.ordered.order import Order, check_order
+from amprep.checks.printed.as_recorded import check_as_printed
 from amprep.model import Mesh
+from amprep.threemf import write_build
+from amprep.threemf.build.read import read_build_file
 from amprep.threemf.transforms import column_matrix, inverse, round_as_stored, row_matrix, transform_exactly
 
 FIELDS = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 10.0], [11.0, 12.0, 13.0]]
@@ -50,3 +57,35 @@ def test_rounding_as_stored_keeps_the_digest_and_is_idempotent(point):
     stored = round_as_stored(mesh.vertices)
     assert Mesh(stored, mesh.triangles).digest == mesh.digest
     np.testing.assert_array_equal(round_as_stored(stored), stored)
+
+
+def item_positions(path):
+    """Return the translation of each build item as the file states it."""
+    model = zipfile.ZipFile(path).read("3D/3dmodel.model").decode()
+    items = re.findall(r"<item[^>]*transform=\"([^\"]*)\"", model)
+    return np.array([[float(value) for value in item.split()[9:]] for item in items])
+
+
+def test_objects_for_prusaslicer_count_from_the_origin_of_the_machine(make_build, tmp_path):
+    build = make_build("prusaslicer", share=True)
+    moved = replace(build, settings=replace(build.settings, plate_origin=(-107.0, -93.5)))
+    for name, each in (("corner", build), ("middle", moved)):
+        write_build(each, tmp_path / f"{name}.3mf")
+    shift = item_positions(tmp_path / "middle.3mf") - item_positions(tmp_path / "corner.3mf")
+    np.testing.assert_allclose(shift, np.tile([-107.0, -93.5, 0.0], (2, 1)), atol=1e-5)
+    read = read_build_file(tmp_path / "middle.3mf")
+    assert read.build.settings.plate_origin == (-107.0, -93.5)
+    for found, expected in zip(read.build.parts, build.parts, strict=True):
+        np.testing.assert_allclose(found.matrix, expected.matrix, atol=1e-5)
+        assert found.moved_mm < 1e-4
+    for body, planned in zip(read.build.supports, build.supports, strict=True):
+        np.testing.assert_allclose(body.mesh.vertices, planned.mesh.vertices, atol=1e-5)
+    assert check_as_printed(read.build, read.printed) == []
+
+
+def test_a_file_for_another_origin_than_that_of_the_printer_is_not_as_ordered(make_build):
+    build = make_build("prusaslicer")
+    order = Order("BIBO", replace(build.settings, plate_origin=(-107.0, -93.0)))
+    assert check_order(build, Order("BIBO", build.settings)) == []
+    (found,) = check_order(build, order)
+    assert found.message == "the corner of the plate is at (0, 0) mm, ordered (-107, -93) mm"

@@ -48,7 +48,7 @@ def check_order(build: Build, order: Order) -> list[Violation]:
 
     Fewer copies than ordered are no violation, because a job may have several builds.
     """
-    found = _volume(build.settings.space, order)
+    found = [*_volume(build.settings.space, order), *_origin(build.settings, order)]
     found += [_violation("settings", each) for each in weaker_settings(most_lenient(build), order.settings)]
     if order.parts is None:
         return found
@@ -124,6 +124,16 @@ def _ordered_placed(placed: PlacedPart, part: Part | None) -> PlacedPart:
 
 def _violation(subject: str, each: Weaker) -> Violation:
     return Violation(PROMISE, subject, each.words("ordered"))
+
+
+def _origin(own: BuildSettings, order: Order) -> list[Violation]:
+    """Return a violation if the file has the corner of the plate elsewhere than the ordered printer."""
+    due = order.settings.plate_origin
+    if np.abs(np.subtract(own.plate_origin, due)).max() <= ROUNDING:
+        return []
+    places = [f"({x:g}, {y:g})" for x, y in (own.plate_origin, due)]
+    message = f"the corner of the plate is at {places[0]} mm, ordered {places[1]} mm"
+    return [Violation(PROMISE, "build volume", message)]
 
 
 def _volume(space: BuildVolume, order: Order) -> list[Violation]:

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from amprep.cli.catalogues.imported_printers import import_printers
 from amprep.cli.catalogues.profiles import ProfileCommands
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def _record(printer: "Printer") -> dict[str, Any]:
         "shape": space.shape,
         "size_mm": size,
         "zones": zones,
+        "origin_mm": list(printer.plate_origin),
         "recoater_deg": printer.recoater_deg,
         "gas_flow_deg": printer.gas_flow_deg,
         "source": printer.source,
@@ -70,3 +72,4 @@ app = ProfileCommands(
     unstated=("origin",),
     print_table=_print_table,
 ).app()
+app.command("import")(import_printers)

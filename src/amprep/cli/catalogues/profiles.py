@@ -79,6 +79,7 @@ class ProfileCommands(Generic[T]):
         if as_json:
             typer.echo(json.dumps(record, indent=2))
             return
-        for key, value in record.items():
-            if key not in self.unstated and value is not None:
-                typer.echo(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+        from amprep.profiles import profile_text
+
+        stated = {key: value for key, value in record.items() if key not in self.unstated}
+        typer.echo(profile_text(stated), nl=False)

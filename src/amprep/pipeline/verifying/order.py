@@ -14,7 +14,7 @@ from amprep.model.supports.sizes import SupportSizes
 from amprep.pipeline.reading import read_job
 from amprep.pipeline.resolve import ResolvedJob, resolve
 from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import build_settings, pitch_of
+from amprep.pipeline.supporting import build_settings, pitch_of, plate_origin
 from amprep.supports.grid.sizing import choose_pitch
 
 _MOST_FOR_CELL = 2.0
@@ -48,7 +48,9 @@ def settings_for(resolved: ResolvedJob, build: Build) -> BuildSettings:
         for own in (resolved.for_rule(number) for number in range(len(resolved.job.rules) + 1))
     ]
     sizes = reduce(SupportSizes.enlarged, (each.sizes for each in passes))
-    return replace(passes[0], reach=max(each.reach for each in passes), sizes=sizes)
+    origin = plate_origin(resolved.job.printer, build.settings.target)
+    reach = max(each.reach for each in passes)
+    return replace(passes[0], reach=reach, sizes=sizes, plate_origin=origin)
 
 
 def order_of_printer(build: Build, printer: str) -> Order:
@@ -60,7 +62,10 @@ def order_of_printer(build: Build, printer: str) -> Order:
         When there is no such printer.
     """
     job = override(job_from_inputs(["part.stl"]), {"printer": printer})
-    settings = replace(most_lenient(build), space=job.printer.space, printer=job.printer.name)
+    origin = plate_origin(job.printer, build.settings.target)
+    settings = replace(
+        most_lenient(build), space=job.printer.space, printer=job.printer.name, plate_origin=origin
+    )
     return Order(job.printer.name, settings)
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.checks.printed.found import PrintedFile
+from amprep.checks.printed.found import PrintedBody, PrintedFile
 from amprep.errors import InputError
 from amprep.model.build import Build, PlacedPart, StoredSupport, SupportBody
 from amprep.model.mesh import Mesh
@@ -20,6 +20,7 @@ from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
 from amprep.threemf.build.values import as_list, boolean, from_json, integer, integers, string, table
 from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
+from amprep.threemf.transforms import from_corner
 
 
 class BuildFile(NamedTuple):
@@ -66,11 +67,20 @@ def read_build_file(path: Path) -> BuildFile:
 def _as_printed(package: bytes, model: Any, build: Build, path: Path) -> PrintedFile:
     target = build.settings.target
     try:
-        return read_as_printed(package, model, target)
+        printed = read_as_printed(package, model, target)
     except ValueError as error:
         raise InputError(
             f"{path}: the target {target} cannot read it ({error}); write the build again"
         ) from error
+    x, y = build.settings.plate_origin
+    return replace(printed, bodies=tuple(_moved_by(each, -x, -y) for each in printed.bodies))
+
+
+def _moved_by(body: PrintedBody, x: float, y: float) -> PrintedBody:
+    """Return a body moved along the plate; only slicers have an origin elsewhere, and their files have no beams."""
+    if x == y == 0.0:
+        return body
+    return replace(body, mesh=Mesh(body.mesh.vertices + (x, y, 0.0), body.mesh.triangles))
 
 
 def _check_version(version: str | None, path: Path) -> None:
@@ -90,7 +100,8 @@ def _build(model: Any, metadata: BuildMetadata) -> Build:
     space = record.volume_of(_value(metadata.model, record.VOLUME))
     settings = record.settings_of(_value(metadata.model, record.SETTINGS), space)
     known = as_list(_value(metadata.model, record.PARTS), record.PARTS)
-    bodies = BodyReader(model).read([_value(item, record.BODIES) for item in metadata.items])
+    stored = BodyReader(model).read([_value(item, record.BODIES) for item in metadata.items])
+    bodies = [replace(each, matrix=from_corner(each.matrix, settings.plate_origin)) for each in stored]
     parts = _placed_parts([body for body in bodies if body.role == "part"], known)
     supports = tuple(
         _support(body, len(parts)) for body in _in_order([body for body in bodies if body.role == "support"])

@@ -85,7 +85,8 @@ def settings_record(settings: BuildSettings) -> JsonObject:
     names = ("build_id", "target", "printer", *_SETTING_NUMBERS, "supported", "supports_as")
     rules = {name: getattr(settings.rules, name) for name in _RULE_NAMES}
     sizes = {"sizes": asdict(settings.sizes)}
-    return {name: getattr(settings, name) for name in names} | rules | sizes
+    origin = {"plate_origin": list(settings.plate_origin)} if any(settings.plate_origin) else {}
+    return {name: getattr(settings, name) for name in names} | rules | sizes | origin
 
 
 def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
@@ -106,6 +107,9 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
     )
     supported = boolean(values, "supported")
     sizes = sizes_of(values.get("sizes", {}))
+    x, y = table(values, "plate_origin", 2).ravel().tolist() if "plate_origin" in values else (0.0, 0.0)
+    if not max(abs(x), abs(y)) <= LARGEST_COORDINATE:
+        raise ValueError(f"plate_origin must be within {LARGEST_COORDINATE:g} of 0")
     return BuildSettings(
         **strings,  # type: ignore[arg-type]
         **numbers,  # type: ignore[arg-type]
@@ -115,6 +119,7 @@ def settings_of(record: Any, space: BuildVolume) -> BuildSettings:
         supports_as=supports_as,
         space=space,
         sizes=sizes,
+        plate_origin=(x, y),
     )
 
 

@@ -19,7 +19,7 @@ from amprep.threemf.build.identifier import object_name, title_of
 from amprep.threemf.build.values import JsonObject, plain, xml_text
 from amprep.threemf.names import PRUSASLICER_NAMESPACE
 from amprep.threemf.slicer_volumes import PRUSASLICER_NAMES, SlicerVolume
-from amprep.threemf.transforms import inverse, round_as_stored, transform_exactly
+from amprep.threemf.transforms import from_origin, inverse, round_as_stored, transform_exactly
 from amprep.threemf.write.document import (
     BuildItem,
     Document,
@@ -90,7 +90,8 @@ def _merged(
         {**entry, "vertices": len(mesh.vertices), "triangles": len(mesh.triangles)}
         for entry, mesh in zip(records, meshes, strict=True)
     ]
-    return merged, BuildItem((PlacedObject(index, frame),), item_metadata(counted))
+    on_bed = from_origin(frame, build.settings.plate_origin)
+    return merged, BuildItem((PlacedObject(index, on_bed),), item_metadata(counted))
 
 
 def _further_part(

@@ -1,0 +1,1 @@
+"""Import printers from the profiles of slicers."""

@@ -1,0 +1,101 @@
+"""Read the printers in a file or folder of a slicer."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from amprep.errors import InputError
+from amprep.files import read_json
+from amprep.printers.catalogue import PrinterProfile
+from amprep.printers.imported.cura import SUFFIX, is_visible, read_definition
+from amprep.printers.imported.orcaslicer import is_printer, read_machine
+from amprep.printers.imported.prusaslicer import read_ini
+from amprep.printers.imported.texts import LARGEST_FILE
+
+
+def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
+    """Return the printers of a slicer's profile, or of all profiles in a folder.
+
+    Parameters
+    ----------
+    path
+        A configuration or bundle of PrusaSlicer or SuperSlicer (``.ini``), a profile of OrcaSlicer or Bambu Studio
+        (``.json``), a definition of Cura (``.def.json``), or a folder with such files.
+
+    Returns
+    -------
+    printers, warnings
+        Printers of different names, and one sentence for each file of a folder that could not be imported.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or has no printer.
+    """
+    read = cache(lambda path: read_json(path, "a profile", LARGEST_FILE))
+    if not path.is_dir():
+        return _named_apart(_of_file(path, read)), []
+    printers: list[PrinterProfile] = []
+    warnings: list[str] = []
+    for each in _files(path, read):
+        try:
+            printers += _of_file(each, read)
+        except InputError as error:
+            warnings.append(str(error))
+    if not printers:
+        raise InputError(
+            f"{path}: has no printer profiles of PrusaSlicer (.ini), OrcaSlicer (.json) or Cura (.def.json)"
+        )
+    return _named_apart(printers), warnings
+
+
+def _files(folder: Path, read: Any) -> Iterator[Path]:
+    """Yield the files of a folder that are printers; the parents of others are left out."""
+    for path in sorted(folder.rglob("*")):
+        if path.name.endswith(SUFFIX):
+            if is_visible(path, read):
+                yield path
+        elif path.suffix == ".json":
+            table = read(path)
+            if isinstance(table, dict) and table.get("type") == "machine" and is_printer(table):
+                yield path
+        elif path.suffix == ".ini":
+            yield path
+
+
+def _of_file(path: Path, read: Any) -> list[PrinterProfile]:
+    if path.name.endswith(SUFFIX):
+        return [read_definition(path, read)]
+    if path.suffix == ".json":
+        table = read(path)
+        if not isinstance(table, dict) or not is_printer(table):
+            raise InputError(f"{path}: is no printer of OrcaSlicer (one has printable_area, or inherits it)")
+        return [read_machine(table, path, read)]
+    if path.suffix == ".ini":
+        return read_ini(_text(path), path)
+    raise InputError(
+        f"{path}: expected a profile of PrusaSlicer (.ini), OrcaSlicer (.json) or Cura (.def.json)"
+    )
+
+
+def _text(path: Path) -> str:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path}: larger than {LARGEST_FILE} bytes")
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def _named_apart(printers: list[PrinterProfile]) -> list[PrinterProfile]:
+    """Return the printers, the first of each name; later ones with another bed get a number."""
+    found: dict[str, PrinterProfile] = {}
+    for each in printers:
+        name, number = each.name, 1
+        while name in found and replace(found[name], name="", source="") != replace(each, name="", source=""):
+            number += 1
+            name = f"{each.name} ({number})"
+        found.setdefault(name, replace(each, name=name))
+    return list(found.values())

@@ -1,0 +1,155 @@
+"""Printers come in from the profiles of PrusaSlicer, OrcaSlicer and Cura, with what they inherit."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from amprep.cli.catalogues.printers import app
+from amprep.errors import AmprepError, InputError
+from amprep.printers.catalogue import find_printer
+from amprep.printers.imported.read import read_printers
+
+BUNDLE = """
+[vendor]
+name = Maker
+[printer_model:M1]
+name = Maker One
+[printer_model:M2]
+name = Maker Two
+[printer:*common*]
+bed_shape = 0x0,250x0,250x210,0x210
+max_print_height = 200
+[printer:*tall*]
+max_print_height = 300
+[printer:M1 0.4]
+inherits = *common*
+printer_model = M1
+[printer:M1 0.6]
+inherits = M1 0.4
+[printer:M2 0.4]
+# the later parent has precedence
+inherits = *common*; *tall*
+printer_model = M2
+bed_shape = -100x-90,100x-90,100x90,-100x90
+[printer:M2 0.8]
+inherits = M2 0.4
+max_print_height = 290
+"""
+
+
+def saved(folder, name, content):
+    path = folder / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    return path
+
+
+def beds(path):
+    printers, warnings = read_printers(path)
+    assert warnings == []
+    return {each.name: (each.size_mm, each.origin_mm) for each in printers}
+
+
+def test_variants_of_a_model_with_the_same_bed_are_one_printer(tmp_path):
+    assert beds(saved(tmp_path, "maker.ini", BUNDLE)) == {
+        "Maker One": ((250.0, 210.0, 200.0), (0.0, 0.0)),
+        "M2 0.4": ((200.0, 180.0, 300.0), (-100.0, -90.0)),
+        "M2 0.8": ((200.0, 180.0, 290.0), (-100.0, -90.0)),
+    }
+
+
+def test_a_configuration_is_one_printer(tmp_path):
+    flat = "printer_settings_id = Mine\nbed_shape = 5x5,95x5,95x95,5x95\nmax_print_height = 80\nlayer_height = 0.2\n"
+    assert beds(saved(tmp_path, "config.ini", flat)) == {"Mine": ((90.0, 90.0, 80.0), (5.0, 5.0))}
+
+
+def test_orcaslicer_profiles_inherit_from_files_beside_them(tmp_path):
+    common = {"type": "machine", "name": "common", "instantiation": "false", "printable_area": ["0x0"]}
+    own = {"type": "machine", "name": "X", "inherits": "common", "printable_height": "250"}
+    area = ["0x0", "256x0", "256x256", "0x256"]
+    saved(tmp_path, "common.json", common)
+    corner = ["0x0", "18x0", "18x28", "0x28"]
+    saved(tmp_path, "X.json", {**own, "printable_area": area, "bed_exclude_area": corner})
+    saved(tmp_path, "X child.json", {"type": "machine", "name": "Y", "inherits": "X"})
+    assert beds(tmp_path) == dict.fromkeys(("X", "Y"), ((256.0, 256.0, 250.0), (0.0, 0.0)))
+    (zone,) = read_printers(tmp_path / "X child.json")[0][0].zones
+    assert zone == (0.0, 0.0, 0.0, 18.0, 28.0, 250.0)
+
+
+def test_cura_definitions_inherit_and_their_disallowed_areas_count_from_the_middle_to_the_front(tmp_path):
+    root = {"name": "root", "settings": {"machine": {"children": {"machine_height": {"default_value": 99}}}}}
+    own = {"name": "Ultra", "inherits": "root", "metadata": {"visible": True}, "overrides": {}}
+    own["overrides"] = {
+        "machine_width": {"default_value": 1, "value": "200"},
+        "machine_depth": {"default_value": 150, "value": "machine_width * 2"},
+        "machine_disallowed_areas": {"default_value": [[[-100, 75], [-90, 75], [-90, 60], [-100, 60]]]},
+        "machine_center_is_zero": {"default_value": True},
+    }
+    saved(tmp_path, "root.def.json", root)
+    saved(tmp_path, "ultra.def.json", own)
+    (printer,), _ = read_printers(tmp_path)
+    assert (printer.size_mm, printer.origin_mm) == ((200.0, 150.0, 99.0), (0.0, 0.0))
+    assert printer.zones == ((0.0, 0.0, 0.0, 10.0, 15.0, 99.0),)  # at the front, left
+
+
+def test_round_and_elliptic_beds_of_cura(tmp_path):
+    for width in (180, 120):
+        sizes = {
+            "machine_width": width,
+            "machine_depth": 180,
+            "machine_height": 300,
+            "machine_shape": "elliptic",
+        }
+        overrides = {key: {"default_value": value} for key, value in sizes.items()}
+        saved(tmp_path, f"d{width}.def.json", {"name": f"D{width}", "overrides": overrides})
+    assert read_printers(tmp_path / "d180.def.json")[0][0].shape == "cylinder"
+    ellipse = read_printers(tmp_path / "d120.def.json")[0][0]
+    assert ellipse.size_mm == (120.0, 180.0, 300.0)
+    assert len(ellipse.zones) > 20
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("a.ini", "layer_height = 1", "no printer"),
+        ("a.ini", "[printer:A]\ninherits = B\n[printer:B]\ninherits = A", "inherits from itself"),
+        ("a.ini", "[printer:A]\ninherits = Missing", "'Missing'"),
+        ("a.ini", "bed_shape = what", "corners"),
+        ("a.ini", "bed_shape = 0x0,9x0,9x9\nmax_print_height = high", "height"),
+        ("a.json", [], "no printer"),
+        ("a.json", "{", "not JSON"),
+        ("a.json", {"type": "machine", "inherits": "b"}, "'b'"),
+        ("a.json", {"type": "machine", "inherits": "a"}, "inherits from itself"),
+        ("a.def.json", [], "not a definition"),
+        ("a.def.json", {"inherits": "a"}, "inherits from itself"),
+        ("a.def.json", {"overrides": {"machine_width": {"default_value": "wide"}}}, "width"),
+        (
+            "a.def.json",
+            {"overrides": {"machine_disallowed_areas": {"default_value": [[1, 2, 3]]}}},
+            "corners",
+        ),
+        ("a.txt", "", "expected a profile"),
+    ],
+)
+def test_what_is_no_printer_is_refused_in_a_sentence(tmp_path, name, content, reason):
+    with pytest.raises(InputError, match=reason):
+        read_printers(saved(tmp_path, name, content))
+    with pytest.raises(InputError):
+        read_printers(tmp_path)
+
+
+def test_the_command_writes_profiles_that_jobs_can_name(tmp_path, monkeypatch):
+    source = saved(tmp_path, "maker.ini", BUNDLE)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "settings"))
+    run = CliRunner().invoke(app, ["import", str(source), "--json"])
+    assert len(json.loads(run.stdout)["files"]) == 3
+    printer = find_printer("m2 0.8", env={"XDG_CONFIG_HOME": str(tmp_path / "settings")})
+    assert (printer.space.size.tolist(), printer.plate_origin) == ([200.0, 180.0, 290.0], (-100.0, -90.0))
+    again = CliRunner().invoke(app, ["import", str(source), "--only", "maker one"])
+    assert isinstance(again.exception, AmprepError)
+    assert "--force" in str(again.exception)
+    forced = CliRunner().invoke(app, ["import", str(source), "--only", "maker one", "--force"])
+    assert forced.stdout.splitlines()[0] == "Maker One: 250 x 210 x 200 mm"
+    wrong = CliRunner().invoke(app, ["import", str(source), "--only", "makr one"])
+    assert "did you mean 'Maker One'" in str(wrong.exception)
