@@ -30,6 +30,9 @@ _SECTIONS = (80, 240)
 _FINE = 0.15
 """Height (mm) of the layers in which thin places are cut away."""
 
+_BEYOND = 0.6
+"""Distance (in layers) of the sections above and below a layer in which something was cut away from its middle."""
+
 _BESIDE = 0.1
 """Distance (mm) of sections from the lowest and highest points of pieces."""
 
@@ -66,8 +69,9 @@ NO_HOLES = np.empty((0, 3)), np.empty((0, 3))
 # Strategy. The sources of thin places (narrow overhangs, drain holes) are avoided before. What is left comes from
 # faces that cut cells and connectors at any place: borders of territories, walls of parts, the parts themselves, and
 # drain holes. Sections at few heights, of which each drain hole has one, tell where something is thin, and sections
-# close together tell there what is cut away, layer by layer. A rest that touches a part is one with the part, and
-# stays. Pieces that float then are dropped later.
+# close together tell there what is cut away, layer by layer, together with what led there: it may be so low that none
+# of these sections meets it. Sections just above and below the layers show what cuts have left there. A rest that
+# touches a part is one with the part, and stays. Pieces that float then are dropped later.
 
 
 class _Place(NamedTuple):
@@ -111,7 +115,12 @@ def without_thin_rests(
         if not cuts:
             break
         solid = _without(solid, cuts)
-        places = [finder.around((layer + 0.5) * _FINE, rest) for layer, rest in cuts.items()]
+        places = [
+            finder.around((layer + side * _BEYOND) * _FINE, rest)
+            for layer, rest in cuts.items()
+            for side in (-1, 1)
+            if side > 0 or layer - 1 not in cuts
+        ]
     return solid
 
 
@@ -141,12 +150,14 @@ def heights_through(low: Floats, high: Floats) -> list[float]:
 def _collect(
     finder: "_RestFinder", layer: int, around: "CrossSection", cuts: "dict[int, CrossSection]"
 ) -> None:
-    """Add the rests around a thin place, layer by layer, up and down as far as there are any, to `cuts`."""
+    """Add a thin place in a layer to `cuts`, and the rests around it, layer by layer, up and down as far as any are."""
     for first, way in ((layer, -1), (layer + 1, 1)):
         each, last = first, around
         while True:
             known = cuts.get(each)
             rest = _beyond(finder.rests(finder.around(each * _FINE, last)), known)
+            if each == layer:
+                rest = around if rest is None else rest + around
             if rest is None and each != first:
                 break
             if rest is not None:

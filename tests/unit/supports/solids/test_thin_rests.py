@@ -47,6 +47,12 @@ def test_a_short_thin_end_between_the_even_sections_is_found():
     assert (left ^ box((5.4, 0.4, 3.02), (5.7, 1.6, 3.3))).volume() < 0.005
 
 
+def test_a_thin_place_so_low_that_the_sections_around_it_miss_it_is_cut_away():
+    crumb = box((2.9, 1, 4.6), (6, 1.1, 4.64))
+    left = cut(BLOCK + crumb)
+    assert (left - BLOCK).volume() < 0.2 * (crumb - BLOCK).volume()
+
+
 def test_what_touches_a_part_stays():
     part = box((5.1, 0, 0), (8, 3, 10))
     sliver = box((5, 0, 0), (5.11, 3, 10))
