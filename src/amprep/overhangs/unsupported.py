@@ -1,18 +1,21 @@
 """List the overhangs that no support holds, by region and reason."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Ints
+from amprep.arrays import CONTACT_TOLERANCE, Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.sampling import OverhangSamples, sample_overhangs, triangle_areas
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.supports.rules import OverhangRules
 from amprep.overhangs.contacts import find_held, sample_spacing
 from amprep.overhangs.of_part import PartOverhangs
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 ReasonsAt = Callable[[int, Floats], Sequence[str]]
 """Returns the reasons for points ``(n, 3)`` mm on a part's unsupported overhangs; called with the part's index."""
@@ -126,15 +129,14 @@ class _RegionCoverage(NamedTuple):
 
     def measure(self, chosen: Ints) -> float:
         """Return the area or length of the region that the chosen samples represent."""
-        own = self.samples.region == self.samples.region[chosen[0]]
-        inner = self.samples.inner & own
-        if not inner.any():
-            return float(self.region.measure * len(chosen) / own.sum())
-        lattice_area = self.region.measure / inner.sum()
-        found = inner[chosen].sum()
-        return float(lattice_area * found) if found else self._rim_measure(chosen, own, lattice_area)
+        inner, count = self.samples.inner, np.count_nonzero(self.samples.inner)
+        if not count:
+            return float(self.region.measure * len(chosen) / len(inner))
+        lattice_area = self.region.measure / count
+        found = np.count_nonzero(inner[chosen])
+        return float(lattice_area * found) if found else self._rim_measure(chosen, lattice_area)
 
-    def _rim_measure(self, chosen: Ints, own: Bools, lattice_area: float) -> float:
+    def _rim_measure(self, chosen: Ints, lattice_area: float) -> float:
         """Return the area that samples on rims represent: of triangles without lattice points, or strips beside rims.
 
         A strip ends half-way to the nearest sample that is held.
@@ -142,11 +144,11 @@ class _RegionCoverage(NamedTuple):
         from scipy.spatial import KDTree
 
         samples = self.samples
-        face, count = np.unique(samples.face[own], return_counts=True)
+        face, count = np.unique(samples.face, return_counts=True)
         at = np.searchsorted(face, samples.face[chosen])
         area = self.areas[samples.face[chosen]] / count[at]
-        in_strip = np.isin(samples.face[chosen], samples.face[own & samples.inner])
-        held = samples.points[own & self.held]
+        in_strip = np.isin(samples.face[chosen], samples.face[samples.inner])
+        held = samples.points[self.held]
         if in_strip.any() and len(held):
             width = KDTree(held).query(samples.points[chosen[in_strip]])[0] / 2.0
             whole = self.areas[samples.face[chosen[in_strip]]]
@@ -159,40 +161,40 @@ class _RegionCoverage(NamedTuple):
         A minor patch is smaller than the smallest area (or length), and beside it the part is held at a point
         that is no higher: the part does not start in the air there. A tip is never minor.
         """
+        from scipy.spatial import KDTree
+
         rules, near = self.rules, self.reach / 2
         smallest = {"face": rules.min_area_mm2, "edge": rules.min_length_mm, "tip": 0.0}[self.region.feature]
         minor = np.zeros(len(left), np.bool_)
-        if smallest <= 0.0:
+        points = self.samples.points
+        held = points[self.held]
+        if smallest <= 0.0 or not len(held):
             return minor
-        points, number = self.samples.points, self.samples.region[left[0]]
-        held = points[self.held & (self.samples.region == number)]
-        patch = _patches(points[left], near)
-        for label in range(int(patch.max(initial=-1)) + 1):
-            own = patch == label
+        tree = KDTree(held)
+        for own in _patches(points[left], near):
             is_small = self.measure(left[own]) < smallest
-            minor[own] = is_small and _is_held_as_low(points[left[own]], held, near)
+            minor[own] = is_small and _is_held_as_low(points[left[own]], tree, near)
         return minor
 
 
-def _patches(points: Floats, distance: float) -> Ints:
-    """Label points ``(n, 3)``; points at most `distance` mm apart have the same label."""
+def _patches(points: Floats, distance: float) -> list[Int64s]:
+    """Return the indices of connected points ``(n, 3)``; points at most `distance` mm apart are connected."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     pairs = KDTree(points).query_pairs(distance, output_type="ndarray")
     graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(len(points), len(points)))
-    return np.asarray(connected_components(graph, directed=False)[1])
+    label = connected_components(graph, directed=False)[1]
+    order = np.argsort(label, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
-def _is_held_as_low(patch: Floats, held: Floats, near: float) -> bool:
+def _is_held_as_low(patch: Floats, held: "KDTree", near: float) -> bool:
     """Tell whether a held point within `near` mm of the patch is no higher than the lowest point of the patch."""
-    from scipy.spatial import KDTree
-
-    if not len(held):
-        return False
-    distance, _ = KDTree(patch).query(held, distance_upper_bound=near)
-    lowest = held[np.isfinite(distance), 2].min(initial=np.inf)
+    found = held.query_ball_point(patch, near)
+    around = np.unique(np.concatenate([np.asarray(each, np.int64) for each in found]))
+    lowest = held.data[around, 2].min(initial=np.inf)
     return bool(lowest <= patch[:, 2].min() + CONTACT_TOLERANCE)
 
 

@@ -1,6 +1,7 @@
 """The support layout: everything planned for a whole build, ready for the cells."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -90,27 +91,37 @@ class SupportLayout:
         the grid is in the columns on both sides: an unconnected square tells most, and no square at all least.
         """
         sides = [
-            self._reasons_at(part, points + (dx, dy, 0.0))
+            self._ranks_at(part, points + (dx, dy, 0.0))
             for dx in (-CONTACT_TOLERANCE, CONTACT_TOLERANCE)
             for dy in (-CONTACT_TOLERANCE, CONTACT_TOLERANCE)
         ]
-        return tuple(min(own, key=_BY_PRECEDENCE.index) for own in zip(*sides, strict=True))
+        return tuple(_BY_PRECEDENCE[rank] for rank in np.min(sides, axis=0).tolist())
 
-    def _reasons_at(self, part: int, points: Floats) -> list[str]:
-        """Return the reason at each point from the column that contains it."""
+    def _ranks_at(self, part: int, points: Floats) -> Int64s:
+        """Return the reason at each point from the column that contains it, as an index of `_BY_PRECEDENCE`."""
+        ranks = np.full(len(points), _BY_PRECEDENCE.index(NO_FREE_VOXEL_BELOW))
         red_squares = np.flatnonzero(self.red.part == part)
+        if not len(red_squares):
+            return ranks
         key = self._heights(self.red.square[red_squares])
         order = np.argsort(key)
         size = (self.grid.pitch, self.grid.pitch, self.grid.step)
         voxel = np.floor((points - self.grid.origin) / size + (0.0, 0.0, 0.5)).astype(np.int64)[:, ::-1]
         below = np.searchsorted(key[order], self._heights(voxel), side="right") - 1
-        reasons = [NO_FREE_VOXEL_BELOW] * len(points)
-        for i in np.flatnonzero(below >= 0):
-            red = red_squares[order[below[i]]]
-            within = voxel[i, 0] <= self.red.square[red, 0] + self.red.rise[red]
-            if within and (self.red.square[red, 1:] == voxel[i, 1:]).all():
-                reasons[i] = CONNECTOR_BLOCKED if self.connected[red] else self.reasons[red]
-        return reasons
+        red = red_squares[order[np.maximum(below, 0)]]
+        within = (below >= 0) & (voxel[:, 0] <= self.red.square[red, 0] + self.red.rise[red])
+        within &= (self.red.square[red, 1:] == voxel[:, 1:]).all(axis=1)
+        ranks[within] = self._rank_of_red[red[within]]
+        return ranks
+
+    @cached_property
+    def _rank_of_red(self) -> Int64s:
+        """Index in `_BY_PRECEDENCE` of what each red square says about overhangs without a contact above it."""
+        words = [
+            CONNECTOR_BLOCKED if connected else reason
+            for connected, reason in zip(self.connected.tolist(), self.reasons, strict=True)
+        ]
+        return np.array([_BY_PRECEDENCE.index(each) for each in words], np.int64)
 
     def _heights(self, square: Ints | Int64s) -> Int64s:
         """Return numbers that order squares ``(n, 3)`` by column, and upwards in each column."""

@@ -139,9 +139,11 @@ def _route_spaced(
     )
     network = every.only(chosen)
     routed = _route(network, rules, progress)
+    if every.stop():
+        return network, routed, close[chosen]
     lost = np.flatnonzero(chosen)[[reason != "" for reason in routed.reasons]]
     more = ~chosen & are_beside(red, lost[reachable[lost]], steps_within(spacing, every.laid.grid.pitch))
-    if more.any() and not every.stop():
+    if more.any():
         chosen = chosen | more
         network = every.only(chosen)
         routed = _route(network, rules, progress)

@@ -122,10 +122,14 @@ def steps_within(distance: float, pitch: float) -> int:
 
 def are_beside(red: RedSquares, numbers: Ints, steps: int) -> Bools:
     """Tell which red squares are at most `steps` columns and planes from one of the numbered ones of their part."""
+    from scipy.spatial import cKDTree
+
     beside = np.zeros(len(red.part), np.bool_)
-    for number in numbers.tolist():
-        distance = np.abs(red.square - red.square[number]).max(axis=1)
-        beside |= (distance <= steps) & (red.part == red.part[number])
+    for part in np.unique(red.part[numbers]):
+        mine = np.flatnonzero(red.part == part)
+        tree = cKDTree(red.square[numbers[red.part[numbers] == part]])
+        distance, _ = tree.query(red.square[mine], p=np.inf, distance_upper_bound=steps + 0.5)
+        beside[mine] = np.isfinite(distance)
     return beside
 
 

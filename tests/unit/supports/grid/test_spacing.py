@@ -21,7 +21,8 @@ import amprep
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.model import Part
 from amprep.model.supports import OUT_OF_TIME, SupportEdges, SupportPlan, Unconnected
-from amprep.supports.grid.spacing import steps_within
+from amprep.supports.grid.red_squares import RedSquares
+from amprep.supports.grid.spacing import are_beside, steps_within
 
 SPACING, HEIGHT = 2.0, 4.0
 
@@ -178,3 +179,16 @@ def test_the_steps_within_a_distance_are_as_many_as_fit(distance, pitch):
     steps = steps_within(distance, pitch)
     assert steps == 1 or steps * pitch <= distance + 1e-6
     assert (steps + 1) * pitch > distance - 1e-6
+
+
+@examples(20)
+@given(st.integers(0, 100_000), st.integers(1, 4))
+def test_squares_beside_others_are_those_that_all_distances_find(seed, steps):
+    rng = np.random.default_rng(seed)
+    square, part = rng.integers(0, 12, (60, 3)), np.sort(rng.integers(0, 3, 60))
+    nothing = np.zeros(60, np.int64)
+    red = RedSquares(**dict.fromkeys(RedSquares._fields, nothing) | {"square": square, "part": part})
+    numbers = rng.choice(60, rng.integers(0, 8), replace=False)
+    distance = np.abs(square[:, None] - square[numbers]).max(axis=2)
+    expected = ((distance <= steps) & (part[:, None] == part[numbers])).any(axis=1)
+    assert are_beside(red, numbers, steps).tolist() == expected.tolist()
