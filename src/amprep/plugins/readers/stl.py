@@ -29,7 +29,8 @@ def read_stl(content: bytes, path: Path) -> tuple[Floats, tuple[str, ...]]:
             f"{path}: not an STL file: shorter than {_HEADER} bytes, and it does not begin with 'solid'"
         )
     check_count(count, _RECORD.itemsize, len(content) - _HEADER, "triangles", path)
-    corners = np.frombuffer(content, _RECORD, count, _HEADER)["corners"].astype(np.float64)
+    with np.errstate(invalid="ignore"):  # signalling NaN, which the next check refuses
+        corners = np.frombuffer(content, _RECORD, count, _HEADER)["corners"].astype(np.float64)
     left = len(content) - _HEADER - count * _RECORD.itemsize
     return corners, (f"ignored {left} bytes after the last triangle",) if left else ()
 

@@ -164,6 +164,7 @@ def gltf(document):
         ("a.stl", BINARY[:-1], "incomplete"),
         ("a.stl", BINARY[:80] + b"\xff\xff\xff\xff" + BINARY[84:], "declares 4294967295 triangles"),
         ("a.stl", with_nan(BINARY), "non-finite"),
+        ("a.stl", BINARY[:96] + bytes.fromhex("0000a07f") + BINARY[100:], "non-finite"),  # signalling NaN
         ("a.stl", ASCII[:2000], "incomplete"),
         ("a.stl", ASCII.replace(b"vertex ", b"vertex nan ", 1), "three numbers"),
         ("a.stl", ASCII.replace(b"vertex ", b"vertex x", 1), "three numbers"),
