@@ -1,12 +1,15 @@
 """Make a new plugin package from the templates of amprep."""
 
 import keyword
+import os
 import re
+import shutil
 import sys
 from pathlib import Path
 from string import Template
 
 from amprep.errors import PluginError, nearest_hint
+from amprep.files import make_temporary_folder, remove_abandoned
 from amprep.host.offers import KINDS
 
 TEMPLATES = Path(__file__).parent.parent / "templates"
@@ -22,6 +25,9 @@ _CHOICE = {
 
 def make_plugin(name: str, kind: str, output: Path) -> Path:
     """Make a plugin that works and whose tests pass in the folder `output`/`name`, and return this folder.
+
+    The folder appears when all files are in it. Before, it is inside a hidden folder, which the next call removes if
+    this one is killed.
 
     Raises
     ------
@@ -44,10 +50,24 @@ def make_plugin(name: str, kind: str, output: Path) -> Path:
         "choice": _CHOICE[kind].format(offer=offer),
     }
     try:
-        _write(folder, kind, module, words)
+        _make_at_once(folder, kind, module, words)
     except OSError as error:
         raise PluginError(f"{folder} cannot be made: {error.strerror or error}") from error
     return folder
+
+
+def _make_at_once(folder: Path, kind: str, module: str, words: dict[str, str]) -> None:
+    """Write all files of a plugin, and let its folder appear."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    remove_abandoned(folder.parent)
+    hidden, lock = make_temporary_folder(folder.parent)
+    try:
+        _write(hidden / folder.name, kind, module, words)
+        (hidden / folder.name).rename(folder)
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
 
 
 def _module_name(name: str) -> str:

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from amprep.cli.catalogues.plugins import app
 from amprep.errors import PluginError
-from amprep.host import KINDS, Host
+from amprep.host import KINDS, Host, scaffold
 from amprep.host.scaffold import make_plugin
 from amprep.testing import LoadedOffer, try_offer, try_plugin
 
@@ -67,6 +67,22 @@ def test_nothing_is_overwritten_and_an_unknown_kind_is_refused(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(PluginError, match="cannot be made"):
         make_plugin("other", "packer", tmp_path / "file")
+
+
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_a_plugin_appears_with_all_files_or_not_at_all(tmp_path, monkeypatch, failure):
+    save, saved = scaffold._save, []
+
+    def fail_at_the_third(path, text):
+        saved.append(path)
+        if len(saved) == 3:
+            raise failure
+        save(path, text)
+
+    monkeypatch.setattr(scaffold, "_save", fail_at_the_third)
+    with pytest.raises((PluginError, KeyboardInterrupt)):
+        make_plugin("rows", "packer", tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 BROKEN = """
