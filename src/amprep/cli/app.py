@@ -11,6 +11,7 @@ from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
 from amprep.cli.jobs import run, support
+from amprep.cli.setup import demo, doctor, init, schema
 
 app = typer.Typer(
     name="amprep",
@@ -26,6 +27,10 @@ app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
 app.command("inspect")(inspection.inspect)
+app.command("init")(init.init)
+app.command("schema")(schema.schema)
+app.command("demo")(demo.demo)
+app.command("doctor")(doctor.doctor)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")

@@ -10,6 +10,8 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
+from amprep.cli import completion
+
 _JOB, _OUTPUT, _PLUGINS = "Settings of the job", "Output", "Plugins"
 
 Plugins = Annotated[
@@ -89,7 +91,12 @@ class JobOptions(ReadingOptions):
     """Options of every command that takes a job: `run`, `support` and `lattice`."""
 
     cell: Annotated[
-        str | None, job_option("--cell", help="Lattice cell by name, or a file that declares one.")
+        str | None,
+        job_option(
+            "--cell",
+            help="Lattice cell by name, or a file that declares one.",
+            autocompletion=completion.cells,
+        ),
     ] = None
     lattice: Annotated[
         str | None,
@@ -115,6 +122,13 @@ class JobOptions(ReadingOptions):
             help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
         ),
     ] = None
+    name: Annotated[
+        str | None,
+        output_option(
+            "--name",
+            help="Name of the job and its files; default: the job file, the only input, or the folder of all inputs.",
+        ),
+    ] = None
     output: Annotated[
         Path | None,
         output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
@@ -131,12 +145,16 @@ class JobOptions(ReadingOptions):
     ] = False
     plugins: Plugins = None
     no_plugins: NoPlugins = False
+    log: Annotated[
+        Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
+    ] = None
     debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
 
     @property
     def changes(self) -> dict[str, Any]:
         """The settings of the job that options change, by dotted keys; None where an option is not given."""
         return {
+            "name": self.name,
             "cells.strategy": self.cell,
             "cells.lattice": self.lattice,
             "target": self.target,
@@ -150,13 +168,24 @@ class BuildOptions(JobOptions):
 
     printer: Annotated[
         str | None,
-        job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
+        job_option(
+            "--printer",
+            help="Printer by name or profile file; see 'amprep printers list'.",
+            autocompletion=completion.printers,
+        ),
     ] = None
     material: Annotated[
         str | None,
-        job_option("--material", help="Material by name or profile file; see 'amprep materials list'."),
+        job_option(
+            "--material",
+            help="Material by name or profile file; see 'amprep materials list'.",
+            autocompletion=completion.materials,
+        ),
     ] = None
-    router: Annotated[str | None, job_option("--router", help="Support router by name.")] = None
+    router: Annotated[
+        str | None,
+        job_option("--router", help="Support router by name.", autocompletion=completion.routers),
+    ] = None
     connector: Annotated[
         str | None,
         job_option(
@@ -175,6 +204,9 @@ class BuildOptions(JobOptions):
             help="Type of supports in a generic file: support (default) or model.",
         ),
     ] = None
+    open_report: Annotated[
+        bool, output_option("--open", help="Open the report in the browser when the files are written.")
+    ] = False
     seed: Annotated[int | None, job_option("--seed", help="Seed of the random numbers; default 0.")] = None
     time_limit: Annotated[
         float | None,

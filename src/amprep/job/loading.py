@@ -1,5 +1,6 @@
 """Make a job from a job file or from inputs alone, and check that every key is known, typed and within its bounds."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
@@ -20,8 +21,13 @@ from amprep.typed import convert, make
 from amprep.validation import read_table
 
 T = TypeVar("T")
+
+_LONGEST_NAME = 100
+"""Largest number of characters in the name of a job."""
+
 TERRITORY_DEFAULTS = {"territory": "own", "drift_ratio": 1 / 3, "drift_mm": 15.0}
 KEYS = (
+    "name",
     "printer",
     "material",
     "seed",
@@ -86,8 +92,18 @@ def job_from_inputs(inputs: Sequence[str | Path], source: str = "command line") 
         When there are no inputs, or a quantity is out of bounds.
     """
     table = {"inputs": [str(each) for each in inputs]}
-    first = parse_input(str(inputs[0]), "inputs").path if inputs else Path("job")
-    return _with_inputs(make_job(table, name=first.resolve().stem or "job", folder=None, source=source))
+    return _with_inputs(make_job(table, name=_name_of(inputs), folder=None, source=source))
+
+
+def _name_of(inputs: Sequence[str | Path]) -> str:
+    """Return the name of a job without a file: the only input, or else the folder that contains all of them."""
+    paths = [parse_input(str(each), "inputs").path.resolve() for each in inputs]
+    if len(paths) == 1:
+        return (paths[0].name if paths[0].is_dir() else paths[0].stem) or "job"
+    try:
+        return Path(os.path.commonpath([path.parent for path in paths])).name or "job"
+    except ValueError:  # no path, or paths on different drives
+        return "job"
 
 
 def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source: str) -> Job:
@@ -98,7 +114,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
     table
         Keys and values as in a job file.
     name
-        Name of the job; the output files are named after it.
+        Name of the job if the table states none; the output files are named after it.
     folder
         Folder where relative paths start; None for the current folder.
     source
@@ -124,7 +140,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
     )
     cells = _cells(table, folder, source)
     return Job(
-        name=name,
+        name=_stated_name(table, source) or name,
         inputs=_inputs(table, parts, folder, source),
         printer=printer,
         folder=folder,
@@ -140,6 +156,17 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
         source=source,
         table=table,
     )
+
+
+def _stated_name(table: Mapping[str, Any], source: str) -> str:
+    """Return the key ``name``, which must be usable in names of files; empty if it is not there."""
+    name: str = convert(table.get("name", ""), str, f"{source}: name")
+    usable = len(name) <= _LONGEST_NAME and name.isprintable() and not name.startswith(".")
+    if not usable or set(name) & set('/\\:*?"<>|') or ("name" in table and not name.strip()):
+        raise JobError(
+            f"{source}: name must have 1 to {_LONGEST_NAME} characters that names of files may have, got {name[:80]!r}"
+        )
+    return name
 
 
 def parse_input(text: str, where: str) -> InputSpec:

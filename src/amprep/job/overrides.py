@@ -1,6 +1,6 @@
 """Change settings of a job: by dotted keys from Python, or by ``--set KEY=VALUE`` from the command line."""
 
-import re
+import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,7 +10,9 @@ from amprep.errors import JobError
 from amprep.job.loading import make_job
 from amprep.job.settings.job import Job
 
-_UNQUOTED_WORD = re.compile(r"[A-Za-z_][\w.+-]*")
+_OPENING = ('"', "'", "[", "{")
+"""A value that begins with one of these and is no TOML value is not complete, and no text."""
+
 _PARAMS_OF = {
     "packing.strategy": "packing.params",
     "supports.strategy": "supports.params",
@@ -22,7 +24,7 @@ _NAME_OR_FILE = ("printer", "material", "cells.strategy")
 def apply_sets(job: Job, sets: Sequence[str]) -> Job:
     """Return the job with each ``KEY=VALUE`` set; keys are dotted, values are written as in TOML.
 
-    A word without quotation marks is a text: ``cells.strategy=prism``.
+    What is no TOML value is a text: ``cells.strategy=my cell.stl``.
 
     Raises
     ------
@@ -88,12 +90,18 @@ def _parsed(text: str) -> dict[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or "\n" in text:
         raise JobError(f"--set: expected key=value, for example supports.pitch_mm=0.8, got {text!r}")
-    for candidate in (value, f'"{value.strip()}"' if _UNQUOTED_WORD.fullmatch(value.strip()) else value):
+    for candidate in (value, _quoted(value)):
         try:
             return tomllib.loads(f"{key} = {candidate}")
         except (tomllib.TOMLDecodeError, RecursionError):
             continue
     raise JobError(f'--set {text}: expected a TOML value: a number, true, false, "text" or a [list]')
+
+
+def _quoted(value: str) -> str:
+    """Return a value as a TOML text, unless it begins like another TOML value."""
+    text = value.strip()
+    return value if text.startswith(_OPENING) or not text else json.dumps(text, ensure_ascii=False)
 
 
 def _merged(table: Mapping[str, Any], change: Mapping[str, Any], where: str) -> dict[str, Any]:

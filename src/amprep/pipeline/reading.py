@@ -1,5 +1,7 @@
 """Read the inputs of a job: expand folders, repair meshes, make names unique and apply the part settings."""
 
+import os
+import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,19 +19,26 @@ from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.unit_question import with_unit_question
 
+_OF_A_RUN = re.compile(r"\.build-\d+\.")
+"""In the names of files that amprep writes."""
+
+_MOST_FILES = 10_000
+"""Largest number of files in a folder and its subfolders."""
+
 
 def expand_inputs(
     inputs: Sequence[tuple[Path, int | None]], suffixes: Collection[str]
 ) -> list[tuple[Path, int | None]]:
     """Return the files to read with their counts, in order.
 
-    A folder is replaced by its files with a known suffix, sorted by name; files in its subfolders are not read. The
-    count of a folder applies to each of its files.
+    A folder is replaced by its files with a known suffix and those of its subfolders, sorted by path. Hidden files and
+    folders, links to folders, and build files of earlier runs are left out. The count of a folder applies to each of
+    its files.
 
     Raises
     ------
     InputError
-        When a path does not exist, or a folder has no file to read.
+        When a path does not exist, or a folder has no file to read or too many.
     """
     return [(file, count) for path, count in inputs for file in _expand(path, suffixes)]
 
@@ -128,13 +137,21 @@ def _expand(path: Path, suffixes: Collection[str]) -> list[Path]:
 
 
 def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
-    files = [file for file in sorted(folder.iterdir()) if file.suffix.lower() in suffixes and file.is_file()]
-    files = [file for file in files if not file.name.startswith(".")]
-    if not files:
+    """Return the files to read in a folder and its subfolders, sorted by path."""
+    found: list[Path] = []
+    for here, folders, names in os.walk(folder):
+        folders[:] = sorted(each for each in folders if not each.startswith("."))
+        paths = [Path(here, name) for name in names if not (name.startswith(".") or _OF_A_RUN.search(name))]
+        found += [path for path in paths if path.suffix.lower() in suffixes and path.is_file()]
+        if len(found) > _MOST_FILES:
+            raise InputError(
+                f"{folder}: more than {_MOST_FILES} files to read; name the folders with the parts"
+            )
+    if not found:
         raise InputError(
             f"{folder}: no file to read in this folder (known suffixes: {', '.join(sorted(suffixes))})"
         )
-    return files
+    return sorted(found)
 
 
 def _where(part: Part) -> str:

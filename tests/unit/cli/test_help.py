@@ -51,6 +51,7 @@ def test_an_option_of_several_commands_has_the_same_help():
 DIFFERENT = {
     "--output": "a folder, a folder or file, or the folder of a package",
     "-o": "as --output",
+    "--dry-run": "a run is planned, an import listed",
     "--json": "the report of a run, or another result",
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",

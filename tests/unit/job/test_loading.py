@@ -113,7 +113,7 @@ def test_inputs_may_carry_a_quantity(tmp_path, monkeypatch):
     job = job_from_inputs(["parts/a.stl:3", "b.stl", "odd:7", "odd:7:2", "c:/d.stl"])
     found = [(spec.path.as_posix(), spec.quantity) for spec in job.inputs]
     assert found == [("parts/a.stl", 3), ("b.stl", None), ("odd:7", None), ("odd:7", 2), ("c:/d.stl", None)]
-    assert (job.name, job.folder) == ("a", None)
+    assert (job.name, job.folder) == (tmp_path.name, None)
     with pytest.raises(JobError, match="nothing to print"):
         job_from_inputs([])
 
@@ -128,3 +128,33 @@ def test_a_cell_may_be_a_file_beside_the_job(job_file, tmp_path):
     (tmp_path / "cell.stl").touch()
     job = load_job(job_file('[cells]\nstrategy = "cell.stl"'))
     assert job.cells.file == (tmp_path / "cell.stl").resolve()
+
+
+@pytest.mark.parametrize(
+    ("inputs", "name"),
+    [
+        (["parts/bracket.stl:4"], "bracket"),
+        (["parts"], "parts"),
+        (["parts/a.stl", "parts/b.stl"], "parts"),
+        (["parts/x/a.stl", "parts/y/b.stl"], "parts"),
+        (["parts/x/a.stl", "other/b.stl"], "here"),
+    ],
+)
+def test_a_job_without_a_file_is_named_after_its_only_input_or_the_folder_of_all(
+    tmp_path, monkeypatch, inputs, name
+):
+    (tmp_path / "here" / "parts").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "here")
+    job = job_from_inputs(inputs)
+    assert job.name == name
+    assert override(job, {"name": "tray 7"}).name == "tray 7"
+
+
+def test_a_job_file_may_state_its_name(job_file):
+    assert load_job(job_file('name = "tray 7"\n')).name == "tray 7"
+
+
+@pytest.mark.parametrize("name", ["", " ", "a/b", "..", ".hidden", "a\\b", "a:b", "x" * 101, "a\nb"])
+def test_a_name_that_no_file_may_have_is_refused(name):
+    with pytest.raises(JobError, match="name must have 1 to 100 characters"):
+        override(job_from_inputs(["a.stl"]), {"name": name})

@@ -31,7 +31,7 @@ def import_printers(
         Path | None,
         typer.Option("-o", "--output", help="Folder for the profiles; default: your configuration folder."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace profiles that exist.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="List the printers, but write nothing.")] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -1,7 +1,7 @@
 """Make the job of a command, call the public API with progress bars, and print the result."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import typer
 
 from amprep import cli
+from amprep.cli.log import logging_to
 from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
 
 if TYPE_CHECKING:
@@ -57,12 +58,13 @@ def call_api(
     console = Console(stderr=True, quiet=options.quiet)
     if job.printer_is_default and isinstance(options, BuildOptions):
         console.print(f"[dim]no printer given, using {job.printer.name}; see 'amprep printers list'")
-    with Bars(console) as bars:
+    with logging_to(options.log) as log, Bars(console, log) as bars:
         with bars.stage("start"):
             from amprep import api  # importing it takes most of the start
 
             host = Host.load(modules=options.plugins or [], plugins_enabled=not options.no_plugins)
         for warning in host.warnings:
+            log(f"warning: {warning}")
             console.print(f"warning: {warning}", markup=False)
         return getattr(api, function)(job, plugins=host, watcher=bars, **own)
 
@@ -79,7 +81,16 @@ def build_and_report(
     from amprep.report.terminal import summary
 
     folder = _shown(folder_of(inputs, options))
+    if options.open_report:
+        _open(folder, record.report_files)
     finish(record, to_json, lambda shown: summary(shown, folder), options)
+
+
+def _open(folder: Path, names: Sequence[str]) -> None:
+    """Open the page among the reports in the browser; a dry run has none."""
+    for name in names:
+        if name.endswith(".html"):
+            typer.launch(str(folder / name))
 
 
 def explain_and_report(inputs: list[str], part: str, options: BuildOptions, *, center: bool) -> NoReturn:

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from amprep.cli.completion import packers
 from amprep.cli.jobs.reporting import build_and_report
 from amprep.cli.options import BuildOptions, with_options
 
@@ -21,7 +22,9 @@ def run(
     packer: Annotated[
         str | None,
         typer.Option(
-            help="Packer by name; see 'amprep plugins list'.", rich_help_panel="Settings of the job"
+            help="Packer by name; see 'amprep plugins list'.",
+            rich_help_panel="Settings of the job",
+            autocompletion=packers,
         ),
     ] = None,
     volumes: Annotated[

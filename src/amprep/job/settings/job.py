@@ -71,7 +71,8 @@ class Job:
     Attributes
     ----------
     name
-        Stem of the job file or of the first input; output files are named after it.
+        What the job states, or the stem of its file, of its only input, or the name of the folder of all inputs;
+        output files are named after it.
     folder
         Folder of the job file, where relative paths start; None without a job file.
     table

@@ -15,7 +15,7 @@ import amprep
 from amprep.cli.app import app
 from amprep.errors import InputError
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import trimesh
 
 from amprep.errors import InputError
 from amprep.model import Mesh, Part
+from amprep.pipeline import reading
 from amprep.pipeline.reading import expand_inputs, read_all, with_unique_names
 from amprep.plugins.readers.files import read_mesh_file
 
@@ -32,6 +33,23 @@ def test_a_folder_stands_for_the_files_in_it_that_can_be_read_by_name(tmp_path):
         "b.STL",
         "c.3mf",
     ]
+
+
+def test_files_in_subfolders_are_read_but_no_build_files_of_earlier_runs_and_no_linked_folders(tmp_path):
+    for name in ("b/c/1.stl", "a/2.stl", "0.stl", ".git/3.stl", "a/job.build-1.3mf", "a/job.build-12.4.stl"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("x")
+    (tmp_path / "a" / "again").symlink_to(tmp_path, target_is_directory=True)
+    found = [path.relative_to(tmp_path).as_posix() for path, _ in expand_inputs([(tmp_path, None)], SUFFIXES)]
+    assert found == ["0.stl", "a/2.stl", "b/c/1.stl"]
+
+
+def test_a_folder_with_too_many_files_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(reading, "_MOST_FILES", 2)
+    for number in range(3):
+        (tmp_path / f"{number}.stl").write_text("x")
+    with pytest.raises(InputError, match="more than 2 files"):
+        expand_inputs([(tmp_path, None)], SUFFIXES)
 
 
 def test_the_count_of_a_folder_holds_for_each_file_in_it(tmp_path):

@@ -1,0 +1,1 @@
+"""Commands that help to begin: new job files, the demo, and what is installed."""
