@@ -11,9 +11,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from types import FrameType
+from typing import NoReturn
 
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGHUP", "SIGTERM", "SIGINT") if hasattr(signal, name))
 
@@ -30,18 +31,26 @@ class _SignalState:
     tell: Callable[[], None] | None = None
     late: int | None = None
     ending: bool = False
+    end_at_once: Callable[[Callable[[], None]], None] | None = None
+    clean: Callable[[], None] | None = None
 
 
 _STATE = _SignalState()
 
 
-def watch() -> None:
+def watch(end_at_once: Callable[[Callable[[], None]], None] | None = None) -> None:
     """End the run at a signal until its files appear; note a signal that comes later.
 
     The first signal raises `KeyboardInterrupt`. Another one after `REPEATED_AFTER_S` ends the process at once, because
     the code that runs may catch every exception.
+
+    Parameters
+    ----------
+    end_at_once
+        Called at the first signal with the function that `clean_with` named, which it calls before it ends the process;
+        it returns if `KeyboardInterrupt` is to be raised. An exception that crosses compiled libraries may crash them.
     """
-    _STATE.__dict__.update(vars(_SignalState(watching=True)))
+    _STATE.__dict__.update(vars(_SignalState(watching=True, end_at_once=end_at_once)))
     for number in SIGNALS:
         signal.signal(number, _handle)
 
@@ -90,6 +99,11 @@ def tell_when_files_appear(tell: Callable[[], None]) -> None:
     _STATE.tell = tell
 
 
+def clean_with(clean: Callable[[], None] | None) -> None:
+    """Let a signal that ends the process at once call a function first; None ends that."""
+    _STATE.clean = clean
+
+
 @contextmanager
 def held() -> Iterator[None]:
     """Let signals wait until the block ends; then the handlers that were set before get them."""
@@ -109,6 +123,15 @@ def held() -> Iterator[None]:
             signal.raise_signal(number)
 
 
+def exit_at_once() -> NoReturn:
+    """Say that nothing was written and end the process; buffers of Python are not used, since they may be in use."""
+    with suppress(OSError, ValueError):
+        error = sys.__stderr__.fileno() if sys.__stderr__ else 2
+        shown = b"\x1b[?25h\r" if os.isatty(error) else b""  # a bar of progress hides the cursor
+        os.write(error, shown + b"amprep: interrupted; nothing was written\n")
+    os._exit(exit_code())
+
+
 def _handle(number: int, _frame: FrameType | None) -> None:
     if _STATE.ending:
         return
@@ -120,9 +143,8 @@ def _handle(number: int, _frame: FrameType | None) -> None:
         return
     if _STATE.received is None:
         _STATE.received, _STATE.received_at = number, time.monotonic()
+        if _STATE.end_at_once is not None and _STATE.clean is not None:
+            _STATE.end_at_once(_STATE.clean)
         raise KeyboardInterrupt
     if time.monotonic() - _STATE.received_at >= REPEATED_AFTER_S:
-        os.write(
-            sys.__stderr__.fileno() if sys.__stderr__ else 2, b"amprep: interrupted; nothing was written\n"
-        )
-        os._exit(exit_code())
+        exit_at_once()

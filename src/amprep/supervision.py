@@ -115,6 +115,11 @@ def calling(title: str, deadline: float | None = None) -> Iterator[None]:
         board.write()
 
 
+def is_supervised() -> bool:
+    """Tell whether another process watches over this one."""
+    return _STATE.board is not None
+
+
 def finish(code: int) -> None:
     """Tell the parent the exit code: from now on, an end of this process is no fault of a plugin."""
     if _STATE.board is not None:
@@ -191,6 +196,9 @@ class _Parent:
         if board.appeared:
             self._say("a plugin ended the process when the files had appeared; all of them are complete")
             os._exit(INCOMPLETE)
+        if self.signalled is not None:  # an exception that crosses compiled libraries may crash them
+            self._say("interrupted; nothing was written")
+            os._exit(128 + self.signalled)
         if code >= 0:
             self._say(f"{board.title or 'a plugin'} ended the process; nothing was written")
         else:

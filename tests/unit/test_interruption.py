@@ -87,6 +87,28 @@ def test_signals_are_ignored_when_the_result_is_known(monkeypatch):
     assert interruption.received() is None
 
 
+def test_a_signal_cleans_up_and_ends_the_process_before_any_exception_unwinds_it():
+    done = []
+
+    def end(clean):
+        clean()
+        done.append("ended")
+
+    interruption.watch(end)
+    interruption.clean_with(lambda: done.append("cleaned"))
+    with pytest.raises(KeyboardInterrupt):  # here `end` returns
+        signal.raise_signal(signal.SIGTERM)
+    assert done == ["cleaned", "ended"]
+
+
+def test_where_nothing_is_to_be_cleaned_the_exception_ends_the_run():
+    interruption.watch(lambda _: pytest.fail("the process ends without its clean-up"))
+    interruption.clean_with(lambda: None)
+    interruption.clean_with(None)
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
 def test_a_second_signal_ends_code_that_catches_everything():
     stubborn = (
         "import os, signal, time\n"

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from collections.abc import Callable
 from typing import NoReturn
 
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
@@ -24,6 +25,15 @@ def _end_interrupted(error: BaseException) -> NoReturn:
     supervision.finish(interruption.exit_code())
     # Python may crash when it unloads compiled libraries that were interrupted
     os._exit(interruption.exit_code())
+
+
+def _end_at_once(clean: Callable[[], None]) -> None:
+    """End the process inside the handler of a signal; where foreign plugins run, the interruption names them."""
+    from amprep import interruption, supervision
+
+    if not supervision.is_supervised():
+        clean()
+        interruption.exit_at_once()
 
 
 def _line_of(error: BaseException) -> str:
@@ -61,7 +71,7 @@ def _run() -> NoReturn:
     from amprep.errors import AmprepError, Interrupted
 
     debug = "--debug" in sys.argv
-    interruption.watch()
+    interruption.watch(_end_at_once)
     # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:

@@ -10,7 +10,7 @@ from typing import Self
 
 from amprep.errors import InputError
 from amprep.files import make_temporary_folder, remove_abandoned, taking_turns
-from amprep.interruption import files_appeared, held
+from amprep.interruption import clean_with, files_appeared, held
 
 _ATTEMPTS = 5
 """Another run that ends in between may remove the new folder, because it is empty."""
@@ -55,6 +55,7 @@ class OutputFolder:
             except OSError as error:
                 self._remove_made()
                 raise self._not_writable(error) from error
+            clean_with(self._remove)
         return self
 
     def _make(self) -> None:
@@ -138,10 +139,15 @@ class OutputFolder:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         with held():
-            shutil.rmtree(self._staging, ignore_errors=True)
-            if self._lock is not None:
-                os.close(self._lock)
-            self._remove_made()
+            clean_with(None)
+            self._remove()
+
+    def _remove(self) -> None:
+        """Remove the hidden folder and the folders that this run made."""
+        shutil.rmtree(self._staging, ignore_errors=True)
+        if self._lock is not None:
+            os.close(self._lock)
+        self._remove_made()
 
     def _remove_made(self) -> None:
         """Remove the folders that this run made, as far as they are empty."""
