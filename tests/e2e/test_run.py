@@ -37,7 +37,13 @@ def demo(tmp_path_factory, fixtures) -> Path:
 
 def test_the_demo_job_writes_build_files_reports_and_pictures_only(demo):
     names = sorted(path.name for path in demo.iterdir())
-    assert names == ["job.build-1.3mf", "job.build-1.png", "job.report.html", "job.report.json"]
+    assert names == [
+        "job.build-1.3mf",
+        "job.build-1.png",
+        "job.placements.csv",
+        "job.report.html",
+        "job.report.json",
+    ]
 
 
 def test_the_report_contains_the_figures_of_the_demo_job(demo):

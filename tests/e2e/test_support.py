@@ -60,7 +60,8 @@ def test_parts_stay_where_the_build_items_put_them(amprep, tmp_path):
     assert outcome.json["stop_reason"] == "as it lies"
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
     stem = "plate.supported"
-    assert names == [f"{stem}.3mf", f"{stem}.png", f"{stem}.report.html", f"{stem}.report.json"]
+    suffixes = ("3mf", "placements.csv", "png", "report.html", "report.json")
+    assert names == [f"{stem}.{suffix}" for suffix in suffixes]
     assert amprep("verify", tmp_path / "out" / f"{stem}.3mf").code == 0
 
 

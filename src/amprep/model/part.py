@@ -120,6 +120,8 @@ class Part:
         What is wrong with the file or doubtful, one sentence each; the first part of a file has those of the file.
     metadata
         Metadata of the file, ``(namespace, name) -> value``, kept unchanged.
+    source_sha256
+        SHA-256 of the file that the part was read from; empty if there is none.
     """
 
     name: str
@@ -140,6 +142,7 @@ class Part:
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     metadata: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    source_sha256: str = ""
 
     @property
     def origins(self) -> Floats:

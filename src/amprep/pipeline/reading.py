@@ -18,6 +18,7 @@ from amprep.model.summary import Summarised
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.unit_question import with_unit_question
+from amprep.sealing.seal import file_digest
 
 _OF_A_RUN = re.compile(r"\.build-\d+\.")
 """In the names of files that amprep writes."""
@@ -71,9 +72,11 @@ def read_all(
     parts: list[Part] = []
     for done, (path, count) in enumerate(files):
         progress(done / len(files), path.name)
-        for part in read(path):
+        read_parts, sha256 = read(path), file_digest(path)
+        for part in read_parts:
             repaired = repair_part(part, allow_surface=allow_surface)
-            parts.append(replace(repaired, quantity=repaired.quantity * (count or 1)))
+            quantity = repaired.quantity * (count or 1)
+            parts.append(replace(repaired, quantity=quantity, source_sha256=sha256))
     progress(1.0, f"{len(parts)} parts")
     return with_unique_names(parts)
 

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from amprep.threemf import BuildFile
 
 
+REPORTS = ("report.html", "report.json", "placements.csv")
+"""The reports of a run."""
+
+
 def finish_build(
     supported: SupportedBuild,
     job: Job,
@@ -76,6 +80,7 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
     from amprep.report.json_report import write_json
     from amprep.report.page.html import write_html
     from amprep.report.picture import write_picture
+    from amprep.report.placements import write_placements
     from amprep.report.triage.findings import build_findings
 
     with clock.stage("report") as progress:
@@ -89,7 +94,8 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
         write_html(replace(record, stages=clock.times), outputs.path("report.html"))
     record = replace(record, stages=clock.times)
     write_json(record, outputs.path("report.json"))
-    return replace(record, report_files=(outputs.name("report.html"), outputs.name("report.json")))
+    write_placements(record, outputs.path("placements.csv"))
+    return replace(record, report_files=tuple(outputs.name(name) for name in REPORTS))
 
 
 def _read_back(number: int, outputs: OutputFolder) -> "BuildFile":

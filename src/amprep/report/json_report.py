@@ -131,13 +131,14 @@ def _part(placed: PlacedPart, fill: bool) -> dict[str, Any]:
         "part": placed.part.name,
         "part_number": placed.part.part_number,
         "source": placed.part.source,
+        "source_sha256": placed.part.source_sha256,
         "transform": placed.matrix,
         "volume_mm3": part_volume(placed),
         "value": placed.part.fill_value if fill else None,
         "low_mm": low,
         "high_mm": high,
         "triangles": len(placed.part.mesh.triangles),
-        "sha256": placed.recorded_digest,
+        "sha256": placed.part.mesh.digest,
     }
 
 

@@ -212,6 +212,7 @@ def part_record(part: Part) -> JsonObject:
         "boxes": None if part.boxes is None else plain(part.boxes),
         "part_number": part.part_number,
         "source": PurePath(part.source).name,
+        **({"source_sha256": part.source_sha256} if part.source_sha256 else {}),
         "notes": list(part.notes),
         "regions": [_region_record(region) for region in part.regions if region.kind != "lattice"],
         "metadata": [[namespace, name, value] for (namespace, name), value in part.metadata.items()],
@@ -244,6 +245,7 @@ def part_of(record: Any, mesh: Mesh, triangle_colours: Any | None) -> Part:
         boxes=None if values.get("boxes") is None else table(values, "boxes", 6),
         part_number=string(values, "part_number"),
         source=string(values, "source"),
+        source_sha256=string(values, "source_sha256") if "source_sha256" in values else "",
         notes=tuple(_strings(values.get("notes"), "notes")),
         metadata=_metadata_of(values.get("metadata")),
     )
