@@ -1,0 +1,1 @@
+"""Reading of G-code: lines, moves, labels of objects, and what each object extrudes."""

@@ -1,0 +1,1 @@
+"""Slicers: the G-code that they write, what they tell scripts, and the files of their profiles."""

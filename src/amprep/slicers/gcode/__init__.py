@@ -1,0 +1,1 @@
+"""Read G-code of PrusaSlicer, SuperSlicer, OrcaSlicer, Bambu Studio and Cura."""
