@@ -6,7 +6,7 @@ import typer
 
 from amprep import __version__
 from amprep.cli import bench
-from amprep.cli.builds import seal, verify
+from amprep.cli.builds import hook, seal, verify
 from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
@@ -35,6 +35,7 @@ app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")
 app.add_typer(materials.app, name="materials")
+app.add_typer(hook.app, name="hook")
 app.add_typer(bench.app, name="bench")
 
 

@@ -56,6 +56,7 @@ DIFFERENT = {
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",
     "--set": "a key of the job, or a parameter of a cell",
+    "--strict": "about 3MF files, or about G-code",
     "--time-limit": "of packing and routing, or of volume makers",
     "--volumes": "the volume maker of a run, or the makers to compare",
 }

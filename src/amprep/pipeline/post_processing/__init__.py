@@ -1,0 +1,1 @@
+"""What a slicer runs with each file of G-code that it exports."""
