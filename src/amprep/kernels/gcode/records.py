@@ -12,7 +12,7 @@ X, Y, Z, E = 0, 1, 2, 3
 I, J, R = 4, 5, 6  # noqa: E741 - the letters of G-code
 """Indices of the words of arcs."""
 UNIT, HALF_WIDTH, HEIGHT, LOWER = 7, 8, 9, 10
-"""Indices in `Machine.at`: length of a unit, half the width of lines, height of the last line, and the height before."""
+"""Indices in `Machine.at`: length of a unit, half the width of lines, height of the last line, height before that."""
 RELATIVE, RELATIVE_E, SLOT, ROLE, SEGMENTS = 0, 1, 2, 3, 4
 """Indices in `Machine.modes`."""
 
