@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+SELF_SUPPORTING = "self-supporting"
+"""What takes the regions that need no support."""
+
+
 @dataclass(frozen=True)
 class ExplainedRegion:
     """An overhang region, before supports are planned.
@@ -31,6 +35,8 @@ class ExplainedRegion:
         Smallest angle of its faces to the plate.
     height_mm
         Height of its lowest point.
+    centre_mm
+        x, y, z of its middle.
     measure
         Area in mm2, length of an edge in mm, 0 for a tip.
     verdict
@@ -47,6 +53,7 @@ class ExplainedRegion:
     size_mm: float
     angle_deg: float
     height_mm: float
+    centre_mm: tuple[float, float, float]
     measure: float
     verdict: str
     rule: str
@@ -75,7 +82,7 @@ class RegionsRecord(Summarised):
 
     def __str__(self) -> str:
         """Summary in one line."""
-        need = sum(each.rule != "self-supporting" for each in self.regions)
+        need = sum(each.rule != SELF_SUPPORTING for each in self.regions)
         return f"{self.job}: {counted(len(self.regions), 'overhang region')}, {need} not self-supporting"
 
 
@@ -85,36 +92,52 @@ def to_json(record: RegionsRecord) -> dict[str, Any]:
 
 
 def summary(record: RegionsRecord) -> "RenderableType":
-    """Return the table of regions, ready to print."""
+    """Return the table of regions, ready to print: those that need support first, then the largest of the others.
+
+    Self-supporting regions that look alike have one row.
+    """
     from rich import box
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD, padding=0)
-    for heading in ("region", "kind"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("size mm", "angle °", "height mm", "area mm²"):
+    table.add_column("region", overflow="fold")
+    for heading in ("at x, y, z mm", "angle °", "area mm²"):
         table.add_column(heading, justify="right", no_wrap=True)
     for heading in ("verdict", "taken by"):
-        table.add_column(heading, overflow="fold")
+        table.add_column(heading, overflow="fold", min_width=len(f"{SELF_SUPPORTING}:"))
     several = len({each.part for each in record.regions}) > 1
-    for each in record.regions:
+    for each, count in _rows(record.regions):
         name = each.name if several else each.name.partition(" of ")[0]
-        table.add_row(*(Text(printable(cell)) for cell in (name, *_cells(each))))
+        table.add_row(*(Text(printable(cell)) for cell in (name, *_cells(each, count))))
     return Group(Text(printable(str(record))), table)
 
 
-def _cells(region: ExplainedRegion) -> Sequence[str]:
+def _rows(regions: Sequence[ExplainedRegion]) -> list[tuple[ExplainedRegion, int]]:
+    """Return the regions in the order of the table; alike ones that need no support are one, with their number."""
+    alike: dict[tuple[object, ...], list[ExplainedRegion]] = {}
+    for number, each in enumerate(regions):
+        key = (each.part, each.verdict, round(each.angle_deg), round(each.height_mm, 1))
+        alike.setdefault(key if each.rule == SELF_SUPPORTING else (number,), []).append(each)
+    groups = sorted(alike.values(), key=lambda group: _urgency(group[0]))
+    return [(group[0], len(group)) for group in groups]
+
+
+def _urgency(region: ExplainedRegion) -> tuple[bool, bool, float]:
+    """Order what needs support before the rest, what nothing carries before the longest."""
+    return region.rule == SELF_SUPPORTING, region.size_mm > 0.0, -region.size_mm
+
+
+def _cells(region: ExplainedRegion, count: int) -> Sequence[str]:
     length = region.kind == "edge"
     measure = "" if region.kind == "tip" else f"{region.measure:.1f}{' mm' if length else ''}"
     rule = f"{region.rule}: {region.settings}" if region.settings else region.rule
+    x, y = (round(each) for each in region.centre_mm[:2])
     return (
-        region.kind,
-        f"{region.size_mm:.1f}" if region.size_mm else "",
+        f"{x}, {y}, {region.height_mm:.2f}",
         "" if region.kind == "tip" else f"{region.angle_deg:.0f}",
-        f"{region.height_mm:.2f}",
         measure,
-        region.verdict,
-        rule,
+        region.verdict + (f" ({count} alike)" if count > 1 else ""),
+        "-" if region.rule == SELF_SUPPORTING else rule,
     )

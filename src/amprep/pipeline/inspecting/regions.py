@@ -16,7 +16,7 @@ from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.pipeline.support_plate import place_as_read
-from amprep.report.regions import ExplainedRegion, RegionsRecord
+from amprep.report.regions import SELF_SUPPORTING, ExplainedRegion, RegionsRecord
 from amprep.threemf.transforms import round_as_stored
 
 
@@ -76,13 +76,10 @@ def _regions_of(resolved: ResolvedJob, part: Part, placed: PlacedPart) -> list[E
             size_mm=region.size_mm,
             angle_deg=region.angle_deg,
             height_mm=region.lowest_mm,
+            centre_mm=(float(region.centre[0]), float(region.centre[1]), float(region.centre[2])),
             measure=region.measure,
             verdict=verdict_words(region),
-            rule="self-supporting"
-            if region.is_self_supporting
-            else f"[[rule]] {rule}"
-            if rule
-            else "default",
+            rule=SELF_SUPPORTING if region.is_self_supporting else f"[[rule]] {rule}" if rule else "default",
             settings=_words(resolved.job.rules[rule - 1]) if rule and not region.is_self_supporting else "",
         )
         for number, (region, rule) in enumerate(zip(own.overhangs.regions, rules.tolist(), strict=True))

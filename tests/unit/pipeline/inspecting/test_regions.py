@@ -78,6 +78,22 @@ def test_the_command_prints_a_table_or_json_and_writes_nothing(job):
     assert sorted(job.parent.iterdir()) == before
 
 
+def test_the_table_begins_with_what_needs_support_and_has_one_row_for_alike_regions(job):
+    hook = Manifold.cube([6, 10, 30]).translate([30, 30, 0]) + Manifold.cube([12, 10, 2]).translate(
+        [30, 30, 18]
+    )
+    for y in (31, 34, 37):
+        hook += Manifold.cube([6.4, 1, 2]).translate([30, y, 5])
+    write_stl(mesh_of(hook), job.parent / "hook.stl")
+    shown = CliRunner().invoke(app, ["support", str(job), "--explain", "hook", "-q"]).output
+    rows = [line for line in shown.splitlines() if "overhang" in line][1:]
+    assert ["ledge 6.0 mm" in row for row in rows] == [True, False]
+    assert "39, 35, 18.00" in rows[0]
+    assert "36, 31, 5.00" in rows[1] or "36, 32, 5.00" in rows[1]
+    assert "0.4 mm (3" in shown
+    assert "self-supporting: " in shown
+
+
 def test_center_puts_parts_on_the_plate_where_their_bottom_is_no_overhang(job):
     """As `amprep support --center` does: the lowest part stands on the plate."""
     record = amprep.explain_regions(job, part="other", center=True)
