@@ -1,13 +1,14 @@
 """Find what is too thin in a horizontal section of a solid, from the narrow ends of its outline."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.waists import find_waists
+from amprep.geometry.supports.waists import keep_narrow
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -26,6 +27,9 @@ _STUBBY, _SHORT = 0.6, 6.0
 
 Half a round pin whose radius is the width has 0.61 and 5.1, and its ends are longer than the width."""
 
+_NARROW = 0.7
+"""Twice the area over the perimeter (in widths) up to which a piece of any size may be too thin everywhere."""
+
 _VERTICES = 4
 """Largest number of vertices of a narrow end."""
 
@@ -38,7 +42,7 @@ _CORNER = 1.3
 _AROUND = 8.0
 """Half of the side (in widths) of the squares around narrow ends in which a region is looked at."""
 
-_MOST_SQUARES = 4
+_MOST_SQUARES = 16
 """Largest number of squares; offsets of the whole section take less time than those in more of them."""
 
 _BORDER = 1.5
@@ -60,6 +64,7 @@ _POINTS = 128
 # where the outline tells that something may be thin.
 # 1. A narrow end (of a fin, or of a thin piece) is a short stretch of the outline that turns by nearly 180 degrees. A
 #    waist between two wide places has a corner that turns inwards, near to which another side of the outline is.
+#    What discs of the width near it cover is no such place.
 # 2. In a square around each of them, the rest is what discs of the least width, grown by the reach of corners, do
 #    not cover. Near the border of the square, which cuts the region, nothing is judged. Only the outlines whose boxes
 #    meet the square are cut to it: no other outline encloses a point of it.
@@ -129,6 +134,7 @@ def find_thin_rests(
     area: float,
     is_kept: "Callable[[CrossSection], bool]",
     are_held: Callable[[Floats], Bools],
+    judged: Callable[[Floats], Bools],
     *,
     waists: bool = True,
 ) -> "list[CrossSection]":
@@ -144,11 +150,13 @@ def find_thin_rests(
         Tells whether a piece may stay though it is thin.
     are_held
         Tells at which points ``(k, 2)`` mm pieces may stay, so that no narrow end there is looked at.
+    judged
+        Tells at which points ``(k, 2)`` mm the section is judged; elsewhere it may be cut off.
     waists
-        Whether waists are looked for, too, which takes several times as long as narrow ends.
+        Whether waists are looked for, too.
     """
     found: list[CrossSection] = []
-    whole, ends = region, narrow_ends(region, width, area, waists=waists)
+    whole, ends = region, narrow_ends(region, width, area, judged, waists=waists)
     ends = ends[~are_held(ends)]
     for _ in range(_ROUNDS):
         cut = _rests_at(region, ends, width, area, is_kept) if len(ends) else []
@@ -159,8 +167,10 @@ def find_thin_rests(
         around = 2.0 * _AROUND * width
         left = whole.inside(low - around, high + around) - union_of(found).offset(_SMOOTH)
         region = contours_of(left)
-        ends = narrow_ends(region, width, area)
-        ends = ends[_are_in(ends, low - width, high + width) & ~are_held(ends)]
+        near = partial(are_in, low=low - width, high=high + width)
+        ends = narrow_ends(region, width, area, near)
+        ends = ends[judged(ends)]
+        ends = ends[~are_held(ends)]
     return found
 
 
@@ -177,18 +187,29 @@ def _rests_at(
     if len(centres) > _MOST_SQUARES:
         whole = region.whole()
         found = _pieces_of(_beyond_discs(whole, width))
-        found += [each for each in whole.decompose() if each.area() < area]
+        found += [each for each in whole.decompose() if _is_too_small(each, width, area)]
         return [rest for rest in found if not is_kept(rest)]
     found = []
     judged = half - _BORDER * width
     for end in centres:
         local = region.inside((end - half)[None], (end + half)[None])
         found += _pieces_of(_beyond_discs(local, width) ^ box(end - judged, end + judged))
-        if area > 0.0:
-            found += [
-                each for each in local.decompose() if each.area() < area and _is_inside(each, end, half)
-            ]
+        found += [
+            each
+            for each in local.decompose()
+            if _is_inside(each, end, half) and _is_too_small(each, width, area)
+        ]
     return [rest for rest in found if not is_kept(rest)]
+
+
+def _is_too_small(piece: "CrossSection", width: float, area: float) -> bool:
+    """Tell whether a piece is smaller than an area, or so narrow that no disc of the width fits into it."""
+    if piece.area() < area:
+        return True
+    contours = [np.asarray(contour) for contour in piece.to_polygons()]
+    around = sum(float(np.hypot(*(each - np.roll(each, -1, axis=0)).T).sum()) for each in contours)
+    is_narrow = 2.0 * piece.area() < _NARROW * width * around
+    return bool(is_narrow and piece.offset(-width / 2.0).is_empty())
 
 
 def _apart(points: Floats, distance: float) -> list[Floats]:
@@ -213,7 +234,19 @@ def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
     return region - discs.offset((0.5 + _CORNER) * width, JoinType.Round, 2.0, _SEGMENTS)
 
 
-def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bool = True) -> Floats:
+def everywhere(points: Floats) -> Bools:
+    """Choose all points ``(k, 2)``."""
+    return np.ones(len(points), np.bool_)
+
+
+def narrow_ends(
+    region: Contours,
+    width: float,
+    area: float = 0.0,
+    judged: Callable[[Floats], Bools] = everywhere,
+    *,
+    waists: bool = True,
+) -> Floats:
     """Return the points ``(k, 2)`` mm at which the outline of a region turns back within a width.
 
     Those of pieces that are smaller than an area (mm2), those of small pieces that may be too thin, and the corners at
@@ -225,6 +258,8 @@ def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bo
         A region.
     width, area
         Length (mm) of the outline within which it turns, and area (mm2).
+    judged
+        Tells which points ``(k, 2)`` mm are looked at.
     waists
         Whether corners at waists are among the points.
     """
@@ -245,11 +280,12 @@ def narrow_ends(region: Contours, width: float, area: float = 0.0, *, waists: bo
     enclosed = np.add.reduceat(cross, np.cumsum(sizes) - sizes) / 2.0
     around = np.add.reduceat(length, np.cumsum(sizes) - sizes)
     is_stubby = (around < _SHORT * width) & (2.0 * enclosed < _STUBBY * width * around)
-    is_small = np.repeat((enclosed > 0.0) & ((enclosed < area) | is_stubby), sizes)
-    ends = _turns_back(turn, length, after, width) | is_small
-    if waists:
-        ends[find_waists(points, after, width)] = True
-    return points[ends]
+    is_narrow = 2.0 * enclosed < _NARROW * width * around
+    is_small = np.repeat((enclosed > 0.0) & ((enclosed < area) | is_stubby | is_narrow), sizes)
+    ends = _turns_back(turn, length, after, width)
+    narrow = keep_narrow(points, after, turn, ends & ~is_small, width, judged, waists=waists)
+    small = points[is_small]
+    return np.concatenate([points[narrow & ~is_small], small[judged(small)]])
 
 
 def _turns_back(turn: Floats, length: Floats, after: np.ndarray, width: float) -> Bools:
@@ -271,8 +307,8 @@ def bounds_of(pieces: "Sequence[CrossSection]") -> tuple[Floats, Floats]:
     return low, high
 
 
-def _are_in(points: Floats, low: Floats, high: Floats) -> Bools:
-    """Tell which points are inside one of several rectangles."""
+def are_in(points: Floats, low: Floats, high: Floats) -> Bools:
+    """Tell which points ``(n, 2)`` mm are inside one of several rectangles with the corners ``(k, 2)`` mm."""
     inside = np.all((points[:, None] > low) & (points[:, None] < high), axis=2)
     return np.asarray(np.any(inside, axis=1))
 

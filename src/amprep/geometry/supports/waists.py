@@ -1,8 +1,10 @@
-"""Find waists in the outline of a region: places between two wider ones at which it is narrower than a width."""
+"""Find narrow places on the outlines of a region: narrow ends, and waists between two wider places."""
+
+from collections.abc import Callable
 
 import numpy as np
 
-from amprep.arrays import Floats, Int64s
+from amprep.arrays import Bools, Floats, Int64s
 
 _INWARDS = np.radians(5.0)
 """Angle by which an outline turns inwards at the corner of a waist."""
@@ -10,44 +12,67 @@ _INWARDS = np.radians(5.0)
 _OPPOSITE = 0.7
 """Cosine of the largest angle at which the shortest line across a waist meets the other side."""
 
-_REACH = 1.5
-"""Distance (in widths) from a corner up to which the middles of pieces of sides, at most a width long, are compared."""
+_SQUARE = 2.0
+"""Size (in widths) of the squares in which sides are listed; pieces of sides are at most half as long."""
+
+_MOST_SQUARES = 1_000_000
+"""Largest number of squares; they are larger where there would be more."""
 
 
-def find_waists(points: Floats, after: Int64s, width: float) -> Int64s:
-    """Return the corners that turn inwards at which a region is narrower than a width, indices ``(k,)``.
+def keep_narrow(
+    points: Floats,
+    after: Int64s,
+    turn: Floats,
+    ends: Bools,
+    width: float,
+    judged: Callable[[Floats], Bools],
+    *,
+    waists: bool,
+) -> Bools:
+    """Tell at which vertices ``(n,)`` a region is thinner than a width, of those that may be narrow ends or waists.
 
     Where a region becomes narrower and then wider again, one of its two sides turns inwards. So only such corners are
-    compared with the sides near them.
+    compared with the sides near them. What a disc of the width near it covers is not thin.
 
     Parameters
     ----------
     points, after
         ``(n, 2)`` mm, vertices of the outlines, which have the region to their left; the next vertex of each.
+    turn
+        ``(n,)`` angle by which the outlines turn at each vertex.
+    ends
+        ``(n,)`` vertices that may be narrow ends.
     width
-        Length (mm).
+        Length, mm.
+    judged
+        Tells which points ``(k, 2)`` mm are looked at.
+    waists
+        Whether waists are looked for, too.
     """
-    from scipy.spatial import cKDTree
+    from amprep.kernels.supports.narrow_places import OutlineSides, keep_narrow_places
 
+    inwards = (turn < -_INWARDS) & waists
+    chosen = np.zeros(len(points), np.bool_)
+    asked = np.flatnonzero(inwards | ends)
+    chosen[asked] = judged(points[asked])
+    if not chosen.any():
+        return chosen
+    inwards &= chosen
+    chosen &= ends
     side = points[after] - points
-    length = np.hypot(side[:, 0], side[:, 1])
-    heading = np.arctan2(side[:, 1], side[:, 0])
-    turn = np.empty(len(points))
-    turn[after] = (heading[after] - heading + np.pi) % (2.0 * np.pi) - np.pi
-    corner = np.flatnonzero(turn < -_INWARDS)
-    if not len(corner):
-        return corner
-    pieces = np.ceil(length / width).astype(np.int64)
+    low, high = points.min(axis=0), points.max(axis=0)
+    square = max(_SQUARE * width, float(np.sqrt((high - low).prod() / _MOST_SQUARES)))
+    pieces = np.maximum(np.ceil(2.0 * np.hypot(side[:, 0], side[:, 1]) / square), 1.0).astype(np.int64)
     owner = np.repeat(np.arange(len(points)), pieces)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     middle = points[owner] + ((number + 0.5) / pieces[owner])[:, None] * side[owner]
-    near = np.asarray(cKDTree(middle).query_ball_point(points[corner], _REACH * width), np.object_)
-    vertex = np.repeat(corner, [len(each) for each in near])
-    across = owner[np.concatenate([np.array(each, np.int64) for each in near])]
-    along = side[across] / length[across, None]
-    offset = points[across] - points[vertex]
-    offset += np.clip(-(offset * along).sum(axis=1), 0.0, length[across])[:, None] * along
-    distance = np.hypot(offset[:, 0], offset[:, 1])
-    outwards = offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0]
-    is_narrow = (distance > 1e-6) & (distance < width) & (outwards > _OPPOSITE * distance)
-    return np.unique(vertex[is_narrow])
+    x, y = ((middle - low) / square).astype(np.int64).T
+    shape = ((high - low) / square).astype(np.int64) + 1
+    place = y * shape[0] + x
+    first = np.concatenate([[0], np.cumsum(np.bincount(place, minlength=int(shape.prod())))])
+    before = np.empty_like(after)
+    before[after] = np.arange(len(after))
+    listed = owner[np.argsort(place, kind="stable")]
+    outlines = OutlineSides(points, after, before, low, square, shape, first, listed)
+    keep_narrow_places(outlines, chosen, inwards, width, _OPPOSITE)
+    return chosen

@@ -10,7 +10,7 @@ from amprep.arrays import Bools, Floats
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.thin_rests import Contours, bounds_of, contours_of, find_thin_rests
+from amprep.geometry.supports.thin_rests import Contours, are_in, bounds_of, contours_of, find_thin_rests
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -38,6 +38,9 @@ _BESIDE = 0.1
 
 _WINDOW = 8.0
 """Distance (in widths) around thin places in which the layers above and below are looked at; half of it is judged."""
+
+_BORDER = 2.0
+"""Distance (in widths) from the border of such a window in which narrow ends are not looked at."""
 
 _ROUNDS = 3
 """Largest number of rounds; cuts may leave other thin places."""
@@ -239,6 +242,7 @@ class _RestFinder:
             self._area,
             lambda rest: self._is_kept(rest, place.height),
             lambda ends: self._are_held(ends, place.height),
+            lambda points: self._are_judged(points, place),
             waists=waists,
         )
         if found and place.around is not None:
@@ -255,6 +259,14 @@ class _RestFinder:
         for part in range(len(self._parts)) if len(points) else ():
             held |= self._grown_section(part, height).cover(points)
         return held
+
+    def _are_judged(self, points: Floats, place: _Place) -> Bools:
+        """Tell which points ``(k, 2)`` mm are not near a border of a place, which cuts the section."""
+        if place.around is None:
+            return np.ones(len(points), np.bool_)
+        low, high = place.around
+        border = _BORDER * self._width
+        return are_in(points, low + border, high - border)
 
     def _is_kept(self, rest: "CrossSection", height: float) -> bool:
         """Tell whether a rest touches a part, or is a tip that is not too thin."""

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from manifold3d import CrossSection, OpType
+from manifold3d import CrossSection, JoinType, OpType
 from tests.shared.examples import examples
 
-from amprep.geometry.supports.thin_rests import contours_of, find_thin_rests, narrow_ends
+from amprep.geometry.supports.thin_rests import contours_of, everywhere, find_thin_rests, narrow_ends
 
 WIDTH, AREA = 0.28, 0.07
 
@@ -19,7 +19,7 @@ def nowhere(points):
 def rests(region, is_kept=lambda _: False, are_held=nowhere):
     """The rests, which may overlap, as one region."""
     return CrossSection.batch_boolean(
-        find_thin_rests(contours_of(region), WIDTH, AREA, is_kept, are_held), OpType.Add
+        find_thin_rests(contours_of(region), WIDTH, AREA, is_kept, are_held, everywhere), OpType.Add
     )
 
 
@@ -83,7 +83,7 @@ def test_wide_shapes_with_and_without_holes_have_no_rests(sides):
 
 def test_a_piece_that_is_wide_enough_but_too_small_is_a_rest():
     region = CrossSection.square((0.29, 0.29)) + rectangle(1.0, 1.0, at=(2.0, 0.0))
-    (found,) = find_thin_rests(contours_of(region), WIDTH, 0.09, lambda _: False, nowhere)
+    (found,) = find_thin_rests(contours_of(region), WIDTH, 0.09, lambda _: False, nowhere, everywhere)
     assert found.area() == pytest.approx(0.29**2)
 
 
@@ -119,3 +119,27 @@ def test_what_a_border_leaves_of_a_round_pin_is_a_rest_if_it_is_thinner_than_the
     pin = CrossSection.circle(half / np.cos(np.pi / 8), 8).rotate(22.5)
     left = pin ^ rectangle(1.0, kept, at=(half - kept, -0.5))
     assert (left - rests(left)).is_empty() == is_rest
+
+
+@pytest.mark.parametrize("turn", [0.0, 17.0, 45.0, 80.0])
+def test_walls_of_the_width_that_cross_have_no_narrow_ends(turn):
+    strips = [rectangle(0.3, 4.0, 45.0 + side, at=(0.0, 0.0)) for side in (0.0, 90.0)]
+    cross = CrossSection.batch_boolean(
+        [*strips, rectangle(0.3, 4.0, 225.0), rectangle(0.3, 4.0, 315.0)], OpType.Add
+    )
+    assert len(narrow_ends(contours_of(cross.rotate(turn)), WIDTH)) == 0
+
+
+@pytest.mark.parametrize("neck", [0.3, 0.6, 0.8, 1.0, 1.5, 4.0])
+@pytest.mark.parametrize("thickness", [0.05, 0.15, 0.25])
+def test_necks_are_rests_as_far_as_discs_at_their_ends_do_not_cover_them(neck, thickness):
+    region = rectangle(2.0, 2.0) + rectangle(thickness, neck + 1.0, at=(1.5, 0.7))
+    region += rectangle(2.0, 2.0, at=(2.0 + neck, 0.0))
+    discs = region.offset(-WIDTH / 2.0)
+    expected = region - discs.offset(1.8 * WIDTH, JoinType.Round, 2.0, 64)
+    assert rests(region).area() == pytest.approx(expected.area(), rel=0.05, abs=0.02)
+
+
+def test_a_thin_piece_beside_a_wide_one_is_a_rest():
+    strip = rectangle(0.1, 1.5, at=(0.0, 2.1))
+    assert rests(rectangle(2.0, 2.0) + strip).area() == pytest.approx(strip.area())
