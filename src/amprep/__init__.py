@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from amprep.api import (
+        BuildDifferences,
         InfillRecord,
         InspectionRecord,
         Job,
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
         SupportedBuild,
         Verification,
         Violation,
+        diff,
         emit_cells,
         explain_regions,
         fill_parts,
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "BuildDifferences",
     "InfillRecord",
     "InspectionRecord",
     "Job",
@@ -51,6 +54,7 @@ __all__ = [
     "Verification",
     "Violation",
     "__version__",
+    "diff",
     "emit_cells",
     "explain_regions",
     "fill_parts",

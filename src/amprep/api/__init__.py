@@ -5,12 +5,13 @@ millimetres and angles in degrees (names end in ``_mm`` and ``_deg``). Records a
 new ones.
 """
 
-from amprep.api.build_file import verify, write
+from amprep.api.build_file import diff, verify, write
 from amprep.api.inspection import explain_regions, inspect
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
 from amprep.job import Job
+from amprep.measures.differences.records import BuildDifferences
 from amprep.pipeline.packing import PackedBuild, PackedParts
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
@@ -21,6 +22,7 @@ from amprep.report.record import RunRecord
 from amprep.report.regions import RegionsRecord
 
 __all__ = [
+    "BuildDifferences",
     "InfillRecord",
     "InspectionRecord",
     "Job",
@@ -33,6 +35,7 @@ __all__ = [
     "SupportedBuild",
     "Verification",
     "Violation",
+    "diff",
     "emit_cells",
     "explain_regions",
     "fill_parts",

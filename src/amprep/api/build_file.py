@@ -7,6 +7,8 @@ from amprep.api.arguments import require_record
 from amprep.api.job import job_and_host
 from amprep.errors import InputError
 from amprep.job import Job
+from amprep.measures.differences.find import find_differences
+from amprep.measures.differences.records import BuildDifferences
 from amprep.model import Build, Progress, Stop, silent
 from amprep.pipeline.supporting import SupportedBuild
 from amprep.pipeline.verifying.build import Verification, verify_build
@@ -114,3 +116,27 @@ def _demands(
 
 def _path(file: str | Path | None) -> Path | None:
     return None if file is None else Path(file)
+
+
+def diff(before: str | Path | Build, after: str | Path | Build) -> BuildDifferences:
+    """Return in what a build differs from an earlier one; see `amprep.measures.differences.find.find_differences`.
+
+    Parameters
+    ----------
+    before, after
+        Build files that amprep wrote, or builds.
+
+    Raises
+    ------
+    InputError
+        When a file is not a build that amprep wrote.
+
+    Examples
+    --------
+    >>> amprep.diff("monday.build-1.3mf", "tuesday.build-1.3mf").none
+    False
+    """
+    from amprep.threemf import read_build
+
+    builds = [each if isinstance(each, Build) else read_build(Path(each)) for each in (before, after)]
+    return find_differences(*builds)

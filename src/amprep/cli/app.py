@@ -6,7 +6,7 @@ import typer
 
 from amprep import __version__
 from amprep.cli import bench
-from amprep.cli.builds import hook, seal, verify
+from amprep.cli.builds import diff, hook, seal, verify
 from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
@@ -26,6 +26,7 @@ app.command("support")(support.support)
 app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
+app.command("diff")(diff.diff)
 app.command("inspect")(inspection.inspect)
 app.command("init")(init.init)
 app.command("schema")(schema.schema)
