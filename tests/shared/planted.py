@@ -264,6 +264,7 @@ FAULTS = (
         sub(r"<metadata name=.cura:support_mesh.*?</metadata>", ""),
         CURA,
     ),
+    Planted("Cura fills the space below a support", sub(r"(drop_down[^>]*>)False", r"\1True"), CURA),
     Planted("Cura's support is an infill mesh", sub("cura:support_mesh", "cura:infill_mesh"), CURA),
     Planted("Cura's support is a blocker", sub("cura:support_mesh", "cura:anti_overhang_mesh"), CURA),
     Planted(

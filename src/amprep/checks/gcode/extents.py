@@ -27,7 +27,7 @@ class ExtentFault:
     words
         The same in words, to follow the name of the object.
     shift
-        ``(2,)`` mm by which it is moved in plan; zero unless `kind` is ``moved``.
+        ``(3,)`` mm by which it is moved; zero unless `kind` is ``moved``.
     """
 
     kind: str
@@ -62,7 +62,7 @@ def find_extent_fault(
     if _within(low, high, beyond, short):
         return None
     size, due = theirs[1] - theirs[0], ours[1] - ours[0]
-    none = np.zeros(2)
+    none = np.zeros(3)
     if np.all(np.abs(size - due) <= np.minimum(short, 2.0 * beyond)):
         return _moved((low + high) / 2.0, beyond)
     ratio = size / np.maximum(due, 1e-9)
@@ -93,7 +93,7 @@ def _moved(shift: Floats, beyond: Floats) -> ExtentFault:
         words.append(f"it is moved by {shift_words(shift[:2])} mm")
     if abs(lower) > 0.5 * beyond[2]:
         words.append(f"it is {abs(lower):.2f} mm {'lower' if lower > 0 else 'higher'} than prepared")
-    return ExtentFault("moved", " and ".join(words) or f"it is moved by {shift_words(shift)} mm", shift[:2])
+    return ExtentFault("moved", " and ".join(words) or f"it is moved by {shift_words(shift)} mm", shift)
 
 
 def _size_words(size: Floats) -> str:

@@ -107,13 +107,13 @@ def _object_faults(
     fault = find_extent_fault(ours.bounds, _printed_bounds(theirs, first, origin, z_offset), sizes)
     if fault is not None and fault.kind in ("scaled", "height"):
         return [Violation(SIZE, ours.label, fault.words)]
+    shift = np.zeros(3) if fault is None else fault.shift
     layers = compare_layers(
-        ours.bodies, theirs.body.samples, origin, z_offset, max(theirs.body.thickest, first)
+        ours.bodies, theirs.body.samples, origin, z_offset + shift[2], max(theirs.body.thickest, first)
     )
     if fault is None or fault.kind == "moved":
         found = [] if fault is None else [Violation(POSITION, ours.label, fault.words)]
-        shift = np.zeros(2) if fault is None else fault.shift
-        wrong = None if layers is None else find_shape_fault(ours.mesh, layers, sizes.width, shift)
+        wrong = None if layers is None else find_shape_fault(ours.mesh, layers, sizes.width, shift[:2])
         if wrong is None:
             return found
         words = explain_turn(layers or [], sizes.width) or wrong.words

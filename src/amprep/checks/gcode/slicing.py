@@ -17,8 +17,11 @@ _SLACK = 1.05
 """Layers may be so many times as thick as planned, for rounding."""
 _STRAY_MM = 20.0
 """Length (mm) of lines of supports beside those of the build that may be a rest of rounding."""
-_BESIDE = 0.6
-"""Distance (mm) from the supports of a build up to which lines of supports belong to them."""
+_BESIDE = 1.2
+"""Distance (mm) from the supports of a build up to which lines of supports belong to them: Cura joins supports that are
+nearer to each other than 2 mm."""
+_MOST_BESIDE = 0.1
+"""Greatest fraction of the lines of supports that may lie farther away."""
 
 
 def check_own_supports(
@@ -33,7 +36,8 @@ def check_own_supports(
         supports = each.supports
         length = supports.length
         if build.settings.target == "cura" and build.supports:
-            length *= _fraction_beside(supports, build, origin)
+            fraction = _fraction_beside(supports, build, origin)
+            length *= fraction if fraction > _MOST_BESIDE else 0.0
         if length > _STRAY_MM:
             message = (
                 f"the slicer added {length / 1000.0:.2f} m of supports of its own; turn its supports off"

@@ -17,6 +17,8 @@ _KINDS: dict[str, PrintedKind] = {
     "infill_mesh": "modifier",
     "cutting_mesh": "modifier",
 }
+_DROP_DOWN = "support_mesh_drop_down"
+"""Whether Cura prints supports below a support too; earlier versions of amprep do not forbid it."""
 _PROJECT = "cura/"
 
 
@@ -27,7 +29,9 @@ def read_as_cura(structure: Structure, meshes: ObjectMeshes) -> PrintedFile:
     for instance in structure.instances():
         vertices, triangles = meshes.of(instance.object_id)
         settings = _settings_of(instance)
-        foreign = sorted(settings.keys() - _KINDS)
+        foreign = sorted(settings.keys() - _KINDS - {_DROP_DOWN})
+        if settings.get(_DROP_DOWN, "").strip().lower() not in ("", "false"):
+            remarks.append(f"it would fill the space below {instance.name!r} down to the plate")
         if foreign:
             remarks.append(
                 f"it would print {instance.name!r} with settings of its own: {', '.join(foreign)[:80]}"

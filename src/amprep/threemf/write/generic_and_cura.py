@@ -94,10 +94,16 @@ def _support_objects(build: Build, support: SupportBody, first: int) -> list[Mes
 def _support_object(
     build: Build, support: SupportBody, mesh: Mesh, beams: BeamSet | None = None
 ) -> MeshObject:
-    """Return the support's object; the type `support` is the only one that forbids to fill a surface."""
+    """Return the support's object; the type `support` is the only one that forbids to fill a surface.
+
+    Unless told otherwise, Cura fills the space below a support down to the plate.
+    """
     metadata = own_metadata(record.HOLDS, ", ".join(build.parts[part].label for part in support.parts))
     if build.settings.target == "cura":
-        metadata += ((CURA_NAMESPACE, "support_mesh", "True"),)
+        metadata += (
+            (CURA_NAMESPACE, "support_mesh", "True"),
+            (CURA_NAMESPACE, "support_mesh_drop_down", "False"),
+        )
     kind: ObjectType = "support" if support.surface else "solidsupport"
     if build.settings.target == "generic" and build.settings.supports_as == "model" and not support.surface:
         kind = "model"

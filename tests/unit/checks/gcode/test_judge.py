@@ -94,7 +94,7 @@ def test_an_object_that_the_slicer_set_on_the_bed_is_named_as_lower(tmp_path):
     verdict = judged(
         tmp_path / "a.gcode", replace(build, parts=parts), title, Slicer().gcode(L_PRISMS, title)
     )
-    assert faults(verdict)[0] == (POSITION, "bracket")
+    assert faults(verdict) == [(POSITION, "bracket"), (POSITION, "bracket-2")]
     assert "it is 3.00 mm lower than prepared" in verdict.violations[0].message
 
 
