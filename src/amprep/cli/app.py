@@ -1,8 +1,11 @@
 """The application with all commands."""
 
-from typing import Annotated
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from amprep import __version__
 from amprep.cli import bench
@@ -13,8 +16,26 @@ from amprep.cli.jobs import inspect as inspection
 from amprep.cli.jobs import run, support
 from amprep.cli.setup import demo, doctor, init, schema
 
+
+class FilesOrCommand(TyperGroup):
+    """A group of commands whose arguments may also be files alone, as a file manager passes them: it runs the job."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # typer may bring a click of its own
+        """Parse arguments; those that begin with an existing file or folder, and no command, belong to `run`."""
+        if args and args[0] not in self.commands and _exists(args[0]):
+            args = ["run", *args]
+        return list(super().parse_args(ctx, args))
+
+
+def _exists(text: str) -> bool:
+    with suppress(OSError, ValueError):  # no path can be as long, or contain a zero byte
+        return Path(text).exists()
+    return False
+
+
 app = typer.Typer(
     name="amprep",
+    cls=FilesOrCommand,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import partial, wraps
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
@@ -143,6 +143,14 @@ class JobOptions(ReadingOptions):
     quiet: Annotated[
         bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
     ] = False
+    progress: Annotated[
+        Literal["bars", "lines"],
+        output_option(
+            "--progress",
+            metavar="FORM",
+            help="Show progress as bars, or for programs as lines of JSON on standard error.",
+        ),
+    ] = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
     log: Annotated[

@@ -1,10 +1,12 @@
-"""Progress bars on standard error, one per stage."""
+"""The progress of a run on standard error: bars for people, lines of JSON for programs."""
 
+import json
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from amprep.cli.log import Log
 from amprep.model.control import Progress
@@ -48,17 +50,65 @@ class Bars:
             self._tasks[name] = self._progress.add_task(name, total=1.0, message="")
         task = TaskID(self._tasks[name])
 
-        last = ""
-
-        def progress(fraction: float, message: str) -> None:
-            nonlocal last
-            if message and message != last:
-                self._log(f"{name}: {message}")
-                last = message
+        def show(fraction: float, message: str) -> None:
             self._progress.update(task, completed=min(max(fraction, 0.0), 1.0), message=escape(message))
 
-        begin = time.monotonic()
-        progress(0.0, "")
-        yield progress
-        progress(1.0, "")
-        self._log(f"{name}: done in {time.monotonic() - begin:.2f} s")
+        with _logged(name, show, self._log) as progress:
+            yield progress
+
+
+class Lines:
+    """Prints a line of JSON where a stage begins or ends, its message changes, or another percent is done.
+
+    The keys are ``stage``, ``fraction`` (in [0, 1], of the stage) and ``message``.
+    """
+
+    def __init__(self, log: Log = lambda _: None) -> None:
+        self._log = log
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Nothing is to be closed."""
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[Progress]:
+        """Print the progress of one stage."""
+        last: tuple[float, str] | None = None
+
+        def show(fraction: float, message: str) -> None:
+            nonlocal last
+            step = round(min(max(fraction, 0.0), 1.0), 2), message
+            if step != last:
+                last = step
+                _print_line({"stage": name, "fraction": step[0], "message": message})
+
+        with _logged(name, show, self._log) as progress:
+            yield progress
+
+
+@contextmanager
+def _logged(name: str, show: Progress, log: Log) -> Iterator[Progress]:
+    """Yield a callback for one stage that shows its progress, and log its messages and its duration."""
+    last = ""
+
+    def progress(fraction: float, message: str) -> None:
+        nonlocal last
+        if message and message != last:
+            log(f"{name}: {message}")
+            last = message
+        show(fraction, message)
+
+    begin = time.monotonic()
+    progress(0.0, "")
+    yield progress
+    progress(1.0, "")
+    log(f"{name}: done in {time.monotonic() - begin:.2f} s")
+
+
+def _print_line(values: dict[str, Any]) -> None:
+    sys.stderr.write(json.dumps(values) + "\n")
+    sys.stderr.flush()

@@ -50,15 +50,16 @@ def call_api(
     )
     from rich.console import Console
 
-    from amprep.cli.progress import Bars
+    from amprep.cli.progress import Bars, Lines
     from amprep.host import Host
     from amprep.job import apply_sets, job_of, override
 
     job = apply_sets(override(job_of(inputs), {**options.changes, **changes}), options.sets or [])
-    console = Console(stderr=True, quiet=options.quiet)
+    as_lines = options.progress == "lines" and not options.quiet
+    console = Console(stderr=True, quiet=options.quiet or as_lines)
     if job.printer_is_default and isinstance(options, BuildOptions):
         console.print(f"[dim]no printer given, using {job.printer.name}; see 'amprep printers list'")
-    with logging_to(options.log) as log, Bars(console, log) as bars:
+    with logging_to(options.log) as log, Lines(log) if as_lines else Bars(console, log) as bars:
         with bars.stage("start"):
             from amprep import api  # importing it takes most of the start
 
