@@ -19,8 +19,10 @@ _LINE_STEP = 0.3
 """Distance (mm) of the points of outlines and of printed lines."""
 _THIN = 0.7
 """What is thinner than this fraction of the width of a line may be missing."""
-_LEVEL, _JUMP = 0.02, 0.03
-"""Sections so far (mm) above and below each other must not differ by this fraction of their area."""
+_CLOSED = 0.05
+"""Slicers close gaps of twice this width (mm), and print no walls there."""
+_LEVEL, _SLIVER = 0.02, 0.2
+"""Sections so far (mm) above and below each other must not differ by a region of at least this width (mm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +40,7 @@ class ComparedLayer:
     outline
         ``(k, 2)`` mm, points of the outlines of the section.
     required
-        ``(m, 2)`` mm, points of the outlines without what is too thin to be printed.
+        ``(m, 2)`` mm, points of the outlines, without what is too thin to be printed, and without narrow gaps.
     complete
         False if the lines of the layer are not all known.
     """
@@ -91,7 +93,7 @@ def compare_layers(
                 points - origin,
                 layer.lines[line, 5] > 0.0,
                 _points_of(section),
-                _points_of(section.offset(-thin).offset(thin)),
+                _points_of(section.offset(_CLOSED).offset(-_CLOSED - thin).offset(thin)),
                 layer.complete,
             )
         )
@@ -100,8 +102,9 @@ def compare_layers(
 
 def _jumps(solids: Sequence["Manifold"], height: float) -> bool:
     """Tell whether a level face is so near that the slicer may have cut above it as well as below it."""
-    areas = [float(sum(each.slice(height + side).area() for each in solids)) for side in (-_LEVEL, _LEVEL)]
-    return max(areas) - min(areas) > _JUMP * max(areas)
+    below, above = (_united([each.slice(height + side) for each in solids]) for side in (-_LEVEL, _LEVEL))
+    changed = (above - below) + (below - above)
+    return not changed.offset(-_SLIVER / 2.0).is_empty()
 
 
 def line_points(lines: Float32s) -> tuple[Floats, Int64s]:

@@ -10,8 +10,10 @@ from tests.shared.gcode import L_PRISMS, Prism, Slicer, build_of, prepared
 from amprep.checks.gcode import bed, slicing
 from amprep.checks.gcode.judge import NOT_JUDGED, NUMBER, POSITION, SHAPE, SIZE, judge_gcode
 from amprep.model import PlacedPart
+from amprep.model.mesh import join_meshes
 from amprep.model.supports.rules import SupportRules
 from amprep.slicers.gcode.read import read_gcode, read_head
+from amprep.threemf.build.identifier import title_of
 
 HEIGHTS = np.linspace(0.01, 5.9, 6)
 CENTRE = np.array([15.0, 10.0])
@@ -136,6 +138,18 @@ def test_what_the_build_has_not_is_a_fault_of_its_shape(tmp_path):
     build, title = prepared((notched,))
     verdict = judged(tmp_path / "a.gcode", build, title, Slicer().gcode((ring,), title))
     assert faults(verdict) == [(SHAPE, "ring")]
+
+
+def test_a_gap_that_slicers_close_is_no_fault(tmp_path):
+    whole = Prism("plate", ((0, 0), (40, 0), (40, 40), (0, 40)), 4.0, (20.0, 20.0))
+    left = replace(whole, corners=((0, 0), (19.98, 0), (19.98, 40), (0, 40)))
+    right = replace(whole, corners=((20.02, 0), (40, 0), (40, 40), (20.02, 40)))
+    halves = build_of((left, right))
+    mesh = join_meshes([each.mesh for each in halves.parts])
+    [first, _] = halves.parts
+    build = replace(halves, parts=(replace(first, part=replace(first.part, mesh=mesh)),))
+    title = title_of(build)
+    assert judged(tmp_path / "a.gcode", build, title, Slicer().gcode((whole,), title)).ok
 
 
 def test_supports_of_the_slicer_are_named_with_their_object(tmp_path):
