@@ -14,7 +14,7 @@ OUTSIDE = 0.15
 """How far (mm) the middle of a line may lie outside of a section."""
 _MISSED = 0.3
 """How far (mm) beyond the width of a line an outline may be from the next line."""
-MOST_ASTRAY, MOST_MISSING = 0.02, 0.02
+MOST_ASTRAY, MOST_MISSING = 0.02, 0.05
 """Greatest fraction of the lines that may be where none belongs, and of the outlines that may not be printed."""
 _BETWEEN = 0.1
 """How much farther (mm) a line is from the next known point of an outline than from the outline."""

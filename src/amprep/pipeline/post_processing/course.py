@@ -89,11 +89,15 @@ def _judged(record: GcodeRecord, gcode: Path, head: GcodeHead, found: FoundBuild
 
 
 def sample_heights(build: Build) -> Floats:
-    """Return the heights (mm) in whose layers shapes are compared, fewer where there are many objects."""
+    """Return the heights (mm) in whose layers shapes are compared, fewer where there are many objects.
+
+    They are closer to each other near the plate, so that low objects beside high ones have several, too.
+    """
     objects = max(len(build.parts), 1)
     count = min(max(_LAYERS_OF_ALL // objects, _LEAST_LAYERS), _MOST_LAYERS)
     top = max((each.mesh.bounds[1][2] for each in build.parts), default=1.0)
-    return np.linspace(0.01, 0.999 * float(top), count)
+    heights: Floats = 0.01 + 0.999 * float(top) * np.linspace(0.0, 1.0, count) ** 2
+    return heights
 
 
 def _destination_words(where: Destination) -> list[str]:
