@@ -100,7 +100,9 @@ def _with_first_transform_moved(text: str) -> str:
 @pytest.mark.parametrize("target", ["generic", "prusaslicer", "cura"])
 @pytest.mark.parametrize("cell", ["prism", "x-wall"])
 def test_every_target_and_cell_verifies(amprep, fixtures, tmp_path, target, cell):
-    outcome = amprep("run", fixtures / "table.stl", "-o", tmp_path, "--for", target, "--cell", cell, "--json")
+    small = ("--set", "supports.pitch_mm=2.5")
+    command = ("run", fixtures / "table.stl", "-o", tmp_path, "--for", target, "--cell", cell, "--json")
+    outcome = amprep(*command, *small)
     assert outcome.code == 0
     assert outcome.json["builds"][0]["supports"]["volume_mm3"] > 0
     assert amprep("verify", tmp_path / "table.build-1.3mf").code == 0
@@ -124,6 +126,8 @@ def test_files_folders_and_counts_may_be_mixed(amprep, fixtures, tmp_path):
         "run",
         f"{folder}:2",
         f"{fixtures / 'knife-edge.stl'}:3",
+        "--cell",
+        "prism",
         "-o",
         tmp_path / "out",
         "--json",
@@ -134,7 +138,9 @@ def test_files_folders_and_counts_may_be_mixed(amprep, fixtures, tmp_path):
 
 
 def test_a_dry_run_writes_nothing(amprep, fixtures, tmp_path):
-    outcome = amprep("run", fixtures / "table.stl", "-o", tmp_path / "out", "--dry-run", "--json")
+    outcome = amprep(
+        "run", fixtures / "table.stl", "-o", tmp_path / "out", "--cell", "prism", "--dry-run", "--json"
+    )
     assert outcome.code == 0
     assert outcome.json["builds"][0]["parts"]
     assert not (tmp_path / "out").exists()
@@ -144,7 +150,8 @@ def test_stl_files_are_in_build_coordinates(amprep, fixtures, tmp_path):
     import trimesh
 
     outcome = amprep(
-        "run", fixtures / "table.stl", "-o", tmp_path, "--stl", "--json", "--set", "packing.lift_mm=3"
+        *("run", fixtures / "table.stl", "-o", tmp_path, "--cell", "prism"),
+        *("--stl", "--json", "--set", "packing.lift_mm=3"),
     )
     names = outcome.json["builds"][0]["stl_files"]
     bounds = [trimesh.load_mesh(tmp_path / name).bounds for name in names]
@@ -168,6 +175,7 @@ def test_unplaced_parts_of_a_fill_job_are_not_faults(amprep, tmp_path):
     box = _box_stl(tmp_path / "box.stl", 40.0)
     outcome = amprep(
         "run", f"{box}:9", "-o", tmp_path / "out", "--json", "--set", "printer={size_mm=[100.0,100.0,50.0]}",
+        "--cell", "prism",
         "--set", 'packing.objective="fill"',
     )  # fmt: skip
     assert outcome.code == 0

@@ -67,7 +67,7 @@ def test_parts_stay_where_the_build_items_put_them(amprep, tmp_path):
 
 def test_positions_are_in_the_unit_of_the_file(amprep, tmp_path):
     file = plate_3mf(tmp_path / "plate.3mf", (2, 3, 0.5), unit="centimeter")
-    outcome = amprep("support", file, "--json", "--dry-run")
+    outcome = amprep("support", file, "--cell", "prism", "--json", "--dry-run")
     (part,) = outcome.json["builds"][0]["parts"]
     assert (part["low_mm"], part["high_mm"]) == ([20, 30, 5], [120, 130, 45])
 
@@ -77,7 +77,8 @@ def test_a_mesh_lies_where_its_own_coordinates_say_or_in_the_middle(amprep, fixt
     assert outside.code == 2
     assert "--center" in outside.err
     assert not list(tmp_path.iterdir())
-    outcome = amprep("support", fixtures / "table.stl", "-o", tmp_path, "--center", "--json")
+    options = ("--center", "--cell", "prism", "--json")
+    outcome = amprep("support", fixtures / "table.stl", "-o", tmp_path, *options)
     assert outcome.code == 0
     (part,) = json.loads((tmp_path / "table.supported.report.json").read_text())["builds"][0]["parts"]
     assert [low + high for low, high in zip(part["low_mm"][:2], part["high_mm"][:2], strict=True)] == [

@@ -70,7 +70,7 @@ def problems(draw, accepts):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@examples(80)
+@examples(40)
 @given(data=st.data())
 def test_a_packing_keeps_its_promise(packer, data):
     problem = data.draw(problems(accepted_by(packer)))
@@ -78,7 +78,7 @@ def test_a_packing_keeps_its_promise(packer, data):
 
 
 @pytest.mark.parametrize("packer", PACKERS)
-@examples(30)
+@examples(15)
 @given(data=st.data())
 def test_what_stands_already_stays_and_is_avoided(packer, data):
     accepts = accepted_by(packer)

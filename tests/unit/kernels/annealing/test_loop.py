@@ -37,7 +37,7 @@ def test_nothing_is_nearer_than_the_clearance_after_any_accepted_move(word, clea
     )
     search = search_of(problem, temperature=0.5, drops=0.4, turns=0.3)
     accepted = 0
-    while accepted < 60:
+    while accepted < 25:
         if one_move(search):
             accepted += 1
             placed = layout_of(search, problem)

@@ -51,7 +51,7 @@ def crossings(vertices, triangles):
 
 
 @given(SEEDS, st.sampled_from([0.1, 0.3, 0.7]), st.sampled_from(COSTS))
-@examples(40)
+@examples(20)
 def test_a_simplified_random_solid_contains_the_original(seed, fraction, cost):
     solid = random_solid(seed)
     mesh = arrays(solid)
