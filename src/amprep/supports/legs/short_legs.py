@@ -1,10 +1,7 @@
 """Leave out supports whose finished solids have legs that are too long for their width.
 
-Planning knows the squares that supports use, but not what territories, walls and holes cut from the finished
-solids. So the solids are measured as well: what they show of legs above the limit goes, and with it what only those
-carry. Slabs as thick as the layers of the grid hide collars and ends of braces that make a leg wider at single
-heights only. So where these show no leg that is too long, thinner slabs are tried. Of theirs, legs no higher than a
-layer are details of cells.
+Planning knows the squares that supports use, but not what territories, walls and holes cut from the finished solids. So
+the solids are measured as well: what they show of legs above the limit goes, and with it what only those carry.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,9 +20,6 @@ from amprep.supports.legs.leave_out import without_edges
 
 _BESIDE = 0.25
 """Distance (in pitches) from the box around a leg up to which axes of edges belong to it."""
-
-_FINE = 0.5
-"""Thickness (mm) of the slabs by which supports are measured a second time where the layers of the grid are thicker."""
 
 _MOST_ROUNDS = 40
 """Largest number of rounds; the distance grows by a pitch in each in which nothing goes."""
@@ -84,21 +78,13 @@ def _long_legs(
 ) -> list[_FinishedLeg]:
     """Return the legs of bodies that are too long."""
     groups = {parts: group for group, parts in enumerate(layout.group_parts)}
-    step = layout.grid.step
-    for thickness in (step, _FINE) if step > _FINE else (step,):
-        legs = []
-        for body in bodies:
-            if not body.surface and len(body.mesh.triangles):
-                held = [meshes[part] for part in body.parts]
-                found = long_stretches(body.mesh, thickness, ratio, held)
-                legs += [
-                    _FinishedLeg(groups[body.parts], boxes[len(boxes) // 2])
-                    for boxes in found
-                    if thickness == step or np.ptp(boxes[:, :, 2]) > step
-                ]
-        if legs:
-            return legs
-    return []
+    legs = []
+    for body in bodies:
+        if not body.surface and len(body.mesh.triangles):
+            held = [meshes[part] for part in body.parts]
+            found = long_stretches(body.mesh, layout.grid.step, ratio, held)
+            legs += [_FinishedLeg(groups[body.parts], boxes[len(boxes) // 2]) for boxes in found]
+    return legs
 
 
 def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:

@@ -1,15 +1,11 @@
 """Supports whose finished solids have legs that are too long are left out, and the others stay."""
 
-from dataclasses import replace
-
 import numpy as np
 from manifold3d import OpType
 from tests.shared.layouts import Solid, box, layout, mesh_of, placed
 from tests.shared.supported import build_of
 
 from amprep.checks.supports.legs import check_legs
-from amprep.geometry.meshes.manifold import as_manifold
-from amprep.measures.legs import long_stretches
 from amprep.model import Stop, SupportBody
 from amprep.model.supports import SLENDER
 from amprep.supports.legs.short_legs import without_long_legs
@@ -46,24 +42,6 @@ def test_a_support_that_is_a_needle_is_left_out_and_its_overhang_has_a_reason():
     assert set(built.layout.edges.upper[:, 2].tolist()) == set(range(needle))
     build = build_of([box((6, 3, 3), (0, 0, 20))], [], leg_ratio=10.0)
     assert check_legs(type(build)(build.settings, build.parts, built.bodies), Stop()) == []
-
-
-def test_a_needle_with_collars_is_left_out_although_every_layer_of_the_grid_has_a_wide_one():
-    parts = placed(box((5, 1, 3), (0, 0, 20)))
-    planned = layout(parts, leg_ratio=0.0, territory="shared", oblique_cost=100)
-    plain = builder(lambda x: {3: 0.5, 4: 0.4}.get(x, 2.2))
-    collars = [box((2.4, 2.4, 0.1), (4.2, -0.7, z + 0.4)) for z in range(1, 19)]
-
-    def build(given):
-        (body,) = plain(given)
-        solid = as_manifold(body.mesh.vertices, body.mesh.triangles)
-        more = collars if 4 in given.edges.x else []
-        return (replace(body, mesh=mesh_of(Solid.batch_boolean([solid, *more], OpType.Add))),)
-
-    (body,) = build(planned)
-    assert not long_stretches(body.mesh, planned.grid.step, 10.0, [])
-    built = without_long_legs(build, planned, parts, 10.0)
-    assert (~built.layout.connected).tolist() == (planned.red.square[:, 2] == 4).tolist()
 
 
 def test_without_a_limit_and_without_long_legs_nothing_is_built_twice():
