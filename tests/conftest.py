@@ -5,6 +5,8 @@ tests ask for, and ``--hypothesis-profile=nightly`` explores new ones.
 """
 
 import os
+import tempfile
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -21,11 +23,15 @@ WITHOUT_COMPILATION = os.environ.get("NUMBA_DISABLE_JIT") == "1"
 
 
 def pytest_configure(config):
-    """Keep the process of the tests from forking, and let hashes wrap around where kernels run as plain Python.
+    """Keep the tests from the settings of the developer and from forking, and let hashes wrap around in plain Python.
 
     numpy warns of that, numba does not.
     """
     supervision.ENABLED = False
+    own = str(
+        Path(tempfile.gettempdir(), "amprep-tests")
+    )  # without the settings and profiles of the developer
+    os.environ["XDG_CONFIG_HOME"] = os.environ["APPDATA"] = own
     if WITHOUT_COMPILATION:
         config.addinivalue_line("filterwarnings", "ignore:overflow encountered in scalar:RuntimeWarning")
 

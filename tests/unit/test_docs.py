@@ -33,7 +33,9 @@ PAGES = sorted(
 BASES = (ROOT, ROOT / "src" / "amprep")
 FILES = {path.name for base in ("src", "tests", "fixtures", "plugins") for path in (ROOT / base).rglob("*")}
 PATH = re.compile(r"`([\w.*-]+(?:/[\w.*-]+)*/?)`")
-OF_THE_READER = re.compile(r"(NAME|job|bracket|plate)\.|.*\bNAME\b|(out|dist)/$|\.\w+$|post\.toml$")
+OF_THE_READER = re.compile(
+    r"(NAME|job|bracket|plate)\.|.*\bNAME\b|(out|dist)/$|\.\w+$|(post|settings)\.toml$"
+)
 """Paths of files that the reader makes, and suffixes."""
 SECTIONS = {
     "`[packing]`": PackingSettings,

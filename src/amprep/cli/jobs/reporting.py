@@ -53,10 +53,15 @@ def call_api(
     from amprep.cli.progress import Bars, Lines
     from amprep.host import Host
     from amprep.job import apply_sets, job_of, override
+    from amprep.job.user_settings import with_user_settings
 
-    job = apply_sets(override(job_of(inputs), {**options.changes, **changes}), options.sets or [])
+    stated = apply_sets(override(job_of(inputs), {**options.changes, **changes}), options.sets or [])
+    job, taken, settings = with_user_settings(stated)
     as_lines = options.progress == "lines" and not options.quiet
     console = Console(stderr=True, quiet=options.quiet or as_lines)
+    if taken:
+        words = ", ".join(f"{key} {value}" for key, value in taken.items())
+        console.print(f"{words}, as {settings} states", style="dim", markup=False)
     if job.printer_is_default and isinstance(options, BuildOptions):
         console.print(f"[dim]no printer given, using {job.printer.name}; see 'amprep printers list'")
     with logging_to(options.log) as log, Lines(log) if as_lines else Bars(console, log) as bars:
