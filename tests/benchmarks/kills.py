@@ -56,7 +56,11 @@ def whole(path):
     if path.suffix == ".png":
         Image.open(path).load()
         return True
-    return path.read_text(encoding="utf-8").rstrip().endswith("</html>")
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".csv":
+        columns = text.partition("\n")[0].count(",")
+        return text.endswith("\n") and all(line.count(",") >= columns for line in text.splitlines())
+    return text.rstrip().endswith("</html>")
 
 
 def faults(output, expected, code, number):

@@ -56,7 +56,8 @@ def gcode(
     if as_json:
         typer.echo(json.dumps(gcode_json(record), indent=2))
     elif not refused:
-        for line in summary_lines(record):
+        first, *others = summary_lines(record)
+        for line in (f"amprep {first}", *others):
             typer.echo(line)
         typer.echo(f"wrote {written}" if written else f"no JSON: the G-code goes to {record.host}")
     if not record.ok:
