@@ -49,6 +49,7 @@ def gcode(
     """
     from amprep.pipeline.post_processing.course import check_gcode, write_findings
     from amprep.report.gcode import gcode_json, refusal_lines, summary_lines
+    from amprep.report.terminal import printable
 
     record = check_gcode(file, build=build, folder=folder, environment=os.environ)
     refused = strict and not record.ok
@@ -58,11 +59,11 @@ def gcode(
     elif not refused:
         first, *others = summary_lines(record)
         for line in (f"amprep {first}", *others):
-            typer.echo(line)
+            typer.echo(printable(line))
         typer.echo(f"wrote {written}" if written else f"no JSON: the G-code goes to {record.host}")
     if not record.ok:
         for line in refusal_lines(record):
-            sys.stderr.write(f"amprep: {line}\n")
+            sys.stderr.write(f"amprep: {printable(line)}\n")
     raise typer.Exit(cli.INCOMPLETE if refused else cli.DONE)
 
 

@@ -32,6 +32,8 @@ _WIDTHS = (";WIDTH:", "; LINE_WIDTH:")
 _BEFORE = re.compile(rb"[ \t\r]*(?:[Nn][-+]?\d*\.?\d*[ \t\r]*)?")
 """What a line may have before its command."""
 _LONGEST_LABEL = 1 << 16
+_FARTHEST = 1e6
+"""Largest coordinate (mm) that a printer may have."""
 _NUMBERS = re.compile(r"(?:\s+id:\s*\d+)?(?:\s+copy\s+\d+)?$|_id_\d+_copy_\d+$")
 
 
@@ -107,7 +109,7 @@ def read_gcode(path: Path, head: GcodeHead, heights: Floats) -> SlicedPlate:
     Raises
     ------
     InputError
-        If the file cannot be read, has too many labels, or a line too long.
+        If the file cannot be read, has too many labels, a line too long, or coordinates that no printer has.
     """
     reader = _Reader(head, heights)
     with _opened(path) as file:
@@ -115,6 +117,8 @@ def read_gcode(path: Path, head: GcodeHead, heights: Floats) -> SlicedPlate:
             reader.read(file)
         except OSError as error:
             raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    if not reader.is_bounded:
+        raise InputError(f"{path}: prints farther than {_FARTHEST / 1000:g} m from the origin")
     return reader.plate()
 
 
@@ -169,7 +173,9 @@ class _Reader:
 
         require_room(self.learnt)
         self.learnt += 1
-        text = block[start : min(end, start + _LONGEST_LABEL)].tobytes().partition(b"\n")[0]
+        text, ending, _ = block[start : min(end, start + _LONGEST_LABEL)].tobytes().partition(b"\n")
+        if not ending:
+            raise InputError(f"the G-code has a label of more than {_LONGEST_LABEL >> 10} KiB")
         lead = len(_BEFORE.match(text)[0])  # type: ignore[index]
         line = text[lead:].decode("utf-8", "replace").strip()
         role = role_of(line)
@@ -194,6 +200,12 @@ class _Reader:
 
         self.samples.add(self.segments[: self.machine.modes[SEGMENTS]])
         self.machine.modes[SEGMENTS] = 0
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether all lines have coordinates that a printer may have."""
+        printed = self.tracks.extent[self.tracks.counts[:, 0] > 0]
+        return bool(np.all(np.abs(printed) <= _FARTHEST) and np.all(np.isfinite(self.tracks.length)))
 
     def plate(self) -> SlicedPlate:
         """Return what was read."""

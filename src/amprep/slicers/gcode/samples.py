@@ -17,6 +17,7 @@ class LayerSamples:
 
     def __init__(self) -> None:
         self._pieces: dict[tuple[int, float], list[Float32s]] = defaultdict(list)
+        self._heights: dict[int, list[float]] = defaultdict(list)
         self._thickness: dict[tuple[int, float], float] = {}
         self._counts: dict[tuple[int, float], int] = defaultdict(int)
         self._dropped: set[tuple[int, float]] = set()
@@ -35,9 +36,13 @@ class LayerSamples:
         """Add lines of one row and one layer."""
         key = (int(run[0, 0]), float(run[0, 1]))
         room = min(MOST_LINES_OF_A_LAYER - self._counts[key], MOST_LINES_OF_ALL - self._total)
+        if key not in self._thickness:
+            self._heights[key[0]].append(key[1])
         self._thickness[key] = float(run[0, 2])
         if len(run) > room:
             self._dropped.add(key)
+        if room <= 0 and key in self._pieces:
+            return
         kept = run[: max(room, 0), 3:].astype(np.float32)
         self._pieces[key].append(kept)
         self._counts[key] += len(kept)
@@ -45,7 +50,7 @@ class LayerSamples:
 
     def of_row(self, row: int) -> tuple[SlicedLayer, ...]:
         """Return the recorded layers of a row, in ascending order."""
-        keys = sorted(key for key in self._pieces if key[0] == row)
+        keys = [(row, z) for z in sorted(self._heights.get(row, []))]
         return tuple(
             SlicedLayer(
                 key[1], self._thickness[key], np.concatenate(self._pieces[key]), key not in self._dropped

@@ -2,8 +2,10 @@
 
 import hashlib
 import json
+import lzma
 import re
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,8 @@ from amprep.threemf.names import MODEL_NAME
 _HEAD_BYTES = 4 << 20
 """The metadata of a model is searched up to this length; it comes before the resources."""
 _WRITTEN = re.compile(rb':identifier"[^>]*>([0-9a-f]{8})</metadata>')
+_DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, NotImplementedError)
+"""What reading of a damaged or encrypted archive raises."""
 _NAMED = re.compile(r"(?<![0-9a-zA-Z])[0-9a-f]{8}(?![0-9a-zA-Z])")
 
 
@@ -58,7 +62,7 @@ def read_identifier(path: Path) -> str | None:
     try:
         with zipfile.ZipFile(path) as archive, archive.open(MODEL_NAME) as stream:
             head = stream.read(_HEAD_BYTES).partition(b"<resources")[0]
-    except (OSError, KeyError, ValueError, RuntimeError, NotImplementedError, EOFError, zipfile.BadZipFile):
+    except (OSError, KeyError, ValueError, *_DAMAGED):
         return None
     found = _WRITTEN.search(head)
     return None if found is None else found[1].decode()

@@ -1,6 +1,7 @@
 """Open a 3MF package as if it were hostile: limit its size, scan its XML and repair its relationships."""
 
 import io
+import lzma
 import posixpath
 import zipfile
 import zlib
@@ -127,7 +128,7 @@ def read_contents(path: Path) -> Contents:
                         outlines[info.filename] = outline
     except OSError as error:
         raise InputError(f"{path}: cannot read the file: {error.strerror or error}") from error
-    except (zipfile.BadZipFile, zlib.error, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError) as error:
         raise InputError(f"{path}: not a 3MF package or a damaged one ({error}); export it again") from error
     except (NotImplementedError, RuntimeError, ValueError) as error:
         raise InputError(f"{path}: a 3MF package may not use this kind of zip file ({error})") from error

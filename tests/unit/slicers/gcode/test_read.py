@@ -6,7 +6,7 @@ from tests.shared.gcode import L_PRISMS, WIDTH, Slicer
 
 from amprep.errors import InputError
 from amprep.slicers.gcode import read as reading
-from amprep.slicers.gcode import tables
+from amprep.slicers.gcode import samples, tables
 from amprep.slicers.gcode.read import read_gcode, read_head
 
 HEIGHTS = np.linspace(0.01, 6.0, 5)
@@ -133,3 +133,41 @@ def test_too_many_labels_are_refused(tmp_path, monkeypatch):
     path.write_text("".join(f"; printing object {k} id:0 copy 0\n" for k in range(20)), encoding="utf-8")
     with pytest.raises(InputError, match="different labels"):
         read_gcode(path, read_head(path), HEIGHTS)
+
+
+@pytest.mark.parametrize("lead", ["", " " * 70_000])
+def test_a_label_without_end_is_refused(tmp_path, lead):
+    path = tmp_path / "a.gcode"
+    name = "a" if lead else "a" * 70_000
+    path.write_text(f"; printing object b id:0 copy 0\n{lead}; printing object {name}\n", encoding="utf-8")
+    with pytest.raises(InputError, match="label of more than"):
+        read_gcode(path, read_head(path), HEIGHTS)
+
+
+@pytest.mark.parametrize(
+    "moves",
+    [
+        f"G1 X{'9' * 400} E1\n",
+        "G1 X2000000 E1\n",
+        f"G1 Z{'9' * 400}\nG1 X5 E1\n",
+        f"G91\nG1 X{'9' * 400}\nG1 X-{'9' * 400}\nG1 Y5 E1\n",
+    ],
+)
+def test_coordinates_that_no_printer_has_are_refused(tmp_path, moves):
+    path = tmp_path / "a.gcode"
+    path.write_text(f"M83\nG1 Z0.2\n{moves}", encoding="utf-8")
+    with pytest.raises(InputError, match="prints farther than 1000 m"):
+        read_gcode(path, read_head(path), HEIGHTS)
+
+
+def test_lines_beyond_the_limit_of_memory_take_none(monkeypatch):
+    monkeypatch.setattr(samples, "MOST_LINES_OF_A_LAYER", 3)
+    kept = samples.LayerSamples()
+    line = [0.2, 0.2, 0.0, 0.0, 1.0, 0.0, 0.2, 1.0]
+    for row in (4, 6) * 50:
+        kept.add(np.array([[row, *line]]))
+    for row in (4, 6):
+        (layer,) = kept.of_row(row)
+        assert (len(layer.lines), layer.complete) == (3, False)
+    assert sum(map(len, kept._pieces.values())) == 6
+    assert kept.of_row(5) == ()

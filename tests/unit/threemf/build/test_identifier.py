@@ -46,3 +46,14 @@ def test_other_files_have_none(tmp_path):
     with zipfile.ZipFile(archive, "w") as package:
         package.writestr("3D/3dmodel.model", "<model><resources/></model>")
     assert [read_identifier(each) for each in (text, archive, tmp_path / "missing.3mf")] == [None] * 3
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_a_damaged_archive_has_none(tmp_path, method):
+    path = tmp_path / "damaged.3mf"
+    with zipfile.ZipFile(path, "w", method) as package:
+        package.writestr("3D/3dmodel.model", "<model>" + "abc" * 1000 + "<resources/></model>")
+    content = bytearray(path.read_bytes())
+    content[50:65] = bytes(255 - byte for byte in content[50:65])
+    path.write_bytes(content)
+    assert read_identifier(path) is None

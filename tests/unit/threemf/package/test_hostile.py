@@ -105,6 +105,14 @@ BEYOND = (
 OUTSIDE = '<!DOCTYPE model [<!ENTITY a SYSTEM "file:///etc/passwd">]>'
 
 
+def test_an_archive_with_damaged_lzma_data_is_refused(tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_LZMA) as package:
+        package.writestr("3D/3dmodel.model", "abc" * 1000)
+    content = bytearray((tmp_path / "a.3mf").read_bytes())
+    content[55:65] = bytes(255 - byte for byte in content[55:65])
+    assert "damaged" in refusal(tmp_path / "a.3mf", bytes(content))
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
