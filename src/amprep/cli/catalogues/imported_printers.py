@@ -45,19 +45,20 @@ def import_printers(
     from amprep.model.counting import counted
     from amprep.printers.imported.read import read_printers
     from amprep.profiles import user_folder
+    from amprep.report.terminal import printable
 
     profiles, warnings = read_printers(source)
     profiles = _chosen(profiles, only or [])
     folder = output or user_folder(os.environ, "printers")
     for warning in warnings:
-        typer.echo(f"amprep: warning: {warning}", err=True)
+        typer.echo(f"amprep: warning: {printable(warning)}", err=True)
     written = [] if dry_run else _write(profiles, folder, force=force)
     if as_json:
         records = [asdict(profile) for profile in profiles]
         typer.echo(json.dumps({"printers": records, "files": [str(path) for path in written]}, indent=2))
         return
     for profile in profiles:
-        typer.echo(f"{profile.name}: {_size(profile)}")
+        typer.echo(printable(f"{profile.name}: {_size(profile)}"))
     if written:
         typer.echo(f"{counted(len(written), 'profile')} written to {folder}")
 
@@ -85,7 +86,7 @@ def _write(profiles: "list[PrinterProfile]", folder: Path, *, force: bool) -> li
     from amprep.files import replacing
     from amprep.profiles import profile_text
 
-    paths = [folder / f"{_file_name(profile.name)}.toml" for profile in profiles]
+    paths = [folder / f"{stem}.toml" for stem in _stems([profile.name for profile in profiles])]
     known = [path for path in paths if path.exists()]
     if known and not force:
         raise AmprepError(f"{known[0]} exists already; use --force to replace it, or -o for another folder")
@@ -99,8 +100,19 @@ def _write(profiles: "list[PrinterProfile]", folder: Path, *, force: bool) -> li
     return paths
 
 
-def _file_name(name: str) -> str:
-    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "printer"
+def _stems(names: list[str]) -> list[str]:
+    """Return a name of a file for each printer, all different, also where capital letters do not count."""
+    stems: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        plain = re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "printer"
+        stem, number = plain, 1
+        while stem.lower() in taken:
+            number += 1
+            stem = f"{plain}-{number}"
+        taken.add(stem.lower())
+        stems.append(stem)
+    return stems
 
 
 def _size(profile: "PrinterProfile") -> str:

@@ -91,7 +91,9 @@ def _chain(path: Path, read: Callable[[Path], Any]) -> list[Mapping[str, Any]]:
 def _value(chain: list[Mapping[str, Any]], key: str, usual: Any) -> Any:
     """Return a setting of the nearest definition that states it; formulas count as their default values."""
     for own in chain:
-        stated = own.get("overrides", {}).get(key) or _in_tree(own.get("settings", {}), key)
+        overrides = own.get("overrides")
+        stated = overrides.get(key) if isinstance(overrides, dict) else None
+        stated = stated or _in_tree(own.get("settings"), key)
         if isinstance(stated, dict):
             value = stated.get("value")
             if value is not None and (not isinstance(value, str) or _is_number(value)):

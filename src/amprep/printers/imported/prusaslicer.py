@@ -31,8 +31,9 @@ def read_ini(text: str, path: Path) -> list[PrinterProfile]:
         If there is no printer, or one of them is damaged.
     """
     sections = _sections(text)
+    known: dict[str, Section] = {}
     printers = {
-        name.removeprefix("printer:"): _with_parents(sections, name)
+        name.removeprefix("printer:"): _with_parents(sections, name, known)
         for name in sections
         if name.startswith("printer:") and "*" not in name
     }
@@ -66,19 +67,25 @@ def _sections(text: str) -> dict[str, Section]:
     return sections
 
 
-def _with_parents(sections: Mapping[str, Section], name: str, depth: int = 0) -> Section:
+def _with_parents(
+    sections: Mapping[str, Section], name: str, known: dict[str, Section], depth: int = 0
+) -> Section:
+    """Return the keys of a section and of those that it inherits from; `known` keeps those of all sections read."""
+    if name in known:
+        return known[name]
     own = sections[name]
     if depth > MOST_PARENTS:
         raise InputError(f"{name}: inherits from itself, or through more than {MOST_PARENTS} others")
     found: Section = {}
     for parent in filter(None, (each.strip() for each in own.get("inherits", "").split(";"))):
         if f"printer:{parent}" in sections:
-            found |= _with_parents(sections, f"printer:{parent}", depth + 1)
+            found |= _with_parents(sections, f"printer:{parent}", known, depth + 1)
         elif not _USUAL.keys() <= own.keys():
             raise InputError(
                 f"{name}: inherits from {parent!r}, which is not in the file; import the bundle with it"
             )
-    return found | own
+    known[name] = found | own
+    return known[name]
 
 
 def _profile(name: str, own: Section, source: str) -> PrinterProfile:

@@ -1,6 +1,5 @@
 """Read the printers in a file or folder of a slicer."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -39,9 +38,10 @@ def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
         return _named_apart(_of_file(path, read)), []
     printers: list[PrinterProfile] = []
     warnings: list[str] = []
-    for each in _files(path, read):
+    for each in sorted(path.rglob("*")):
         try:
-            printers += _of_file(each, read)
+            if _is_offered(each, read):
+                printers += _of_file(each, read)
         except InputError as error:
             warnings.append(str(error))
     if not printers:
@@ -51,18 +51,14 @@ def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
     return _named_apart(printers), warnings
 
 
-def _files(folder: Path, read: Any) -> Iterator[Path]:
-    """Yield the files of a folder that are printers; the parents of others are left out."""
-    for path in sorted(folder.rglob("*")):
-        if path.name.endswith(SUFFIX):
-            if is_visible(path, read):
-                yield path
-        elif path.suffix == ".json":
-            table = read(path)
-            if isinstance(table, dict) and table.get("type") == "machine" and is_printer(table):
-                yield path
-        elif path.suffix == ".ini":
-            yield path
+def _is_offered(path: Path, read: Any) -> bool:
+    """Tell whether a file is a printer, and no parent of others alone."""
+    if path.name.endswith(SUFFIX):
+        return is_visible(path, read)
+    if path.suffix == ".json":
+        table = read(path)
+        return isinstance(table, dict) and table.get("type") == "machine" and is_printer(table)
+    return path.suffix == ".ini"
 
 
 def _of_file(path: Path, read: Any) -> list[PrinterProfile]:

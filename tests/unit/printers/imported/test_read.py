@@ -153,3 +153,39 @@ def test_the_command_writes_profiles_that_jobs_can_name(tmp_path, monkeypatch):
     assert forced.stdout.splitlines()[0] == "Maker One: 250 x 210 x 200 mm"
     wrong = CliRunner().invoke(app, ["import", str(source), "--only", "makr one"])
     assert "did you mean 'Maker One'" in str(wrong.exception)
+
+
+def test_a_damaged_file_in_a_folder_is_a_warning(tmp_path):
+    saved(tmp_path, "config.ini", "bed_shape = 0x0,90x0,90x90,0x90\nmax_print_height = 80\n")
+    for name in ("a.json", "a.def.json"):
+        saved(tmp_path, name, "no JSON")
+    printers, warnings = read_printers(tmp_path)
+    assert [each.name for each in printers] == ["config"]
+    assert len(warnings) == 2
+
+
+def test_overrides_of_another_type_are_none(tmp_path):
+    own = {"name": "A", "overrides": [1], "metadata": {"visible": True}}
+    assert beds(saved(tmp_path, "a.def.json", own)) == {"A": ((100.0, 100.0, 100.0), (0.0, 0.0))}
+
+
+def test_each_section_is_read_once_however_often_others_inherit_from_it(tmp_path):
+    levels = [f"[printer:*{k}*]\ninherits = *{k + 1}*; *{k + 1}*; *{k + 1}*\n" for k in range(25)]
+    text = "".join([*levels, "[printer:*25*]\nmax_print_height = 70\n[printer:A]\ninherits = *0*\n"])
+    assert beds(saved(tmp_path, "maker.ini", text)) == {"A": ((200.0, 200.0, 70.0), (0.0, 0.0))}
+
+
+def test_printers_with_names_that_files_cannot_tell_apart_get_files_of_their_own(tmp_path):
+    names = ("Maker One", "Maker/One", "maker one")
+    area = {"type": "machine", "printable_area": ["0x0", "90x0", "90x90", "0x90"]}
+    for number, name in enumerate(names):
+        own = {**area, "name": name, "printable_height": str(100 + number)}
+        saved(tmp_path / "source", f"{number}.json", own)
+    target = tmp_path / "out"
+    run = CliRunner().invoke(app, ["import", str(tmp_path / "source"), "-o", str(target)])
+    assert run.exit_code == 0
+    assert sorted(path.name for path in target.iterdir()) == [
+        "Maker-One-2.toml",
+        "Maker-One.toml",
+        "maker-one-3.toml",
+    ]
