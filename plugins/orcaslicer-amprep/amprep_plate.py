@@ -226,7 +226,7 @@ def _progress_of(line: str) -> tuple[str, float] | None:
 
 def _show(report: dict[str, Any], folder: Path) -> Any:
     """Tell where the builds are and what must be fixed, and open the report if the user wants it."""
-    builds = [str(folder / Path(build["file"]).name) for build in report["builds"]]
+    builds = [str(folder / Path(build["file"]).name) for build in report["builds"] if build["file"]]
     problems = [f"{len(report['unplaced'])} not placed"] if report["unplaced"] else []
     problems += (
         [f"{report['triage']['must_fix']} findings must be fixed"] if report["triage"]["must_fix"] else []

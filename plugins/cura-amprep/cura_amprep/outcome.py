@@ -48,7 +48,7 @@ def outcome_of(ended: Ended, folder: Path) -> Outcome:
     folder
         Folder of the files.
     """
-    if ended.cancelled:
+    if ended.cancelled and ended.code != _DONE:  # the files may have been there before the user cancelled
         return Outcome("Cancelled. Nothing was written.", is_cancelled=True)
     if ended.code not in (_DONE, _INCOMPLETE):
         return Outcome(ended.error or f"amprep ended with exit code {ended.code}.")

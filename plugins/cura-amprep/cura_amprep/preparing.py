@@ -90,7 +90,7 @@ def _own_printer(order: Order, process: Process, on_progress: OnProgress) -> str
     definition = folder / "machine.def.json"
     definition.write_text(json.dumps(order.bed.definition(), indent=1), encoding="utf-8")
     ended = process.run(import_arguments(order.settings, str(definition), str(folder)), on_progress)
-    if ended.cancelled or ended.code != 0:
+    if ended.code != 0:
         raise _FailedError(outcome_of(ended, folder))
     return _only_file(ended.output)
 

@@ -101,6 +101,14 @@ def test_cancelling_ends_the_program_and_starts_no_other(tmp_path):
     assert process.run([path], lambda *_: None) == Ended(None, cancelled=True)
 
 
+def test_cancelling_when_the_files_are_there_changes_nothing(tmp_path):
+    builds = [{"file": "job.build-1.3mf", "parts": [{}], "height_mm": 4.0}]
+    report = {"job": "job", "builds": builds, "unplaced": [], "triage": {"must_fix": 0}}
+    outcome = outcome_of(Ended(0, json.dumps(report), cancelled=True), tmp_path)
+    assert not outcome.is_cancelled
+    assert outcome.builds == (tmp_path / "job.build-1.3mf",)
+
+
 @pytest.mark.parametrize(
     "line", ["", "amprep: wrong", "{", "{}", '{"stage": "pack", "fraction": "x", "message": ""}']
 )
