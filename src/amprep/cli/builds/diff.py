@@ -22,8 +22,8 @@ def diff(
 ) -> None:
     """Say in what two builds differ: parts, positions, supports, listed overhangs, settings.
 
-    Files of different targets may hold equal builds: their geometry is compared,
-    not their bytes.
+    The geometry is compared, not the bytes: files of one build for different
+    programs differ in the setting `target` alone.
 
     Exit codes: 0 if the builds are equal, 1 if they differ, 2 if a file is
     not a build that amprep wrote.

@@ -26,6 +26,9 @@ _SLICERS = {
 }
 """Programs by the names that their commands have."""
 
+_KERNEL = re.compile(r"@(?:kernel|njit\([^)]*cache=True[^)]*\))\s+def (\w+)")
+"""Definition of a function whose compiled code is kept; other compiled functions are part of those that call them."""
+
 _WAIT_S = 5.0
 """Longest time for a program to state its version."""
 
@@ -126,7 +129,7 @@ def _kernels() -> str:
     names = {
         f"{path.stem}.{name}"
         for path in folder.rglob("*.py")
-        for name in re.findall(r"@njit\([^)]*\)\s+def (\w+)", path.read_text(encoding="utf-8"))
+        for name in _KERNEL.findall(path.read_text(encoding="utf-8"))
     }
     tag = f"py{sys.version_info.major}{sys.version_info.minor}"
     cached = {

@@ -23,5 +23,5 @@ def test_packages_slicers_plugins_profiles_and_kernels_are_named(monkeypatch, tm
     assert found["profiles"]["printers"].endswith("printers)")
     done, _, total = found["kernels"]["compiled"].partition(";")[0].partition(" of ")
     assert 0 <= int(done) <= int(total)
-    assert int(total) > 50
+    assert int(total) > 100
     assert f"version: {__version__}" in CliRunner().invoke(app, ["doctor"]).stdout
