@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from amprep.arrays import Floats
-from amprep.checks.gcode.found import SlicedObject, SlicedPlate
+from amprep.arrays import Bools, Floats
+from amprep.checks.gcode.found import SlicedBody, SlicedObject, SlicedPlate
+from amprep.checks.gcode.sections import line_points
 from amprep.checks.violation import Violation, place_words
 from amprep.model.build_volume import BuildVolume
 
@@ -20,9 +21,8 @@ def check_bed(
     found = []
     for label, each in printed:
         body = each.body
-        corners = np.array([[x, y] for x in (body.low[0], body.high[0]) for y in (body.low[1], body.high[1])])
         if len(plate.bed):
-            beyond = not _all_inside(corners, plate.bed)
+            beyond = not _is_on(body, plate.bed)
         else:
             beyond = bool(
                 np.any(body.low[:2] < -_TOLERANCE) or np.any(body.high[:2] > space.size[:2] + _TOLERANCE)
@@ -41,17 +41,26 @@ def extent_words(plate: SlicedPlate) -> str:
     return "by the bed of the slicer" if len(plate.bed) else "by the build volume, the G-code states no bed"
 
 
-def _all_inside(corners: Floats, bed: Floats) -> bool:
-    """Tell whether corners lie inside the box around the bed, or in the bed where it is no rectangle.
-
-    A box that is round or has more corners is judged by its inscribed shape: the corners of the extent of an object
-    may lie outside of a round bed, its middle lines may not.
-    """
+def _is_on(body: SlicedBody, bed: Floats) -> bool:
+    """Tell whether the extent of a body is inside the box around the bed, and its recorded lines are on the bed."""
     low, high = bed.min(axis=0) - _TOLERANCE, bed.max(axis=0) + _TOLERANCE
-    if not bool(np.all(corners >= low) and np.all(corners <= high)):
+    if np.any(body.low[:2] < low) or np.any(body.high[:2] > high):
         return False
-    if len(bed) <= 4:
-        return True
-    middles = np.array([(corners[i] + corners[j]) / 2.0 for i, j in ((0, 1), (0, 2), (1, 3), (2, 3))])
-    centre = (low + high) / 2.0
-    return bool(np.all(np.linalg.norm((middles - centre) / ((high - low) / 2.0), axis=1) <= 1.0 + 1e-6))
+    return all(bool(_are_inside(line_points(each.lines)[0], bed).all()) for each in body.samples)
+
+
+def _are_inside(points: Floats, outline: Floats) -> Bools:
+    """Tell which points ``(n, 2)`` mm are inside a polygon ``(k, 2)``, or within the tolerance of its border.
+
+    A point is inside if a line from it in the direction of x crosses the border an odd number of times.
+    """
+    inside, near = np.zeros(len(points), np.bool_), np.zeros(len(points), np.bool_)
+    x, y = points.T
+    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        along = end - start
+        part = np.clip((points - start) @ along / max(float(along @ along), 1e-12), 0.0, 1.0)
+        near |= np.linalg.norm(points - start - part[:, None] * along, axis=1) <= _TOLERANCE
+        if along[1]:
+            crosses = (start[1] > y) != (end[1] > y)
+            inside ^= crosses & (x < start[0] + (y - start[1]) * along[0] / along[1])
+    return inside | near

@@ -11,7 +11,7 @@ _PROGRAM = re.compile(
     r"(?:[ ]+v?[\d.][\w.+-]*)?)",
     re.MULTILINE | re.IGNORECASE,
 )
-_SETTING = re.compile(r"^; ?([a-z][a-z0-9_ ]{2,60}?)[ \t]*=[ \t]*([^\r\n]{0,2000})", re.MULTILINE)
+_SETTING = re.compile(r"^; ?([a-z][a-z0-9_ ]{2,60}?)[ \t]*=[ \t]*([^\r\n]{0,20000})", re.MULTILINE)
 _CORNER = re.compile(r"(-?\d+(?:\.\d+)?)x(-?\d+(?:\.\d+)?)")
 _LARGEST_BED = 1e5
 

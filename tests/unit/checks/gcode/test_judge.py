@@ -170,6 +170,28 @@ def test_an_object_beyond_the_bed_is_named(tmp_path):
     assert faults(verdict) == [(bed.PROMISE, "bracket-2")]
 
 
+ROUND = [(60 + 40.6 * np.cos(angle), 30 + 40.6 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi, 300)]
+STEPPED = [(0, 0), (0, 60), (120, 60), (120, 0), (80, 0), (80, -5), (40, -5), (40, 0)]
+NOTCHED = [(0, 0), (60, 0), (60, 15), (105, 15), (105, 45), (90, 45), (90, 30), (80, 30), (80, 45), (0, 45)]
+
+
+@pytest.mark.parametrize(
+    ("shape", "beyond"),
+    [
+        pytest.param(ROUND, ["bracket", "bracket-2"], id="corners are outside of the circle"),
+        pytest.param([(60 + 1.1 * (x - 60), y) for x, y in ROUND], [], id="all corners are in the ellipse"),
+        pytest.param(STEPPED, [], id="a step in front"),
+        pytest.param(NOTCHED, [], id="a notch that the L encloses"),
+        pytest.param([(x, y - 3) for x, y in NOTCHED], ["bracket-2"], id="the outline crosses the notch"),
+    ],
+)
+def test_beds_of_any_shape_are_judged_by_what_is_printed(tmp_path, shape, beyond):
+    """Both brackets are an L of 30 x 20 mm with arms of 8 mm, with their corners at (20, 20) and (70, 20)."""
+    outline = ",".join(f"{x:.5f}x{y:.5f}" for x, y in shape)
+    verdict = verdict_of(tmp_path / "a.gcode", Slicer(tail=f"; bed_shape = {outline}\n"))
+    assert faults(verdict) == [(bed.PROMISE, each) for each in beyond]
+
+
 def test_on_a_bed_of_another_origin_the_build_lies_centred(tmp_path):
     tail = "; bed_shape = -125x-105,125x-105,125x105,-125x105\n"
     verdict = verdict_of(tmp_path / "a.gcode", Slicer(change=lambda points: points - [125, 105], tail=tail))
