@@ -1,6 +1,7 @@
 """Install the check of G-code in a print profile of a slicer."""
 
 import os
+import shlex
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
@@ -94,8 +95,10 @@ def _program() -> list[str]:
 
 
 def _quoted(word: str) -> str:
-    """Return a word of a command line, in quotes if it has blanks; both shells and Windows know double quotes."""
-    return f'"{word}"' if any(char.isspace() for char in word) else word
+    """Return a word of a command line as slicers run it: by the user's shell, on Windows without one."""
+    if sys.platform == "win32":
+        return f'"{word}"' if any(char.isspace() for char in word) else word
+    return shlex.quote(word)
 
 
 def _read(path: Path) -> str:

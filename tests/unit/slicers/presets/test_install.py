@@ -1,5 +1,6 @@
 """Installation in a profile of the user, and nowhere else."""
 
+import shlex
 import sys
 from pathlib import Path
 
@@ -63,3 +64,15 @@ def test_settings_are_where_the_system_has_them(monkeypatch, platform, environme
     monkeypatch.setattr(sys, "platform", platform)
     found = folders.settings_folders("prusaslicer", environment, Path("/home/me"))
     assert found[0] == Path(expected)
+
+
+@pytest.mark.parametrize("name", ["a b", "builds (1)", "$HOME", "it's", 'a"b', "a;b&c"])
+def test_the_shell_of_a_slicer_reads_the_folder_as_it_is(settings, name):
+    done = install("prusaslicer", ["--folder", name], profile="My fine", folder=settings, write=False)
+    assert shlex.split(done.command)[-4:] == ["hook", "gcode", "--folder", name]
+
+
+def test_windows_knows_only_double_quotes(monkeypatch, settings):
+    monkeypatch.setattr(sys, "platform", "win32")
+    done = install("prusaslicer", ["--folder", "a b"], profile="My fine", folder=settings, write=False)
+    assert done.command.endswith('hook gcode --folder "a b"')
