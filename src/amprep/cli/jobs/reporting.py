@@ -48,6 +48,10 @@ def call_api(
         output=own.get("output"),
         time_limit=own.get("time_limit_s"),
     )
+    from amprep.interruption import clean_with
+
+    # until files are written, a signal may end the process at once: raised in a callback, an exception would be ignored
+    clean_with(lambda: None)
     from rich.console import Console
 
     from amprep.cli.progress import Bars, Lines
