@@ -112,7 +112,7 @@ class AmprepExtension(Extension):
         self._message.hide()
         self._job = self._message = None
         outcome = job.getResult() or Outcome(f"The plugin failed: {job.getError()}")
-        if outcome.builds:
+        if outcome.has_all:
             self._replace(job.order.models, outcome)
         kinds = Message.MessageType
         failed = kinds.NEUTRAL if outcome.is_cancelled else kinds.ERROR

@@ -29,6 +29,8 @@ class Outcome:
         Whether nothing must be fixed.
     is_cancelled
         Whether the user ended the run.
+    has_all
+        Whether one build holds every model, so that it may replace them.
     """
 
     text: str
@@ -36,6 +38,7 @@ class Outcome:
     report: Path | None = None
     is_good: bool = False
     is_cancelled: bool = False
+    has_all: bool = False
 
 
 def outcome_of(ended: Ended, folder: Path) -> Outcome:
@@ -62,7 +65,9 @@ def _read(report: dict[str, Any], folder: Path, *, is_good: bool) -> Outcome:
     # names alone: nothing outside the folder is opened
     builds = tuple(folder / Path(build["file"]).name for build in report["builds"] if build["file"])
     page = folder / Path(f"{report['job']}.report.html").name
-    return Outcome(_sentences(report, builds), builds, page if page.is_file() else None, is_good)
+    has_all = len(builds) == 1 and not report["unplaced"]
+    shown = page if page.is_file() else None
+    return Outcome(_sentences(report, builds), builds, shown, is_good, has_all=has_all)
 
 
 def _sentences(report: dict[str, Any], builds: tuple[Path, ...]) -> str:
@@ -75,8 +80,8 @@ def _sentences(report: dict[str, Any], builds: tuple[Path, ...]) -> str:
         sentences.append(
             f"{_counted(report['triage']['must_fix'], 'finding')} that must be fixed; see the report."
         )
-    if len(builds) > 1:
-        sentences.append(f"The plate shows the first build; the others are in {builds[0].parent}.")
+    if builds and (len(builds) > 1 or report["unplaced"]):
+        sentences.append(f"The models stay on the plate, because no build holds all; see {builds[0].parent}.")
     return " ".join(sentences)
 
 

@@ -41,7 +41,7 @@ def result(**values):
 
 def test_the_build_replaces_the_models_and_the_report_opens(prepared, tmp_path):
     outcome = result(
-        builds=(tmp_path / "a.3mf", tmp_path / "b.3mf"), report=tmp_path / "report.html", is_good=True
+        builds=(tmp_path / "a.3mf",), report=tmp_path / "report.html", is_good=True, has_all=True
     )
     blocker = Node(Mesh(), isNonPrintingMesh=True)
     application, added = prepared(outcome, Node(Mesh()), Node(children=[Node(Mesh())]), blocker)
@@ -72,6 +72,14 @@ def test_without_a_build_the_plate_stays_as_it_is(prepared, outcome, text, kind)
     assert application.root.children == [node]
     assert application.read == []
     assert (Message.shown[-1].text, Message.shown[-1].kind) == (text, kind)
+
+
+def test_models_stay_where_no_build_holds_all_of_them(prepared, tmp_path):
+    node = Node(Mesh())
+    application, _ = prepared(result(builds=(tmp_path / "a.3mf", tmp_path / "b.3mf")), node)
+    assert application.root.children == [node]
+    assert application.read == []
+    assert Message.shown[-1].kind == Message.MessageType.WARNING
 
 
 def test_without_a_printer_nothing_starts(prepared):

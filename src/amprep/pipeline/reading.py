@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 
@@ -142,7 +143,7 @@ def _expand(path: Path, suffixes: Collection[str]) -> list[Path]:
 def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
     """Return the files to read in a folder and its subfolders, sorted by path."""
     found: list[Path] = []
-    for here, folders, names in os.walk(folder):
+    for here, folders, names in os.walk(folder, onerror=_refuse):
         folders[:] = sorted(each for each in folders if not each.startswith("."))
         paths = [Path(here, name) for name in names if not (name.startswith(".") or _OF_A_RUN.search(name))]
         found += [path for path in paths if path.suffix.lower() in suffixes and path.is_file()]
@@ -155,6 +156,11 @@ def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:
             f"{folder}: no file to read in this folder (known suffixes: {', '.join(sorted(suffixes))})"
         )
     return sorted(found)
+
+
+def _refuse(error: OSError) -> NoReturn:
+    """Raise the error of a folder that cannot be read: without it, parts would be missing without a word."""
+    raise error
 
 
 def _where(part: Part) -> str:

@@ -1,5 +1,6 @@
 """What a slicer's G-code prints, object by object, as the judges need it."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -125,7 +126,9 @@ class SlicedPlate:
         """Return the first number of the first of some settings that the file states; 0 if it states none."""
         for name in names:
             try:
-                return float(self.settings[name].split(",")[0].rstrip("%"))
+                value = float(self.settings[name].split(",")[0].rstrip("%"))
             except (KeyError, ValueError):
                 continue
+            if math.isfinite(value):
+                return value
         return 0.0

@@ -60,6 +60,8 @@ def init(
     from amprep.job import make_job
     from amprep.job.reference.template import template
 
+    if not str(output).isprintable():
+        raise AmprepError(f"{str(output)[:80]!r} is not a usable file name")
     if output.exists() and not force:
         raise AmprepError(f"{output} exists already; use --force to replace it, or -o for another file")
     host = Host.load()

@@ -64,12 +64,14 @@ def write_findings(record: GcodeRecord, gcode: Path, environment: Mapping[str, s
         If a file cannot be written.
     """
     where = destination_of(gcode, environment)
-    write_comments(gcode, [*summary_lines(record), *_destination_words(where)])
+    lines = [*summary_lines(record), *_destination_words(where)]
     if where.output is None:
+        write_comments(gcode, lines)
         return None
     path = where.output.with_name(f"{where.output.stem}.amprep.json")
-    with replacing(path) as temporary:
+    with replacing(path) as temporary:  # if the G-code cannot be written, the JSON does not appear
         temporary.write_text(json.dumps(gcode_json(record), indent=2) + "\n", encoding="utf-8")
+        write_comments(gcode, lines)
     return path
 
 

@@ -21,6 +21,9 @@ Zone = tuple[float, float, float, float, float, float]
 _MOST_CORNERS = 10_000
 """Largest number of corners of an outline."""
 
+_MOST_AREA_CORNERS = 1000
+"""Largest number of corners of an area on the bed."""
+
 _STRIPS = 32
 """Number of strips over the depth of a bed with oblique edges."""
 
@@ -62,6 +65,8 @@ def profile_of_bed(
     """
     if not 3 <= len(outline) <= _MOST_CORNERS or not np.isfinite(outline).all():
         raise InputError(f"{name}: expected an outline of the bed of 3 to {_MOST_CORNERS} finite corners")
+    if any(len(area) > _MOST_AREA_CORNERS or not np.isfinite(area).all() for area in areas):
+        raise InputError(f"{name}: expected areas of at most {_MOST_AREA_CORNERS} finite corners")
     low, high = outline.min(axis=0), outline.max(axis=0)
     width, depth = (high - low).tolist()
     forbidden = [

@@ -34,3 +34,8 @@ def test_a_wrong_name_is_told_and_no_file_appears(tmp_path, wrong):
     result = init(tmp_path / "a.stl", "-o", tmp_path / "job.toml", *wrong)
     assert "did you mean" in str(result.exception)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_of_a_file_with_a_line_feed_is_refused(tmp_path):
+    assert isinstance(init(tmp_path / "a.stl", "-o", tmp_path / "a\nb.toml").exception, AmprepError)
+    assert list(tmp_path.iterdir()) == []

@@ -99,3 +99,9 @@ def test_areas_on_the_bed_are_forbidden():
 def test_a_bed_without_a_size_is_refused(outline, height):
     with pytest.raises(InputError, match="broken"):
         profile_of_bed("broken", outline, height, "")
+
+
+@pytest.mark.parametrize("area", [np.full((4, 2), np.nan), np.zeros((1001, 2))])
+def test_areas_that_cannot_be_kept_free_are_refused(area):
+    with pytest.raises(InputError, match="finite corners"):
+        profile_of_bed("broken", np.array(L_SHAPE, float), 9.0, "", [area])
