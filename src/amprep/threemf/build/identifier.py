@@ -20,7 +20,8 @@ _HEAD_BYTES = 4 << 20
 _WRITTEN = re.compile(rb':identifier"[^>]*>([0-9a-f]{8})</metadata>')
 _DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, NotImplementedError)
 """What reading of a damaged or encrypted archive raises."""
-_NAMED = re.compile(r"(?<![0-9a-zA-Z])[0-9a-f]{8}(?![0-9a-zA-Z])")
+_NAMED = re.compile(r"(?:build[^0-9A-Za-z]\d+|supported)[^0-9A-Za-z]{1,3}([0-9a-f]{8})(?![0-9A-Za-z])")
+"""An identifier follows the name of a build; other numbers of eight digits, such as dates, belong to names of parts."""
 
 
 def identifier_of(build: Build) -> str:

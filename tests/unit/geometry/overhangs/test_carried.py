@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared import bore_shapes
 from tests.shared.examples import examples
-from tests.shared.overhang_shapes import PLATE, SHAPES, bore, box, bridge, ledge
+from tests.shared.overhang_shapes import PLATE, bore, box, bridge, ledge
+from tests.shared.overhang_table import SHAPES
 from tests.shared.solids import arrays
 
 from amprep.geometry.overhangs.carried.points import Limits

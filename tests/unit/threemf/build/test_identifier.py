@@ -57,3 +57,10 @@ def test_a_damaged_archive_has_none(tmp_path, method):
     content[50:65] = bytes(255 - byte for byte in content[50:65])
     path.write_bytes(content)
     assert read_identifier(path) is None
+
+
+def test_a_date_in_the_name_of_a_part_is_no_identifier(make_build):
+    title = title_of(make_build())
+    assert identifiers_in(f"bracket 20240101 ({title})") == [identifier_of(make_build())]
+    assert identifiers_in("bracket_20240101.stl") == []
+    assert identifiers_in("plate_job_supported_0a1b2c3d_") == ["0a1b2c3d"]
