@@ -34,7 +34,7 @@ from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
 from amprep.supports.legs.short_legs import BuiltSupports, without_long_legs
 from amprep.supports.plan import PassScope, SupportLayout, plan_supports
-from amprep.supports.solids.build import SolidRules, build_supports
+from amprep.supports.solids.build import SolidRules, Surroundings, build_supports
 from amprep.supports.solids.thin_cells import suitable_pitch, wall_advice
 
 LARGEST_REACH = 5.0
@@ -255,14 +255,15 @@ def _built(
         leg_ratio=job.supports.leg_ratio,
     )
 
+    around = Surroundings(earlier, planned.layouts[number + 1 :])
+
     def build(layout: SupportLayout) -> tuple[SupportBody, ...]:
         return build_supports(
             layout,
             parts,
             lambda request: resolved.cell.emit(request, stop=stop, progress=progress),
             rules,
-            earlier=earlier,
-            later=planned.layouts[number + 1 :],
+            around=around,
             stop=stop,
             progress=progress,
         )

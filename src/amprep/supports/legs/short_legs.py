@@ -50,12 +50,20 @@ def without_long_legs(
         Placed parts of the build.
     ratio
         Largest ratio of length to width of a leg; 0 for no limit.
+
+    Notes
+    -----
+    `build` may return a body of an earlier call where nothing of it changed; it is measured once.
     """
     bodies = build(layout)
     meshes = [placed.mesh for placed in parts]
+    measured: dict[int, _MeasuredBody] = {}
     beside = _BESIDE * layout.grid.pitch
     for _ in range(_MOST_ROUNDS * (ratio > 0.0)):
-        legs = _long_legs(bodies, layout, meshes, ratio)
+        measured = {
+            id(body): measured.get(id(body)) or _measure(body, layout, meshes, ratio) for body in bodies
+        }
+        legs = [leg for each in measured.values() for leg in each.legs]
         if not legs:
             break
         reduced = _reduced(layout, legs, beside)
@@ -73,18 +81,21 @@ class _FinishedLeg(NamedTuple):
     box: Floats
 
 
-def _long_legs(
-    bodies: Sequence[SupportBody], layout: SupportLayout, meshes: Sequence[Mesh], ratio: float
-) -> list[_FinishedLeg]:
-    """Return the legs of bodies that are too long."""
-    groups = {parts: group for group, parts in enumerate(layout.group_parts)}
-    legs = []
-    for body in bodies:
-        if not body.surface and len(body.mesh.triangles):
-            held = [meshes[part] for part in body.parts]
-            found = long_stretches(body.mesh, layout.grid.step, ratio, held)
-            legs += [_FinishedLeg(groups[body.parts], boxes[len(boxes) // 2]) for boxes in found]
-    return legs
+class _MeasuredBody(NamedTuple):
+    """A body, and its legs that are too long; the reference keeps its identity from being used again."""
+
+    body: SupportBody
+    legs: list[_FinishedLeg]
+
+
+def _measure(body: SupportBody, layout: SupportLayout, meshes: Sequence[Mesh], ratio: float) -> _MeasuredBody:
+    """Find the legs of a body that are too long."""
+    if body.surface or not len(body.mesh.triangles):
+        return _MeasuredBody(body, [])
+    group = layout.group_parts.index(body.parts)
+    held = [meshes[part] for part in body.parts]
+    found = long_stretches(body.mesh, layout.grid.step, ratio, held)
+    return _MeasuredBody(body, [_FinishedLeg(group, boxes[len(boxes) // 2]) for boxes in found])
 
 
 def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:

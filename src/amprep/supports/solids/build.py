@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from amprep.arrays import CONTACT_TOLERANCE
@@ -13,6 +14,7 @@ from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop,
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
+from amprep.supports.legs.kept_supports import KeptSupports, key_of
 from amprep.supports.solids.bases import make_bases, plan_of_others
 from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
 from amprep.supports.solids.connectors import find_column_surfaces
@@ -65,6 +67,25 @@ class SolidRules:
     leg_ratio: float = 0.0
 
 
+@dataclass(frozen=True)
+class Surroundings:
+    """What else belongs to the build of the supports of one pass.
+
+    Attributes
+    ----------
+    earlier
+        Bodies of earlier passes of planning; connectors and bases keep out of them.
+    later
+        Layouts of later passes; bases keep clear of the squares on the plate that they stand on.
+    kept
+        Solids of groups; those of other layouts of this pass are made no second time.
+    """
+
+    earlier: Sequence[SupportBody] = ()
+    later: Sequence[SupportLayout] = ()
+    kept: KeptSupports = field(default_factory=KeptSupports)
+
+
 def least_wall_of(rules: SolidRules) -> float:
     """Return the least wall, mm; 0 where there is none."""
     return 0.0 if rules.least is None else rules.least.width
@@ -76,8 +97,7 @@ def build_supports(
     emit: Emit,
     rules: SolidRules,
     *,
-    earlier: Sequence[SupportBody] = (),
-    later: Sequence[SupportLayout] = (),
+    around: "Surroundings | None" = None,
     stop: Stop,
     progress: Progress,
 ) -> tuple[SupportBody, ...]:
@@ -96,10 +116,8 @@ def build_supports(
         Calls the chosen lattice cell.
     rules
         Connectors, bases, distances, and the kinds of bodies that the target reads.
-    earlier
-        Bodies of earlier passes of planning; connectors and bases keep out of them.
-    later
-        Layouts of later passes; bases keep clear of the squares on the plate that they stand on.
+    around
+        Supports of other passes of planning, and what is kept of earlier layouts; None for none.
     stop
         Checked between groups; groups that are not finished by then are left out.
     progress
@@ -114,6 +132,7 @@ def build_supports(
     """
     if not len(layout.red.square) or not layout.connected.any():
         return ()
+    around = Surroundings() if around is None else around
     progress(0.0, "emitting cells")
     meshes = tuple(part.mesh for part in parts)
     surfaces, posts = find_column_surfaces(layout), None
@@ -140,22 +159,24 @@ def build_supports(
         _require_no_feet(layout, rules.base)
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
-    obstacles = PartObstacles(parts, clearance, earlier)
+    obstacles = PartObstacles(parts, clearance, around.earlier)
     context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts)
     builder = _SupportBuilder(context, parts, instances, as_beams, rules)
-    solids, names = [], []
+    solids, names, keys = [], [], []
     for group, held in enumerate(layout.group_parts):
         if stop.cancelled.is_set():
             break
         names.append(", ".join(parts[part].label for part in held))
         progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
-        solids.append(builder.drained_solid(group))
-    beside = plan_of_others(earlier, later, rules.base)
+        keys.append(key_of(layout, group, instances, as_beams))
+        solids.append(around.kept.solid(keys[-1], partial(builder.drained_solid, group)))
+    beside = plan_of_others(around.earlier, around.later, rules.base)
     regions = [territory_section(layout, group) for group in range(len(solids))]
     bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside, regions)
     bodies: list[SupportBody] = []
     for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
-        bodies += builder.bodies(group, name, solid, own_base)
+        make = partial(builder.bodies, group, name, solid, own_base)
+        bodies += around.kept.bodies_of(keys[group], make) if own_base is None else make()
     progress(1.0, "supports finished")
     return tuple(bodies)
 
