@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.shared.examples import examples
-from tests.shared.grids import Late, floor_with_holes, random_problem, route
+from tests.shared.grids import Late, floor_with_holes, problem, random_problem, route
 
 from amprep.checks.supports.plan import check_plan, check_raises
 from amprep.model.control import Stop, silent
-from amprep.model.supports import CAPACITY
+from amprep.model.supports import CAPACITY, Voxel
 from amprep.plugins.routers.min_cost_certificate import find_optimality_violations
 from amprep.plugins.routers.min_cost_flow import cost_of, solve_min_cost_flow
 
@@ -43,6 +43,20 @@ def test_uniform_raises_all_edges_alike(router):
     assert check_plan(task, plan) == check_raises(task, plan) == []
     assert (plan.unconnected, plan.raised) == ((), 3)
     assert set(plan.edges.capacity.tolist()) == {4}
+
+
+def test_the_loop_starts_again_where_capacities_were_raised():
+    """Twenty-five paths through a shaft: those that the capacity of 3 had led to the corner took 227 edges."""
+    voxels = np.zeros((16, 9, 9), np.uint8)
+    voxels[:4] = Voxel.CLOSED
+    voxels[:4, 4, 4] = voxels[:4, 0, 0] = Voxel.FREE
+    red = np.array([(15, y, x) for y in range(2, 7) for x in range(2, 7)])
+    voxels[tuple(red.T)] = Voxel.OCCUPIED
+    task = problem(voxels, red, node_capacity=3, escalation="cut")
+    plan = route("push-relabel", task)
+    assert check_plan(task, plan) == []
+    assert (plan.unconnected, plan.raised) == ((), 10)
+    assert len(plan.edges) <= 223
 
 
 @pytest.mark.parametrize("router", ROUTERS)

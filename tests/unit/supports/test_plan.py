@@ -382,3 +382,12 @@ def test_what_is_left_over_is_connected_beside_the_flow_of_other_parts():
     red = {tuple(square) for square in plan.red.square.tolist()}
     for square, flow in zip(squares.tolist(), through.tolist(), strict=True):
         assert flow == arriving[tuple(square)] + (tuple(square) in red)
+
+
+def test_what_is_left_over_is_routed_again_where_capacities_were_raised():
+    """The paths that the capacity of 5 has led around the shaft took 369 edges in all."""
+    plan = layout(shaft(2), node_capacity=5, escalation="cut", min_area_mm2=0.0)
+    assert plan.connected.all()
+    assert len(plan.edges) <= 304
+    _, number = np.unique(plan.edges.upper, axis=0, return_inverse=True)
+    assert np.bincount(number.reshape(-1), weights=plan.edges.flow).max() == 8

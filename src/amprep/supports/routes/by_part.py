@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from amprep.arrays import Ints
-from amprep.flows.completion import complete_plan
+from amprep.flows.completion import StartFlow, complete_plan
 from amprep.flows.reachability import find_reachable
 from amprep.model.control import Progress, Stop, silent
 from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME
 from amprep.model.supports.edges import SupportEdges, square_keys
 from amprep.supports.grid.red_squares import RedSquares
-from amprep.supports.routes.network import NO_VOXELS, SupportNetwork, voxels_below
+from amprep.supports.routes.network import NO_VOXELS, PosedProblem, SupportNetwork, voxels_below
 
 
 class Routed(NamedTuple):
@@ -110,6 +110,7 @@ def _route_left(network: SupportNetwork, edges: SupportEdges, left: Ints) -> Sup
     reachable = find_reachable(posed.problem)[posed.number]
     network.explain(left[~reachable], ENCLOSED)
     left = left[reachable]
+    earlier, unconnected = edges, network.unconnected()
     edges = SupportEdges.concatenate([edges, _route_within_capacity(network, edges, left)]).merged()
     if network.stop():
         network.explain(left[np.isin(left, network.unconnected())], OUT_OF_TIME)
@@ -117,7 +118,9 @@ def _route_left(network: SupportNetwork, edges: SupportEdges, left: Ints) -> Sup
     left = left[np.isin(left, network.unconnected(CAPACITY))]
     if not left.size:
         return edges
-    return _raise_capacities(network, edges, left) if network.territories else _complete(network, edges)
+    if network.territories:
+        return _raise_capacities(network, edges, left)
+    return _complete(network, (edges, network.unconnected()), (earlier, unconnected))
 
 
 def _raise_capacities(network: SupportNetwork, edges: SupportEdges, left: Ints) -> SupportEdges:
@@ -164,16 +167,31 @@ def _exceeded(edges: SupportEdges, edge_capacity: int, node_capacity: int) -> In
     return voxels_below(edges.upper[over])
 
 
-def _complete(network: SupportNetwork, edges: SupportEdges) -> SupportEdges:
-    """Return the edges of a maximum flow in one network of all parts, with escalation where that is allowed."""
+def _complete(
+    network: SupportNetwork, present: tuple[SupportEdges, Ints], earlier: tuple[SupportEdges, Ints]
+) -> SupportEdges:
+    """Return the edges of a maximum flow in one network of all parts, with escalation where that is allowed.
+
+    Parameters
+    ----------
+    present, earlier
+        The edges and the unconnected red squares of the flow to start from, and of the part of it that is kept if
+        capacities are raised.
+    """
     red_squares = _above_plate(network.red)
     posed = network.pose(red_squares, NO_VOXELS)
+    starts = (_start_flow(posed, red_squares, *each) for each in (present, earlier))
+    plan = complete_plan(posed.problem, *starts, stop=network.stop, progress=silent)
+    return _with_parts(network.read(plan, posed, red_squares), network.red, red_squares)
+
+
+def _start_flow(posed: PosedProblem, red_squares: Ints, edges: SupportEdges, unconnected: Ints) -> StartFlow:
+    """Return a flow in the coordinates and numbers of a posed problem."""
     connected = np.zeros(len(posed.problem.red), np.bool_)
-    connected[posed.number[~np.isin(red_squares, network.unconnected())]] = True
+    connected[posed.number[~np.isin(red_squares, unconnected)]] = True
     plane, y, x = posed.corner
     inner = replace(edges, plane=edges.plane - plane, y=edges.y - y, x=edges.x - x)
-    plan = complete_plan(posed.problem, inner, connected, stop=network.stop, progress=silent)
-    return _with_parts(network.read(plan, posed, red_squares), network.red, red_squares)
+    return StartFlow(inner, connected)
 
 
 def _with_parts(edges: SupportEdges, red: RedSquares, red_squares: Ints) -> SupportEdges:
