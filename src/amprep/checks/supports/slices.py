@@ -113,25 +113,29 @@ def _pairs(triangles: Int64s, points: Floats) -> _SharedEdges:
     order = np.argsort(key)
     _, first, uses = np.unique(key[order], return_index=True, return_counts=True)
     single = first[uses == 2]
-    one, other = [order[single]], [order[single + 1]]
-    for begin, count in zip(first[uses > 2].tolist(), uses[uses > 2].tolist(), strict=True):
-        corners = order[begin : begin + count]
-        apex = points[triangles[:, [2, 0, 1]].ravel()[corners]]
-        turn = np.argsort(_angles(apex, points[low[corners[0]]], points[high[corners[0]]]), kind="stable")
-        corners = corners[turn]
-        is_back = start[corners] > end[corners]
-        begins = np.flatnonzero(is_back & ~np.roll(is_back, -1))
-        one.append(corners[begins])
-        other.append(corners[(begins + 1) % count])
-    return _SharedEdges(np.concatenate(one), np.concatenate(other))
+    first, uses = first[uses > 2], uses[uses > 2]
+    edge = np.repeat(np.arange(len(uses)), uses)
+    begin = (np.cumsum(uses) - uses)[edge]
+    row = np.arange(len(edge))
+    corner = order[row - begin + first[edge]]
+    apex = points[triangles.ravel()[corner - corner % 3 + (corner + 2) % 3]]
+    corner = corner[np.lexsort((_angles(apex, points[low[corner]], points[high[corner]]), edge))]
+    following = corner[(row - begin + 1) % uses[edge] + begin]
+    is_back = start > end
+    begins = is_back[corner] & ~is_back[following]
+    return _SharedEdges(
+        np.concatenate([order[single], corner[begins]]),
+        np.concatenate([order[single + 1], following[begins]]),
+    )
 
 
 def _angles(points: Floats, low: Floats, high: Floats) -> Floats:
-    """Return the angles of points ``(k, 3)`` around the axis from `low` to `high`, counter-clockwise."""
-    along = (high - low) / np.linalg.norm(high - low)
-    right = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
+    """Return the angles of points ``(k, 3)`` around the axes from `low` to `high` ``(k, 3)``, counter-clockwise."""
+    along = (high - low) / np.linalg.norm(high - low, axis=1, keepdims=True)
+    right = np.cross(along, np.eye(3)[np.abs(along).argmin(axis=1)])
+    left = np.cross(along, right)
     from_axis = points - low
-    return np.asarray(np.arctan2(from_axis @ np.cross(along, right), from_axis @ right))
+    return np.asarray(np.arctan2((from_axis * left).sum(axis=1), (from_axis * right).sum(axis=1)))
 
 
 def _ends(z: Floats, corner: Int64s) -> tuple[Floats, Floats]:
