@@ -4,6 +4,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+from amprep.geometry.powder.cavities import find_cavities
 from amprep.geometry.powder.pockets import Pocket, find_pockets, spacing_for
 from amprep.geometry.supports.contact_area import measure_contact
 from amprep.model import Build, SupportBody
@@ -50,6 +51,8 @@ class Removal:
         Pockets of trapped powder, largest first; None if not measured.
     resolution_mm
         Resolution at which escape channels are measured.
+    cavities
+        Closed cavities in which there is none of the pockets, largest first; they are always measured.
     """
 
     mass_g: float | None
@@ -58,6 +61,7 @@ class Removal:
     contacts: int | None = None
     pockets: tuple[Pocket, ...] | None = None
     resolution_mm: float | None = None
+    cavities: tuple[Pocket, ...] = ()
 
     @property
     def trapped_mm3(self) -> float | None:
@@ -90,17 +94,21 @@ def _removal(build: Build, body: SupportBody, rules: RemovalRules) -> Removal:
     density = next(filter(None, (rules.densities[index] for index in body.parts if rules.densities)), None)
     mass = None if density is None else volume * density / 1000.0
     scan = volume / rules.layer_mm
-    if body.surface or not rules.thorough:
+    if body.surface:
         return Removal(mass, scan)
-    solid = body.mesh.vertices, body.mesh.triangles
-    held = [(build.parts[index].mesh.vertices, build.parts[index].mesh.triangles) for index in body.parts]
+    solid = body.mesh.arrays
+    if not rules.thorough:
+        return Removal(mass, scan, cavities=tuple(find_cavities(solid)))
+    held = [build.parts[index].mesh.arrays for index in body.parts]
     contacts = [measure_contact(solid, part) for part in held]
+    pockets = tuple(find_pockets([solid], held, rules.hole_mm))
     low, high = body.mesh.bounds
     return Removal(
         mass,
         scan,
         sum(contact.area for contact in contacts),
         sum(contact.patches for contact in contacts),
-        tuple(find_pockets([solid], held, rules.hole_mm)),
+        pockets,
         spacing_for(rules.hole_mm, high - low),
+        tuple(find_cavities(solid, pockets)),
     )

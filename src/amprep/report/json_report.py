@@ -198,4 +198,5 @@ def _removal(removal: Removal) -> dict[str, Any]:
         **{key: getattr(removal, name) for name, key in _REMOVAL_KEYS.items()},
         "powder_resolution_mm": removal.resolution_mm,
         "pockets": None if removal.pockets is None else pockets_json(removal.pockets),
+        "cavities": pockets_json(removal.cavities),
     }

@@ -2,10 +2,8 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from amprep.checks.violation import Violation, place_words
-from amprep.geometry.meshes.shells import measure_shells
+from amprep.geometry.powder.cavities import find_cavities
 from amprep.geometry.powder.pockets import Pocket, find_pockets
 from amprep.model.build import Build, SupportBody
 from amprep.model.control import Stop
@@ -16,10 +14,6 @@ PROMISE = "powder can leave"
 
 HOLE = 0.2
 """Diameter (mm) of a ball that must be able to leave."""
-
-
-_GRAIN = 1e-4
-"""Volume (mm3) below which a closed cavity holds hardly a grain of powder: a ball of 0.06 mm in diameter."""
 
 
 def check_powder(build: Build, stop: Stop) -> list[Violation]:
@@ -49,18 +43,13 @@ def check_powder(build: Build, stop: Stop) -> list[Violation]:
 
 
 def _narrow_cavities(body: SupportBody, pockets: Sequence[Pocket]) -> list[Violation]:
-    """Name closed cavities that no pocket is in: shells of negative volume, which are too narrow for a ball."""
-    shells = measure_shells(*body.mesh.arrays)
-    points = np.array([each.point for each in pockets]).reshape(-1, 3)
-    inside = (points >= shells.lo[:, None]) & (points <= shells.hi[:, None])
-    cavity = np.flatnonzero((shells.volume < -_GRAIN) & ~np.any(np.all(inside, axis=2), axis=1))
-    if not len(cavity):
+    """Name closed cavities that no pocket is in: they are too narrow for a ball."""
+    cavities = find_cavities(body.mesh.arrays, pockets)
+    if not cavities:
         return []
-    largest = cavity[shells.volume[cavity].argmin()]
-    place = place_words((shells.lo[largest] + shells.hi[largest]) / 2.0)
-    count = counted(len(cavity), "closed cavity", "closed cavities")
+    count = counted(len(cavities), "closed cavity", "closed cavities")
     message = (
-        f"{-shells.volume[cavity].sum():.3g} mm3 of powder in {count} too narrow for a ball of {HOLE:g} mm, "
-        f"the largest at {place} mm"
+        f"{sum(each.volume for each in cavities):.3g} mm3 of powder in {count} too narrow for a ball of {HOLE:g} mm, "
+        f"the largest at {place_words(cavities[0].point)} mm"
     )
     return [Violation(PROMISE, body.name, message)]

@@ -180,18 +180,19 @@ def _legs(entry: BuildRecord, number: int) -> Iterator[Finding]:
 
 
 def _pockets(entry: BuildRecord, number: int) -> Iterator[Finding]:
+    """Yield pockets of powder and closed cavities."""
     for body, removal in zip(entry.build.supports, entry.removal, strict=False):
         part = entry.build.parts[body.parts[0]].part.name if body.parts else body.name
-        for pocket in removal.pockets or ():
+        for pocket in (*(removal.pockets or ()), *removal.cavities):
             opening = "no opening" if pocket.closed else "openings that are too narrow"
-            words = f"{pocket.volume:.1f} mm³ of powder cannot leave: {opening}"
+            amount = f"{pocket.volume:.1f}" if pocket.volume >= 1.0 else f"{pocket.volume:.1g}"
             yield Finding(
                 CHECK,
                 number,
                 part,
                 "powder pocket",
                 body.name,
-                words,
+                f"{amount} mm³ of powder cannot leave: {opening}",
                 pocket.point,
                 points=np.array([pocket.point]),
                 volume_mm3=pocket.volume,

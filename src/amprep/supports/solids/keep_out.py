@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 _CRUMB = 1e-4
 """Volume (mm3) of a void up to which it is a leftover of rounding, and is filled."""
 
+_NARROW = 0.2
+"""Mean width (mm) of a void below which it is filled: powder in it would melt with its walls."""
+
 
 class WallClearance:
     """The walls of all parts of a build, and the XY distance that supports keep from them.
@@ -131,7 +134,7 @@ def drop_floating(
 ) -> tuple[Floats, Ints]:
     """Return the disconnected components of a closed mesh that reach the plate or a foot, with their voids.
 
-    Voids of less than 1e-4 mm3, which rounding leaves, are filled.
+    Voids of less than 1e-4 mm3, which rounding leaves, and voids of a mean width of less than 0.2 mm are filled.
 
     Parameters
     ----------
@@ -151,7 +154,7 @@ def drop_floating(
         return points, triangles
     corners = points[triangles[loose]]
     volume = np.bincount(of_triangle[loose], np.linalg.det(corners), count) / 6.0
-    is_void = volume < -_CRUMB
+    is_void = volume < -np.maximum(_CRUMB, 0.5 * _NARROW * _areas(corners, of_triangle[loose], count))
     stays |= is_void
     for low, high in zip(*(feet or ()), strict=True):
         stays[shell[((points >= low) & (points <= high)).all(axis=1)]] = True
@@ -159,6 +162,12 @@ def drop_floating(
     if len(voids):
         _drop_voids(stays, voids, points, shell)
     return drop_unused_vertices(points, triangles[stays[of_triangle]])
+
+
+def _areas(corners: Floats, shell: Int64s, count: int) -> Floats:
+    """Return the area of each shell ``(count,)``, of triangles ``(m, 3, 3)`` mm."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.bincount(shell, np.linalg.norm(normals, axis=1), count) / 2.0
 
 
 def _drop_voids(stays: Bools, voids: Int64s, points: Floats, shell: Int64s) -> None:

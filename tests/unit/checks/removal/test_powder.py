@@ -31,3 +31,11 @@ def test_a_slit_too_narrow_for_the_ball_is_named_with_its_volume():
 def test_a_slit_that_is_open_and_a_void_smaller_than_a_grain_are_no_cavities():
     assert messages((2, 4, 0.15)) == []
     assert messages((0.04, 0.04, 0.04)) == []
+
+
+def test_a_pocket_within_a_ring_shaped_slit_does_not_hide_it():
+    ring = box((3.6, 3.6, 0.15), (2.2, 2.2, 4)) - box((2.4, 2.4, 1), (2.8, 2.8, 3.5))
+    hollow = box((4, 4, 10.1), (2, 2, 0)) - ring - box((2, 2, 0.6), (3, 3, 3.8))
+    pocket, cavity = check_powder(build_of([table(10)], [hollow]), Stop())
+    assert "in 1 pocket" in pocket.message
+    assert cavity.message.startswith("1.08 mm3 of powder in 1 closed cavity")

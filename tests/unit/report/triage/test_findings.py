@@ -66,6 +66,14 @@ def test_violations_must_be_fixed_and_powder_is_worth_a_check(entry):
     assert kinds.count(("worth a check", "powder pocket", "bar")) == 1
 
 
+def test_closed_cavities_are_worth_a_check_although_powder_was_not_measured(entry):
+    removal = tuple(Removal(1.0, 2.0, cavities=(POCKET._replace(volume=0.03),)) for _ in entry.build.supports)
+    found = [each for each in build_findings(replace(entry, removal=removal)) if each.kind == "powder pocket"]
+    assert len(found) == len(entry.build.supports)
+    assert found[0].words == "0.03 mm³ of powder cannot leave: no opening"
+    assert found[0].triage == "worth a check"
+
+
 def test_legs_that_are_too_long_are_worth_a_check(entry):
     leg = MeasuredLeg(12.0, 24.0, 2.0, (1.0, 2.0, 3.0))
     rules = replace(entry.build.settings.rules, leg_ratio=10.0)

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from manifold3d import Manifold
+from tests.shared.solids import mesh_of
 
 from amprep.cells.instances import classify, expand_cells
 from amprep.checks.supports.bodies import CLOSED, INSIDE, PENETRATION, STANDING, check_bodies
@@ -181,6 +183,12 @@ def test_crumbs_that_rounding_leaves_are_dropped_whether_they_look_like_voids_or
     points, triangles = drop_floating(points, np.vstack([outer.triangles, corners + len(outer.vertices)]))
     assert len(points) == len(outer.vertices)
     assert Mesh(points, triangles).signed_volume == pytest.approx(64.0)
+
+
+@pytest.mark.parametrize(("width", "volume"), [(0.15, 64.0), (0.5, 64.0 - 4.5)])
+def test_voids_too_narrow_for_loose_powder_are_filled(width, volume):
+    hollow = Manifold.cube((4, 4, 4)) - Manifold.cube((3, 3, width)).translate((0.5, 0.5, 1))
+    assert Mesh(*drop_floating(*mesh_of(hollow).arrays)).signed_volume == pytest.approx(volume)
 
 
 def test_subtracting_parts_leaves_the_overlap_in_held_parts_and_nothing_in_others():
