@@ -183,21 +183,22 @@ def _rests_at(
 ) -> "list[CrossSection]":
     """Return the rests in the squares around narrow places ``(k, 2)`` mm, or everywhere if there are many of them."""
     half = _AROUND * width
+    judged = half - _BORDER * width
     centres = _apart(ends, half / 2.0)
     if len(centres) > _MOST_SQUARES:
         whole = region.whole()
-        found = _pieces_of(_beyond_discs(whole, width))
-        found += [each for each in whole.decompose() if _is_too_small(each, width, area)]
+        near = union_of([box(end - judged, end + judged) for end in centres])
+        found = _pieces_of(_beyond_discs(whole, width) ^ near)
+        found += [
+            each for each in _inside(whole.decompose(), centres, half) if _is_too_small(each, width, area)
+        ]
         return [rest for rest in found if not is_kept(rest)]
     found = []
-    judged = half - _BORDER * width
     for end in centres:
         local = region.inside((end - half)[None], (end + half)[None])
         found += _pieces_of(_beyond_discs(local, width) ^ box(end - judged, end + judged))
         found += [
-            each
-            for each in local.decompose()
-            if _is_inside(each, end, half) and _is_too_small(each, width, area)
+            each for each in _inside(local.decompose(), [end], half) if _is_too_small(each, width, area)
         ]
     return [rest for rest in found if not is_kept(rest)]
 
@@ -313,7 +314,12 @@ def are_in(points: Floats, low: Floats, high: Floats) -> Bools:
     return np.asarray(np.any(inside, axis=1))
 
 
-def _is_inside(piece: "CrossSection", centre: Floats, half: float) -> bool:
-    """Tell whether a piece is clearly inside a square."""
-    bounds = np.asarray(piece.bounds())
-    return bool((bounds[:2] > centre - 0.99 * half).all() and (bounds[2:] < centre + 0.99 * half).all())
+def _inside(pieces: "Sequence[CrossSection]", centres: Sequence[Floats], half: float) -> "list[CrossSection]":
+    """Return the pieces that are clearly inside one of the squares around centres ``(2,)`` mm."""
+    if not pieces:
+        return []
+    low, high = bounds_of(pieces)
+    inside = np.zeros(len(pieces), np.bool_)
+    for centre in centres:
+        inside |= ((low > centre - 0.99 * half) & (high < centre + 0.99 * half)).all(axis=1)
+    return [pieces[each] for each in np.flatnonzero(inside).tolist()]

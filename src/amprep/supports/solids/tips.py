@@ -38,6 +38,9 @@ NUDGE = (1.3e-4, 2.1e-4, 0.9e-4)
 
 On coplanar faces manifold3d leaves folds, and loses volume when it reads such a mesh again."""
 
+_WIDER = 2e-3
+"""Length (mm) by which notches are wider than squares: faces in the same plane as those of cells would leave foils."""
+
 _WHOLE = 1.0 - 1e-6
 
 
@@ -152,7 +155,7 @@ def shape_connectors(
     if tips:
         connectors ^= union(tips).translate(NUDGE)
         low = (lowest < square) & (sink > 0.0)
-        plan = columns.square[low], columns.lo[low, :2], columns.hi[low, :2]
+        plan = columns.square[low], columns.lo[low, :2] - _WIDER, columns.hi[low, :2] + _WIDER
         notch = grid_prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
     if rules.perforation_mm:
         solid = _solid_heights(contact, columns, tip_height)

@@ -143,3 +143,20 @@ def test_necks_are_rests_as_far_as_discs_at_their_ends_do_not_cover_them(neck, t
 def test_a_thin_piece_beside_a_wide_one_is_a_rest():
     strip = rectangle(0.1, 1.5, at=(0.0, 2.1))
     assert rests(rectangle(2.0, 2.0) + strip).area() == pytest.approx(strip.area())
+
+
+def test_pins_beside_many_fins_stay_whole():
+    pads = [rectangle(1.0, 1.0, at=(x, 0.0)) for x in np.arange(0.0, 40.0, 2.0)]
+    fins = [
+        rectangle(3.1, 0.05, at=(x + 0.3, 0.9)) + rectangle(0.15, 0.4, at=(x + 0.3, 2.9))
+        for x in np.arange(0.0, 40.0, 2.0)
+    ]
+    pins = [
+        rectangle(0.5, 0.5, at=(x, y + 0.37 * x % 0.63))
+        for x in np.arange(0.0, 40.0, 0.8)
+        for y in np.arange(-7.0, -2.0, 0.63)
+    ]
+    region = CrossSection.batch_boolean(pads + fins + pins, OpType.Add)
+    left = region - rests(region)
+    assert (left ^ CrossSection.batch_boolean(pins, OpType.Add)).area() == pytest.approx(0.25 * len(pins))
+    assert left.area() < 0.25 * len(pins) + 20.0 * (1.0 + 0.05 * 2.0 * WIDTH)
