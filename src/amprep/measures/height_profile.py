@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from amprep.arrays import Floats, frozen
-from amprep.geometry.meshes.cross_section import cross_section_areas
+from amprep.geometry.slicing.cross_sections import cross_section_areas
 from amprep.model import Build
 
 MOST_SAMPLES = 200

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from amprep.arrays import Floats
-from amprep.geometry.meshes.cross_section import cross_section_areas
 from amprep.geometry.removal.vertical import too_near, vertical_travel
+from amprep.geometry.slicing.cross_sections import cross_section_areas
 from amprep.model import Packing, PackingProblem, Part, Placement, Stop
 from amprep.repacking.volume_bodies import VolumeBodies
 

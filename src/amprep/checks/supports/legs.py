@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.supports.slices import Slices, slices_of
+from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.containment import inside
 from amprep.model.build import Build, PlacedPart, SupportBody
@@ -54,14 +55,18 @@ class Leg(NamedTuple):
         return self.length_mm / max(self.width_mm, 1e-3)
 
 
-def check_legs(build: Build, stop: Stop) -> list[Violation]:
-    """Return the supports of a build with a leg above `leg_ratio`; walls without thickness are not judged."""
+def check_legs(build: Build, stop: Stop, solids: KnownSolids | None = None) -> list[Violation]:
+    """Return the supports of a build with a leg above `leg_ratio`; walls without thickness are not judged.
+
+    `solids` are shared with other judges.
+    """
     limit = build.settings.rules.leg_ratio
+    solids = solids or KnownSolids()
     found: list[Violation] = []
     for body in build.supports:
         if stop.cancelled.is_set() or limit <= 0.0:
             return found
-        legs = [] if body.surface else legs_above(body, build, limit)
+        legs = [] if body.surface else legs_above(body, build, limit, solids)
         if legs:
             worst = max(legs, key=lambda leg: leg.ratio)
             message = (
@@ -72,7 +77,7 @@ def check_legs(build: Build, stop: Stop) -> list[Violation]:
     return found
 
 
-def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
+def legs_above(body: SupportBody, build: Build, limit: float, solids: KnownSolids | None = None) -> list[Leg]:
     """Return the legs of a support with a ratio of length to width above a limit.
 
     Strategy. Horizontal planes cut the solid into contours. A leg is a chain of contours of which each has exactly one
@@ -85,7 +90,8 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
     step = max(STEP, (high - low) / _MOST_PLANES)
     rules = build.settings.rules
     cell = build.settings.sizes_of(body).square_mm * float(np.tan(np.radians(rules.strut_angle_deg)))
-    slices = slices_of(body.mesh, np.arange(low + step / 2.0, high, step))
+    sliced = (solids or KnownSolids()).sliced(body.mesh)
+    slices = slices_of(sliced, np.arange(low + step / 2.0, high, step))
     legs = []
     for chain in _long_enough(slices, _chains(slices), limit, cell):
         if _worst(slices, chain).ratio > limit * _GRANT:
@@ -99,7 +105,7 @@ def legs_above(body: SupportBody, build: Build, limit: float) -> list[Leg]:
 
 def _chains(slices: Slices) -> list[Int64s]:
     """Return the chains of outer contours, from below, longest possible."""
-    outer = slices.area > 0.0
+    outer = slices.is_outer
     follows = np.zeros(len(outer), np.bool_)
     follows[slices.above[slices.above >= 0]] = True
     chains = []
@@ -115,7 +121,7 @@ def _chains(slices: Slices) -> list[Int64s]:
 def _long_enough(slices: Slices, chains: list[Int64s], limit: float, cell: float) -> list[Int64s]:
     """Return the chains that may be legs: longer than a cell, and long for their least width."""
     ends = np.array([(chain[0], chain[-1]) for chain in chains], np.int64).reshape(-1, 2)
-    length = np.diff(slices.heights[slices.plane[ends]], axis=1)[:, 0]
+    length = np.diff(slices.heights_of(ends), axis=1)[:, 0]
     high = np.flatnonzero(length > cell)
     if not len(high):
         return []
@@ -127,12 +133,12 @@ def _long_enough(slices: Slices, chains: list[Int64s], limit: float, cell: float
 
 def _beside_braces(slices: Slices, chain: Int64s, longest: float) -> Bools:
     """Tell which contours at the ends of a chain hold a brace, too, at most so many mm; none does on the plate."""
-    heights = slices.heights[slices.plane[chain]]
+    heights = slices.heights_of(chain)
     girth = _girths(slices, chain)
     wide = girth > _WIDER * np.median(girth)
     below = np.logical_and.accumulate(wide & (heights < heights[0] + longest))
     above = np.logical_and.accumulate((wide & (heights > heights[-1] - longest))[::-1])[::-1]
-    return np.asarray((below & (slices.plane[chain[0]] > 0)) | above)
+    return np.asarray((below & (slices.contours.plane[chain[0]] > 0)) | above)
 
 
 def _girths(slices: Slices, chain: Int64s) -> Floats:
@@ -140,13 +146,13 @@ def _girths(slices: Slices, chain: Int64s) -> Floats:
     angles = np.arange(8) * np.pi / 8.0
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
     return np.array(
-        [np.ptp(slices.points_of(int(each))[:, :2] @ directions.T, axis=0).mean() for each in chain]
+        [np.ptp(slices.contours.points_of(int(each)) @ directions.T, axis=0).mean() for each in chain]
     )
 
 
 def _worst(slices: Slices, chain: Int64s) -> Leg:
     """Return the stretch of a chain that is longest for its width."""
-    heights, widths = slices.heights[slices.plane[chain]], slices.widths_of(chain)
+    heights, widths = slices.heights_of(chain), slices.widths_of(chain)
     first, last, best = 0, 0, 0.0
     for width in np.unique(np.round(widths, 2)) + 0.005:
         for own in _stretches(heights, widths, width):

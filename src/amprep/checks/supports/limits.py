@@ -34,7 +34,7 @@ def check_limits(build: Build, stop: Stop, solids: KnownSolids | None = None) ->
     """
     solids = solids or KnownSolids()
     violations, sections = check_least_section(build, stop, solids)
-    violations += legs.check_legs(build, stop)
+    violations += legs.check_legs(build, stop, solids)
     violations += territory.check_territory(build, stop, solids)
     violations += drift.check_drift(build, stop)
     extent = _extent(build.settings.rules, sections) | {coverage.PROMISE: _coverage_extent(build)}

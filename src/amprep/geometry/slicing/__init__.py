@@ -1,1 +1,1 @@
-"""Planar faces of meshes and the straight lines in which layers cut them."""
+"""Contours in which horizontal planes cut meshes, planar faces, and the straight lines in which layers cut them."""

@@ -9,8 +9,8 @@ from tests.shared.examples import examples
 from tests.shared.removal import ring
 from tests.shared.solids import arrays
 
-from amprep.geometry.meshes import cross_section
-from amprep.geometry.meshes.cross_section import cross_section_areas
+from amprep.geometry.slicing import cross_sections
+from amprep.geometry.slicing.cross_sections import cross_section_areas
 
 
 def corners_of(solid):
@@ -26,8 +26,8 @@ def test_areas_are_those_of_the_slices_of_manifold3d(seed):
     solid = cube.rotate(rng.uniform(0, 360, 3).tolist())
     _, _, low, _, _, high = solid.bounding_box()
     heights = np.sort(rng.uniform(low - 2, high + 2, 9))
-    areas = cross_section_areas(corners_of(solid), heights)
-    np.testing.assert_allclose(areas, [solid.slice(h).area() for h in heights], rtol=1e-6, atol=1e-6)
+    found = cross_section_areas(corners_of(solid), heights)
+    np.testing.assert_allclose(found, [solid.slice(h).area() for h in heights], rtol=1e-6, atol=1e-6)
 
 
 def test_planes_through_vertices_and_faces_count_one_side():
@@ -39,5 +39,5 @@ def test_triangles_are_cut_in_portions_with_the_same_result(monkeypatch: pytest.
     solid = corners_of(Manifold.sphere(10, 40))
     heights = np.linspace(-9, 9, 50)
     whole = cross_section_areas(solid, heights)
-    monkeypatch.setattr(cross_section, "ROWS", 7)
+    monkeypatch.setattr(cross_sections, "ROWS", 7)
     np.testing.assert_allclose(cross_section_areas(solid, heights), whole, rtol=1e-9)

@@ -1,0 +1,1 @@
+"""Neighbours of triangles, and contours of meshes in horizontal planes."""
