@@ -7,6 +7,7 @@ new ones.
 
 from amprep.api.build_file import diff, verify, write
 from amprep.api.inspection import explain_regions, inspect
+from amprep.api.orientation import orient
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
@@ -18,6 +19,7 @@ from amprep.pipeline.supporting import PlannedBuild, SupportedBuild
 from amprep.pipeline.verifying.build import Verification
 from amprep.report.infill import InfillRecord
 from amprep.report.inspection.record import InspectionRecord
+from amprep.report.orientation.record import OrientationRecord
 from amprep.report.record import RunRecord
 from amprep.report.regions import RegionsRecord
 
@@ -27,6 +29,7 @@ __all__ = [
     "InspectionRecord",
     "Job",
     "LoadedParts",
+    "OrientationRecord",
     "PackedBuild",
     "PackedParts",
     "PlannedBuild",
@@ -41,6 +44,7 @@ __all__ = [
     "fill_parts",
     "inspect",
     "load",
+    "orient",
     "pack",
     "plan_supports",
     "run",

@@ -13,7 +13,7 @@ from amprep.cli.builds import diff, hook, seal, verify
 from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
-from amprep.cli.jobs import run, support
+from amprep.cli.jobs import orient, run, support
 from amprep.cli.setup import demo, doctor, init, schema
 
 
@@ -49,6 +49,7 @@ app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
 app.command("diff")(diff.diff)
 app.command("inspect")(inspection.inspect)
+app.command("orient")(orient.orient)
 app.command("init")(init.init)
 app.command("schema")(schema.schema)
 app.command("demo")(demo.demo)

@@ -12,6 +12,8 @@ from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.overhangs.regions import OverhangRegion
 from amprep.model.build import PlacedPart
+from amprep.model.mesh import Mesh
+from amprep.model.part import Part
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.overhangs.selection import slopes_of
 
@@ -34,7 +36,7 @@ def split_by_paint(placed: PlacedPart, own: PartOverhangs, colours: Collection[s
     found = own.overhangs
     code = np.zeros(len(found.faces), np.int64)
     for bit, colour in enumerate(sorted(colours)):
-        code |= _painted(placed, own, found.faces, colour).astype(np.int64) << bit
+        code |= _painted(placed, own.mesh, found.faces, colour).astype(np.int64) << bit
     pieces = np.unique(np.column_stack([found.face_region, code]), axis=0)
     if len(pieces) == len(np.unique(found.face_region)):
         return own
@@ -68,7 +70,7 @@ def paint_of(placed: PlacedPart, own: PartOverhangs, colours: Collection[str]) -
     names: list[set[str]] = [set() for _ in found.regions]
     for colour in sorted(colours):
         for faces, region in _members(own):
-            painted = _painted(placed, own, faces, colour)
+            painted = _painted(placed, own.mesh, faces, colour)
             fraction = np.bincount(region, painted, len(names)) / np.maximum(
                 np.bincount(region, None, len(names)), 1
             )
@@ -101,9 +103,15 @@ def _piece(own: PartOverhangs, region: OverhangRegion, faces: Ints) -> OverhangR
     )
 
 
-def _painted(placed: PlacedPart, own: PartOverhangs, faces: Ints | Int64s, colour: str) -> Bools:
-    """Tell which triangles of the mesh of the overhangs are painted in a colour, or are in the region of that name."""
-    centres = own.mesh.vertices[own.mesh.triangles[faces]].mean(axis=1).reshape(-1, 3)
+def painted_triangles(part: Part, mesh: Mesh, colour: str) -> Bools:
+    """Tell which triangles ``(m,)`` of a mesh in part coordinates have a colour, or are in the region of that name."""
+    as_drawn = PlacedPart(part.name, part, np.eye(4), part.orientations)
+    return _painted(as_drawn, mesh, np.arange(len(mesh.triangles)), colour)
+
+
+def _painted(placed: PlacedPart, mesh: Mesh, faces: Ints | Int64s, colour: str) -> Bools:
+    """Tell which triangles of a mesh of the part are painted in a colour, or are in the region of that name."""
+    centres = mesh.vertices[mesh.triangles[faces]].mean(axis=1).reshape(-1, 3)
     painted = np.zeros(len(centres), np.bool_)
     if colour.startswith("#"):
         return painted | _on_triangles(
@@ -117,11 +125,11 @@ def _painted(placed: PlacedPart, own: PartOverhangs, faces: Ints | Int64s, colou
                 own_triangles = placed.mesh.triangles[region.triangles]
                 painted |= _on_triangles(centres, placed.mesh.vertices[own_triangles])
             continue
-        mesh = region.mesh.moved(placed.matrix)
+        marked = region.mesh.moved(placed.matrix)
         if region.triangles is None:
-            painted |= inside(centres, mesh.vertices, mesh.triangles)
+            painted |= inside(centres, marked.vertices, marked.triangles)
         else:
-            painted |= _on_triangles(centres, mesh.vertices[mesh.triangles])
+            painted |= _on_triangles(centres, marked.vertices[marked.triangles])
     return painted
 
 

@@ -52,6 +52,7 @@ DIFFERENT = {
     "--output": "a folder, a folder or file, or the folder of a package",
     "-o": "as --output",
     "--dry-run": "a run is planned, an import listed",
+    "--effort": "of a packer, or of the search for orientations",
     "--json": "the report of a run, or another result",
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",

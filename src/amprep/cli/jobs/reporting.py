@@ -16,14 +16,20 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from amprep.cli.jobs.inspect import InspectionOptions
+    from amprep.cli.jobs.orient import OrientationOptions
     from amprep.report.infill import InfillRecord
     from amprep.report.inspection.record import InspectionRecord
+    from amprep.report.orientation.record import OrientationRecord
     from amprep.report.record import RunRecord
     from amprep.report.regions import RegionsRecord
 
 
 def call_api(
-    function: str, inputs: list[str], options: JobOptions, changes: Mapping[str, Any], **own: Any
+    function: str,
+    inputs: list[str],
+    options: "JobOptions | OrientationOptions",
+    changes: Mapping[str, Any],
+    **own: Any,
 ) -> Any:
     """Call a function of the public API on a job with progress bars and return its record.
 
@@ -132,10 +138,10 @@ def _shown(folder: Path) -> Path:
 
 
 def finish(
-    record: "RunRecord | InfillRecord | InspectionRecord | RegionsRecord",
+    record: "RunRecord | InfillRecord | InspectionRecord | OrientationRecord | RegionsRecord",
     to_json: Callable[[Any], Any],
     summary: "Callable[[Any], RenderableType]",
-    options: "JobOptions | InspectionOptions",
+    options: "JobOptions | InspectionOptions | OrientationOptions",
 ) -> NoReturn:
     """Print a record as JSON, or as a table unless the user asked for quiet, and exit."""
     from rich.console import Console

@@ -1,0 +1,118 @@
+"""Propose orientations for the parts of a job, for ``amprep orient`` and for parts with ``rotations = "orient"``."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from amprep import __version__
+from amprep.job import Job
+from amprep.job.settings.packing import Effort
+from amprep.measures.printer_fit import which_fit
+from amprep.model import Part, Progress, Stop
+from amprep.model.orientation import OrientationRules
+from amprep.orienting.search import FoundOrientations, OrientationSearch, propose_orientations
+from amprep.pipeline.reading import read_job, warnings_about
+from amprep.pipeline.resolve import ResolvedJob
+from amprep.pipeline.stages import Clock, Watcher
+from amprep.report.orientation.record import OrientationRecord, OrientedPart
+
+MEASURED: dict[Effort, int] = {"fast": 5, "normal": 10, "thorough": 20}
+"""Level of effort -> number of orientations of a part that are measured exactly."""
+
+
+@dataclass(frozen=True)
+class OrientOptions:
+    """Options of a search for orientations that a job file does not have.
+
+    Attributes
+    ----------
+    folder
+        Folder for page, pictures and report; None to write nothing.
+    effort
+        How many orientations are measured; with ``thorough`` supports are planned for those that are proposed.
+    restricted
+        What restricts the orientation of every part.
+    time_limit
+        Seconds after which the search ends with its best results so far; None for no limit.
+    """
+
+    folder: Path | None = None
+    effort: Effort = "normal"
+    restricted: OrientationRules = field(default_factory=OrientationRules)
+    time_limit: float | None = None
+
+
+def orient_job(
+    resolved: ResolvedJob, options: OrientOptions, *, watcher: Watcher, stop: Stop
+) -> OrientationRecord:
+    """Propose orientations for every part of a job.
+
+    Parameters
+    ----------
+    resolved
+        Job with the offers that it names.
+    options
+        Effort, restrictions, folder and time limit.
+    watcher
+        Shows the progress of every stage.
+    stop
+        Ends the work early.
+
+    Raises
+    ------
+    AmprepError
+        For wrong input or settings, or when a part has no allowed orientation.
+    """
+    clock, limit, job = Clock(watcher), stop.within(options.time_limit), resolved.job
+    loaded = read_job(resolved, clock, allow_surface=True)
+    parts: list[OrientedPart] = []
+    with clock.stage("orient") as progress:
+        for number, part in enumerate(loaded.parts):
+            shown = _share(progress, number, len(loaded.parts))
+            found = oriented(part, job, options.restricted, options.effort, limit, shown)
+            parts.append(OrientedPart(part, found.tried, found.drawn, found.proposals))
+    record = OrientationRecord(
+        name=job.name,
+        version=__version__,
+        printer=job.printer.name,
+        material=job.material.name,
+        lift_mm=job.packing.lift_mm,
+        parts=tuple(parts),
+        warnings=(*resolved.host.warnings, *warnings_about(loaded.parts)),
+    )
+    return replace(record, stages=clock.times)
+
+
+def oriented(
+    part: Part, job: Job, restricted: OrientationRules, effort: Effort, stop: Stop, progress: Progress
+) -> FoundOrientations:
+    """Return the orientations that are proposed for a part of a job.
+
+    Parameters
+    ----------
+    part, job
+        The part, and the job with printer, distances and rules.
+    restricted
+        What restricts its orientation.
+    effort
+        How many orientations are measured.
+    stop
+        Ends the search early.
+    progress
+        Called with the fraction that is done and a message.
+    """
+    packing, space = job.packing, job.printer.space
+    outer = np.asarray(part.mesh.vertices)
+    settings = OrientationSearch(
+        measured=MEASURED[effort],
+        fits=lambda rotations: which_fit(outer, rotations, space, packing.clearance_mm, packing.lift_mm),
+    )
+    return propose_orientations(
+        part, job.supports, packing.lift_mm, restricted, settings, stop=stop, progress=progress
+    )
+
+
+def _share(progress: Progress, number: int, count: int) -> Progress:
+    """Return a progress callback for one of `count` parts."""
+    return lambda fraction, message: progress((number + fraction) / count, message)

@@ -1,0 +1,1 @@
+"""The result of ``amprep orient``: record, terminal, JSON and page."""
