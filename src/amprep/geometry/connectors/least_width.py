@@ -39,6 +39,11 @@ class LeastSection(NamedTuple):
     width: float
     area: float
 
+    @property
+    def diameter(self) -> float:
+        """Diameter (mm) of the smallest disc that has both."""
+        return max(self.width, float(np.sqrt(4.0 / np.pi * self.area)))
+
 
 class Posts(NamedTuple):
     """Upright posts with square sections.

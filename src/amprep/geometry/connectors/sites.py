@@ -6,6 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import ConnectorColumns, clip_to_columns
+from amprep.geometry.connectors.fitting import WHOLE, fit_tips, unfitted
 from amprep.kernels.meshes.patches import Patches
 
 _LEAST = 1e-3
@@ -36,6 +37,12 @@ class Sites(NamedTuple):
         ``(s,)`` mm, least and greatest height of the contact in the cell.
     fraction
         ``(s,)`` fraction of the cell that the contact covers in plan.
+    width
+        ``(s,)`` mm, width of the tip at the part.
+    spread
+        ``(s,)`` fraction of the widening towards the whole cell that the root of the tip has.
+    inside
+        ``(s,)`` whether the tip is moved into its cell; otherwise its centre is exactly at the spot.
     """
 
     column: Int64s
@@ -46,9 +53,19 @@ class Sites(NamedTuple):
     lowest: Floats
     highest: Floats
     fraction: Floats
+    width: Floats
+    spread: Floats
+    inside: Bools
+
+    @property
+    def is_whole(self) -> Bools:
+        """Whether contact covers the whole cell, ``(s,)``."""
+        return np.asarray(self.fraction >= WHOLE)
 
 
-def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: float) -> Sites:
+def find_sites(
+    contact: Floats, columns: ConnectorColumns, count: int, width: float, narrow: float | None = None
+) -> Sites:
     """Choose sites in columns whose squares are divided into `count` x `count` cells.
 
     Parameters
@@ -61,6 +78,9 @@ def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: fl
         Number of cells along each side of a square.
     width
         Width (mm) of a tip. A tip at a lowest point is moved inwards by half of it, so that it is on the contact.
+    narrow
+        Width (mm) of the narrowest tips, with which the tips are placed such that they are whole (see `fit_tips`); None
+        to leave them at their spots.
 
     Returns
     -------
@@ -74,10 +94,28 @@ def find_sites(contact: Floats, columns: ConnectorColumns, count: int, width: fl
     best = np.zeros(len(columns.lo))
     np.maximum.at(best, owner, area)
     chosen = np.flatnonzero((area > 0.0) & ((area >= _LEAST) | (area == best[owner])))
-    spot = _spots(patches, fine, cells, width)[chosen]
-    lowest = _lowest_around(spot, width, contact, fine, chosen, cells.lowest[chosen])
+    tips = unfitted(_spots(patches, fine, cells, width)[chosen], width)
+    if narrow is not None:
+        corners = fine.lo[chosen, :2], fine.hi[chosen, :2]
+        tips = fit_tips(tips, area[chosen], corners, owner[chosen], contact, narrow)
+        chosen, tips = chosen[tips.kept], tips.those_kept()
+    lowest = _lowest_around(tips.spot, width, contact, fine, chosen, cells.lowest[chosen])
+    # the part is no steeper than 45 degrees above a tip that is partly in the next cell
+    highest = cells.highest[chosen] + np.where(tips.inside, 0.0, tips.width)
     lo, hi = fine.lo[chosen, :2], fine.hi[chosen, :2]
-    return Sites(owner[chosen], square[chosen], lo, hi, spot, lowest, cells.highest[chosen], area[chosen])
+    return Sites(
+        owner[chosen],
+        square[chosen],
+        lo,
+        hi,
+        tips.spot,
+        lowest,
+        highest,
+        area[chosen],
+        tips.width,
+        tips.spread,
+        tips.inside,
+    )
 
 
 def _subdivided(columns: ConnectorColumns, count: int) -> tuple[ConnectorColumns, Int64s, Int64s]:
@@ -212,7 +250,10 @@ def _lowest_around(
     return np.where(np.isfinite(lowest), lowest, otherwise)
 
 
-def squares_in_cells(spot: Floats, width: float, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:
-    """Return squares of side `width` around points, moved into the cells from `lo` to `hi`; lower and upper corners."""
+def squares_in_cells(spot: Floats, width: Floats | float, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:
+    """Return squares of side `width` around points, moved into the cells from `lo` to `hi`; lower and upper corners.
+
+    The width is one number, or ``(s, 1)`` mm.
+    """
     corner = np.clip(spot - width / 2.0, lo, np.maximum(hi - width, lo))
     return corner, np.minimum(corner + width, hi)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
+from amprep.geometry.connectors.fitting import ROOT, root_of
 from amprep.geometry.connectors.sites import Sites, squares_in_cells
 from amprep.geometry.merging.union import union
 from amprep.geometry.meshes.manifold import as_manifold
@@ -18,9 +19,6 @@ ROUND_SIDES = 12
 
 _APART = 2e-4
 """Distance (mm) between a tip and the side of its cell; tips of neighbouring cells are twice as far apart."""
-
-_ROOT = 0.05
-"""Margin on each side of the root of a tip, as a fraction of the cell."""
 
 _DIP = 0.05
 """Length (mm) by which shapes extend below the base and above the top of the connectors, which then clip them."""
@@ -47,10 +45,13 @@ class TipProfile(NamedTuple):
     round: bool
 
 
-def make_tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> "Manifold":
+def make_tips(
+    sites: Sites, profile: TipProfile, level: Floats, base: Floats, plate: Floats, overlap: float
+) -> "Manifold":
     """Return the solid whose intersection with plain connectors is teeth or points on their shoulders.
 
-    The shoulder of a site is its whole cell from the base up to the level; the tip begins at the level.
+    The shoulder of a site is its whole cell from the base up to the level; the tip begins at the level. Where contact
+    covers only a part of the cell, a strip of a shoulder could be thin: there it ends at the plate, and the tip begins.
 
     Parameters
     ----------
@@ -60,6 +61,8 @@ def make_tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, ov
         Section that all tips share.
     level, base
         ``(s,)`` heights (mm) at which the tip and the connector of each site begin.
+    plate
+        ``(s,)`` mm, the lowest level in the column of each site.
     overlap
         Depth (mm) to which connectors enter the part.
     """
@@ -68,9 +71,16 @@ def make_tips(sites: Sites, profile: TipProfile, level: Floats, base: Floats, ov
     if not len(sites.column):
         return Manifold()
     rings = _rings(sites, profile, level, base, overlap)
-    tall = level > base
+    shoulder = np.where(sites.is_whole, level, np.minimum(plate, level))
+    has_stem = shoulder < level - _DIP
+    stems = rings[has_stem]
+    low = stems[:, :1].copy()
+    low[:, :, :, 2] = np.maximum(shoulder - _DIP, base - 2 * _DIP)[has_stem, None, None]
+    stems = np.concatenate([low, stems], axis=1)
+    tall = shoulder > base
     cells = sites.square[tall], sites.lo[tall], sites.hi[tall]
-    return union([grid_prisms(*cells, base[tall] - _DIP, level[tall]), as_manifold(*_lofted(rings))])
+    prisms = grid_prisms(*cells, base[tall] - _DIP, shoulder[tall])
+    return union([prisms, *(as_manifold(*_lofted(each)) for each in (rings[~has_stem], stems) if len(each))])
 
 
 def grid_prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
@@ -102,15 +112,21 @@ def grid_prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Flo
 def _rings(sites: Sites, profile: TipProfile, level: Floats, base: Floats, overlap: float) -> Floats:
     """Return the sections of each tip as rings of corners from the root upwards, ``(s, r, n, 3)`` mm."""
     lo, hi = sites.lo + _APART, sites.hi - _APART
-    top = squares_in_cells(sites.spot, profile.width, lo, hi)
-    rim = _ROOT * (hi - lo)
-    root = np.minimum(lo + rim, top[0]), np.maximum(hi - rim, top[1])
+    width = sites.width[:, None]
+    top = squares_in_cells(sites.spot, width, lo, hi)
+    inside = sites.inside[:, None]
+    top = (
+        np.where(inside, top[0], sites.spot - width / 2.0),
+        np.where(inside, top[1], sites.spot + width / 2.0),
+    )
+    rim = ROOT * (hi - lo)
+    root = root_of(top, lo + rim, hi - rim, sites.spread[:, None])
     # a circle that was moved into its cell may miss the contact point; a square does not
-    pushed = np.linalg.norm((top[0] + top[1]) / 2.0 - sites.spot, axis=1) > 0.4 * profile.width
+    pushed = np.linalg.norm((top[0] + top[1]) / 2.0 - sites.spot, axis=1) > 0.4 * sites.width
     circle = ~pushed & profile.round
-    levels = [(level - _DIP, root, np.zeros_like(circle))]
+    levels = [(level - _DIP, root, circle & (sites.spread == 0.0))]
     if profile.neck:
-        neck = squares_in_cells(sites.spot, profile.neck, *top)
+        neck = squares_in_cells(sites.spot, np.minimum(profile.neck, width), *top)
         height = np.maximum(sites.lowest - profile.neck_height, (sites.lowest + level) / 2.0)
         levels.append((height, neck, circle))
     levels += [(sites.lowest, top, circle), (sites.highest + overlap + _DIP, top, circle)]

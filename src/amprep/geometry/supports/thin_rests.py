@@ -8,7 +8,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.waists import keep_narrow
+from amprep.geometry.supports.waists import INWARDS, keep_narrow
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -274,6 +274,7 @@ def narrow_ends(
     after = np.where(after == first + np.repeat(sizes, sizes), first, after)
     side = points[after] - points
     length = np.hypot(side[:, 0], side[:, 1])
+    looked_at = ~np.repeat(_are_compact(region, side, width, area), sizes)
     heading = np.arctan2(side[:, 1], side[:, 0])
     turn = np.empty(len(points))
     turn[after] = (heading[after] - heading + np.pi) % (2.0 * np.pi) - np.pi
@@ -282,11 +283,36 @@ def narrow_ends(
     around = np.add.reduceat(length, np.cumsum(sizes) - sizes)
     is_stubby = (around < _SHORT * width) & (2.0 * enclosed < _STUBBY * width * around)
     is_narrow = 2.0 * enclosed < _NARROW * width * around
-    is_small = np.repeat((enclosed > 0.0) & ((enclosed < area) | is_stubby | is_narrow), sizes)
-    ends = _turns_back(turn, length, after, width)
-    narrow = keep_narrow(points, after, turn, ends & ~is_small, width, judged, waists=waists)
+    is_small = np.repeat((enclosed > 0.0) & ((enclosed < area) | is_stubby | is_narrow), sizes) & looked_at
+    ends = _turns_back(turn, length, after, width) & looked_at
+    inwards = (turn < -INWARDS) & looked_at & waists
+    narrow = keep_narrow(points, after, inwards, ends & ~is_small, width, judged)
     small = points[is_small]
     return np.concatenate([points[narrow & ~is_small], small[judged(small)]])
+
+
+def _are_compact(region: Contours, side: Floats, width: float, area: float) -> Bools:
+    """Tell which contours have no thin place for certain, because of the discs around their middle that fit, ``(k,)``.
+
+    The middle is that of the box. Of a disc around it that fits, all discs of the width are inside, and they cover all
+    that is nearer than their reach. `side` ``(n, 2)`` mm leads from each point to the next one.
+    """
+    points, sizes = np.concatenate(region.contours), [len(contour) for contour in region.contours]
+    first = np.cumsum([0, *sizes[:-1]])
+    offset = points - np.repeat((region.low + region.high) / 2.0, sizes, axis=0)
+    cross = offset[:, 0] * side[:, 1] - offset[:, 1] * side[:, 0]
+    length2 = np.maximum((side**2).sum(axis=1), 1e-18)
+    along = np.clip(-(offset * side).sum(axis=1) / length2, 0.0, 1.0)
+    near = np.hypot(*(offset + along[:, None] * side).T)
+    # a contour that turns left around the middle everywhere contains it
+    radius = np.where(np.minimum.reduceat(cross, first) > 0.0, np.minimum.reduceat(near, first), 0.0)
+    farthest = np.maximum.reduceat(np.hypot(*offset.T), first)
+    compact = (
+        (radius > 0.51 * width) & (np.pi * radius**2 > area) & (farthest < radius + (_CORNER - 0.01) * width)
+    )
+    for hole in np.flatnonzero(np.add.reduceat(cross, first) <= 0.0).tolist():
+        compact &= ~((region.low <= region.low[hole]) & (region.high >= region.high[hole])).all(axis=1)
+    return np.asarray(compact)
 
 
 def _turns_back(turn: Floats, length: Floats, after: np.ndarray, width: float) -> Bools:

@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 
-_INWARDS = np.radians(5.0)
+INWARDS = np.radians(5.0)
 """Angle by which an outline turns inwards at the corner of a waist."""
 
 _OPPOSITE = 0.7
@@ -22,12 +22,10 @@ _MOST_SQUARES = 1_000_000
 def keep_narrow(
     points: Floats,
     after: Int64s,
-    turn: Floats,
+    inwards: Bools,
     ends: Bools,
     width: float,
     judged: Callable[[Floats], Bools],
-    *,
-    waists: bool,
 ) -> Bools:
     """Tell at which vertices ``(n,)`` a region is thinner than a width, of those that may be narrow ends or waists.
 
@@ -38,26 +36,23 @@ def keep_narrow(
     ----------
     points, after
         ``(n, 2)`` mm, vertices of the outlines, which have the region to their left; the next vertex of each.
-    turn
-        ``(n,)`` angle by which the outlines turn at each vertex.
+    inwards
+        ``(n,)`` vertices that may be corners of waists, because the outline turns inwards there.
     ends
         ``(n,)`` vertices that may be narrow ends.
     width
         Length, mm.
     judged
         Tells which points ``(k, 2)`` mm are looked at.
-    waists
-        Whether waists are looked for, too.
     """
     from amprep.kernels.supports.narrow_places import OutlineSides, keep_narrow_places
 
-    inwards = (turn < -_INWARDS) & waists
     chosen = np.zeros(len(points), np.bool_)
     asked = np.flatnonzero(inwards | ends)
     chosen[asked] = judged(points[asked])
     if not chosen.any():
         return chosen
-    inwards &= chosen
+    inwards = inwards & chosen
     chosen &= ends
     side = points[after] - points
     low, high = points.min(axis=0), points.max(axis=0)

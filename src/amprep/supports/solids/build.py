@@ -160,7 +160,7 @@ def build_supports(
     depth = max(rules.overlap, CONTACT_TOLERANCE)
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
     obstacles = PartObstacles(parts, clearance, around.earlier)
-    context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts)
+    context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts, rules.least)
     builder = _SupportBuilder(context, parts, instances, as_beams, rules)
     solids, names, keys = [], [], []
     for group, held in enumerate(layout.group_parts):

@@ -7,6 +7,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 from amprep.errors import JobError
 from amprep.geometry.connectors.columns import ConnectorColumns
+from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.connectors.perforation import perforations
 from amprep.geometry.connectors.sites import find_sites
 from amprep.geometry.connectors.tips import TipProfile, grid_prisms, make_tips
@@ -40,6 +41,9 @@ On coplanar faces manifold3d leaves folds, and loses volume when it reads such a
 
 _WIDER = 2e-3
 """Length (mm) by which notches are wider than squares: faces in the same plane as those of cells would leave foils."""
+
+_MARGIN = 0.03
+"""Length (mm) by which the narrowest tips are wider than the least section, because circles are polygons."""
 
 _WHOLE = 1.0 - 1e-6
 
@@ -109,6 +113,7 @@ def shape_connectors(
     rules: ConnectorRules,
     spacing: TipSpacing,
     overlap: float,
+    least: LeastSection | None = None,
 ) -> ShapedConnectors:
     """Intersect plain connectors with tips and perforate them; they still end in the true surface of the part.
 
@@ -129,6 +134,8 @@ def shape_connectors(
         Distance of tips in each column.
     overlap
         Depth (mm) to which connectors enter the part.
+    least
+        Least section of supports; None for none.
 
     Raises
     ------
@@ -145,12 +152,13 @@ def shape_connectors(
         if profile is None:
             break
         tip_height = profile.height
-        sites = find_sites(contact, _columns_of(columns, chosen), count, profile.width)
+        narrow = None if least is None else least.diameter + _MARGIN
+        sites = find_sites(contact, _columns_of(columns, chosen), count, profile.width, narrow)
         own = np.flatnonzero(chosen)[sites.column]
         level = np.maximum(sites.lowest - profile.height, floor[own])
         np.minimum.at(lowest, own, level)
         base = np.where(sink > 0.0, np.minimum(base, lowest - pad), base)
-        tips.append(make_tips(sites, profile, level, base[own], overlap))
+        tips.append(make_tips(sites, profile, level, base[own], lowest[own], overlap))
     notch = union([])
     if tips:
         connectors ^= union(tips).translate(NUDGE)

@@ -8,7 +8,7 @@ from amprep.arrays import Bools, Floats, Ints
 from amprep.cells.instances import CellInstances, expand_cells
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
-from amprep.geometry.connectors.least_width import Posts
+from amprep.geometry.connectors.least_width import LeastSection, Posts
 from amprep.geometry.connectors.sheets import join_sheets, plan_segments, raise_sheets
 from amprep.geometry.merging.union import FILE_STEP, finish, union
 from amprep.geometry.meshes.manifold import as_manifold
@@ -47,6 +47,8 @@ class SupportContext(NamedTuple):
         Depth (mm) to which supports enter the parts that they hold, at least `CONTACT_TOLERANCE`.
     posts
         Posts below surfaces that are too narrow for connectors of their own outline; None for none.
+    least
+        Least section of connectors; None for none.
     """
 
     layout: SupportLayout
@@ -55,6 +57,7 @@ class SupportContext(NamedTuple):
     connector: ConnectorRules
     overlap: float
     posts: Posts | None = None
+    least: LeastSection | None = None
 
     def foot_boxes(self, group: int) -> tuple[Floats, Floats]:
         """Return the boxes in which the feet of a group on parts end."""
@@ -100,7 +103,7 @@ def solid_of(
     connectors += _posts(context, red, np.maximum(seat / 2, sink))
     notch = union([])
     if connectors:
-        shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink)
+        shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink, instances)
         connectors, notch = [shaped.connectors], shaped.notch
     connectors += _feet(context, group)
     seats = red & (layout.red.square[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
@@ -158,20 +161,38 @@ def _posts(context: SupportContext, red: Bools, depth: Floats) -> list["Manifold
 
 
 def _subtract_and_shape(
-    context: SupportContext, group: int, connectors: "Manifold", red: Bools, depth: Floats, sink: Floats
+    context: SupportContext,
+    group: int,
+    connectors: "Manifold",
+    red: Bools,
+    depth: Floats,
+    sink: Floats,
+    instances: CellInstances,
 ) -> ShapedConnectors:
-    """Subtract the parts from connectors, and shape the rest by the rules; `depth` and `sink` ``(m,)`` mm."""
+    """Subtract the parts from connectors, and shape the rest by the rules; `depth` and `sink` ``(m,)`` mm.
+
+    What keeps out of walls and stays in the territory is shaped, because borders that cut tips leave slivers.
+    """
     obstacles, held = context.obstacles, context.layout.group_parts[group]
     connectors = obstacles.subtract_from(connectors, held, context.overlap)
     if not context.connector.is_shaped:
         return ShapedConnectors(connectors, union([]))
+    connectors = clip_to_territory(context.layout, group, obstacles.clip([connectors])[0], instances)
     contact = obstacles.contact(connectors, held)
     columns = context.surfaces.columns
     columns = columns._replace(lo=columns.lo[red], hi=columns.hi[red], square=columns.square[red])
     base = columns.lo[:, 2] - depth[red]
     spacing = TipSpacing(context.layout.contact_spacing, context.layout.close[red])
     return shape_connectors(
-        connectors, contact, columns, base, sink[red], context.connector, spacing, context.overlap
+        connectors,
+        contact,
+        columns,
+        base,
+        sink[red],
+        context.connector,
+        spacing,
+        context.overlap,
+        context.least,
     )
 
 

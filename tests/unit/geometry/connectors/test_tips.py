@@ -12,21 +12,24 @@ from amprep.geometry.merging.union import union
 SIDE = 2.0
 
 
-def sites(count=2, lowest=8.0):
+def sites(count=2, lowest=8.0, width=0.4):
     """Return one site in the centre of each of `count` x `count` cells of one square."""
     y, x = np.divmod(np.arange(count * count), count)
     cell = SIDE / count
     lo = np.column_stack([x, y]) * cell
     level = np.full(len(x), lowest)
     one = np.ones(len(x))
-    square = np.column_stack([y, x])
-    return Sites(np.zeros(len(x), np.int64), square, lo, lo + cell, lo + cell / 2, level, level, one)
+    column, square = np.zeros(len(x), np.int64), np.column_stack([y, x])
+    middle = lo + cell / 2
+    return Sites(
+        column, square, lo, lo + cell, middle, level, level, one, width * one, one, one.astype(np.bool_)
+    )
 
 
 def tips(profile, count=2, lowest=8.0):
-    own = sites(count, lowest)
+    own = sites(count, lowest, profile.width)
     level = own.lowest - profile.height
-    return make_tips(own, profile, level, np.zeros(count * count), 0.1)
+    return make_tips(own, profile, level, np.zeros(count * count), level, 0.1)
 
 
 def areas(solid, height):
@@ -53,8 +56,8 @@ def test_a_neck_is_below_the_contact_and_halfway_up_in_short_tips():
 
 
 def test_no_sites_give_an_empty_solid():
-    own = Sites(*(each[:0] for each in sites()))
-    assert make_tips(own, TipProfile(0.4, 1.0, 0.0, 0.3, False), np.empty(0), np.empty(0), 0.1).is_empty()
+    own, none = Sites(*(each[:0] for each in sites())), np.empty(0)
+    assert make_tips(own, TipProfile(0.4, 1.0, 0.0, 0.3, False), none, none, none, 0.1).is_empty()
 
 
 def test_prisms_over_a_grid_have_the_sum_of_their_volumes():

@@ -9,13 +9,16 @@ from manifold3d import CrossSection, Manifold
 from amprep.checks.supports.bodies import check_bodies
 from amprep.checks.supports.contacts import check_contacts
 from amprep.checks.supports.coverage import check_coverage
+from amprep.checks.supports.least_section import check_least_section
 from amprep.errors import JobError
+from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports.contact_area import contact_corners, measure_contact
 from amprep.host import Host
 from amprep.job.loading import make_job
 from amprep.model import Build, BuildSettings, BuildVolume, Mesh, Part, PlacedPart, Stop, silent
 from amprep.model.contacts import ConnectorRules
+from amprep.model.supports.sizes import SupportSizes
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
@@ -61,6 +64,16 @@ def bracket():
 SHAPES = {"slab": slab, "ball": ball, "tilted": tilted, "bracket": bracket}
 
 
+def flange():
+    """A turned plate with a round end and a bore, whose borders cut the squares of the grid at any place."""
+    plate = Manifold.cube((14.0, 9.0, 2.0)) + Manifold.cylinder(2.0, 4.5, 4.5, 40).translate((14.0, 4.5, 0.0))
+    whole = plate - Manifold.cylinder(6.0, 2.1, 2.1, 40, center=True).translate((11.3, 4.4, 0.0))
+    return whole.rotate((0.0, 0.0, 13.0)).translate((12.0, 9.0, 7.7))
+
+
+LEAST = LeastSection(0.3, 0.09)
+
+
 def placed(solid, name="part"):
     mesh = solid.to_mesh64()
     whole = Mesh(np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts, np.int32))
@@ -78,7 +91,7 @@ def host():
 
 @cache
 def scene(shape):
-    part = placed(SHAPES[shape]())
+    part = placed((SHAPES | {"flange": flange})[shape]())
     router = host().choose("router", "shortest-paths")
 
     def route(problem, stop, progress):
@@ -131,6 +144,19 @@ def judged(shape, bodies):
 def test_connectors_of_every_kind_keep_every_promise(shape, kind):
     """Closed, on the plate, nowhere deeper than the overlap, in reach of all, in contact above every red square."""
     assert judged(shape, supports(shape, KINDS[kind])) == []
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind"), [*(("flange", kind) for kind in KINDS), ("bracket", "point"), ("tilted", "teeth")]
+)
+def test_no_section_of_connectors_of_any_kind_is_thinner_than_the_least(shape, kind):
+    """As strictly in tips as elsewhere, if their rules make them no thinner."""
+    rules, part = KINDS[kind], scene(shape)[0]
+    sizes = SupportSizes(PITCH, rules.tip_width_mm, rules.tip_height_mm, rules.neck_mm)
+    settings = BuildSettings("b", SPACE, sizes=sizes if rules.neck_mm else SupportSizes())
+    bodies = supports(shape, rules, least=LEAST)
+    assert bodies
+    assert check_least_section(Build(settings, (part,), bodies), Stop())[0] == []
 
 
 def test_the_judge_finds_a_red_square_without_contact():
