@@ -86,12 +86,14 @@ def orient(
         raise JobError(
             f"effort must be fast, normal or thorough, got {effort!r}{nearest_hint(effort, MEASURED)}"
         )
-    if not 0.0 <= tilt_deg <= 180.0:
-        raise JobError(f"tilt_deg must be between 0 and 180, got {tilt_deg:g}")
+    try:
+        restricted = OrientationRules(tuple(no_contact), tuple(face_up), tuple(face_down), tilt_deg)
+    except ValueError as error:
+        raise JobError(str(error)) from error
     options = OrientOptions(
         folder=None if output is None else Path(output),
         effort=effort,
-        restricted=OrientationRules(tuple(no_contact), tuple(face_up), tuple(face_down), tilt_deg),
+        restricted=restricted,
         time_limit=time_limit_s,
     )
     resolved = resolve(*job_and_host(inputs, {"printer": printer, **(settings or {})}, plugins))

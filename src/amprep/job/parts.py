@@ -13,7 +13,9 @@ from amprep.job.settings.packing import as_names
 from amprep.job.settings.parts import PartSettings
 from amprep.job.settings.rules import RuleSettings
 from amprep.model.counting import counted
+from amprep.model.orientation import OrientationRules
 from amprep.model.part import Part
+from amprep.model.rotations import ORIENT, parse_rotations
 from amprep.overhangs.conditions import colours_of, is_named
 
 
@@ -30,7 +32,7 @@ def apply_part_settings(parts: Sequence[Part], job: Job) -> list[Part]:
     """
     for number, rule in enumerate(job.rules, start=1):
         _check_rule(rule, parts, f"{job.source}: [[rule]] {number}")
-    result = list(parts)
+    result = [_with_rotations(part, job.packing.rotations) for part in parts]
     for number, entry in enumerate(job.parts, start=1):
         chosen = [index for index, part in enumerate(parts) if names_part(entry, part, job)]
         if not chosen:
@@ -95,6 +97,23 @@ def _volumes(part: Part, entry: PartSettings) -> tuple[str, ...] | None:
     return part.overrides.volumes if entry.volumes is None else as_names(entry.volumes)
 
 
+def _with_rotations(part: Part, rotations: str | None) -> Part:
+    """Return a part that states no rotations with those of the job."""
+    if rotations is None or part.orientations.freedom != "list" or len(part.orientations.matrices) > 1:
+        return part
+    if rotations == ORIENT:
+        return replace(part, orient=OrientationRules())
+    return replace(part, orientations=parse_rotations(rotations))
+
+
+def _orient(part: Part, entry: PartSettings) -> OrientationRules | None:
+    """Return what restricts the search for orientations; an entry with other rotations ends the search."""
+    if entry.rotations is not None and entry.rotations != ORIENT:
+        return None
+    asked = entry.rotations == ORIENT or part.orient is not None
+    return entry.orientation_rules if asked else None
+
+
 def _with_settings(part: Part, entry: PartSettings) -> Part:
     angle, margin = entry.overhang_angle_deg, entry.territory_margin_mm
     overrides = replace(
@@ -111,5 +130,6 @@ def _with_settings(part: Part, entry: PartSettings) -> Part:
         orientations=entry.orientations or part.orientations,
         boxes=part.boxes if entry.boxes is None else entry.box_array,
         fixed=_fixed(part, entry),
+        orient=_orient(part, entry),
         overrides=overrides,
     )

@@ -8,6 +8,7 @@ import numpy as np
 
 from amprep.arrays import Floats, Ints, frozen
 from amprep.model.mesh import Mesh
+from amprep.model.orientation import OrientationRules
 
 RegionKind = Literal["blocker", "enforcer", "lattice"]
 Freedom = Literal["list", "about-z", "free"]
@@ -120,6 +121,9 @@ class Part:
         What is wrong with the file or doubtful, one sentence each; the first part of a file has those of the file.
     metadata
         Metadata of the file, ``(namespace, name) -> value``, kept unchanged.
+    orient
+        Restrictions of the search for orientations, whose proposals take the place of `orientations`; None for no
+        search.
     source_sha256
         SHA-256 of the file that the part was read from; empty if there is none.
     """
@@ -143,6 +147,7 @@ class Part:
     warnings: tuple[str, ...] = ()
     metadata: Mapping[tuple[str, str], str] = field(default_factory=dict)
     source_sha256: str = ""
+    orient: OrientationRules | None = None
 
     @property
     def origins(self) -> Floats:

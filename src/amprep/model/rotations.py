@@ -14,6 +14,9 @@ from amprep.model.part import Orientations
 
 ROTATION_WORDS = ("none", "z90", "axis", "about-z", "free")
 
+ORIENT = "orient"
+"""In a job file: the rotations that a search for orientations finds."""
+
 _EXPECTED = (
     f"one of {', '.join(ROTATION_WORDS)}, z with a step of 1 to 360 degrees and perhaps forbidden angles "
     "('z15 except 30-60, 210-240'), up- with the axes that may point up (up-xz), or a list of 3x3 rotation matrices"

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from amprep.errors import JobError
 from amprep.model.packing import Interlocking, Objective
+from amprep.model.rotations import ORIENT, parse_rotations
 from amprep.validation import LARGEST_LENGTH, require, require_bounds
 
 Effort = Literal["fast", "normal", "thorough"]
@@ -22,6 +24,8 @@ class PackingSettings:
     volumes
         Name of a volume maker, or names of several, each of which works on the result of the one before; None leaves
         the choice to the packer.
+    rotations
+        Allowed rotations of parts that state none, as in a ``[[part]]`` entry; None allows none.
     blade_angle_deg
         Least angle between long straight edges of a part and the recoater blade, if the part may be turned; 0 allows
         every angle.
@@ -43,6 +47,7 @@ class PackingSettings:
     stacking: bool = False
     interlocking: Interlocking = "allow"
     even_layers: bool = False
+    rotations: str | None = None
     blade_angle_deg: float = 0.0
     blade_edge_mm: float = 10.0
     effort: Effort = "normal"
@@ -60,6 +65,11 @@ class PackingSettings:
             "even_layers = true must come with stacking = true",
             "stacking = false",
         )
+        if self.rotations is not None and self.rotations != ORIENT:
+            try:
+                parse_rotations(self.rotations)
+            except JobError as error:
+                raise ValueError(str(error)) from error
         require(self.volumes != (), "volumes must name at least one volume maker", "none")
         for name, table in self.volume_params.items():
             require(

@@ -7,9 +7,10 @@ import numpy as np
 from amprep.arrays import Floats, frozen
 from amprep.errors import JobError
 from amprep.job.settings.bounds import require_quantity
+from amprep.model.orientation import OrientationRules
 from amprep.model.packing import LARGEST_VALUE
 from amprep.model.part import Orientations
-from amprep.model.rotations import parse_rotations
+from amprep.model.rotations import ORIENT, parse_rotations
 from amprep.model.supports.rules import LARGEST_LIMIT
 from amprep.validation import require, require_bounds
 
@@ -27,6 +28,10 @@ class PartSettings:
     quantity: int | None = None
     value: float | None = None
     rotations: str | tuple[Matrix, ...] | None = None
+    no_contact: tuple[str, ...] = ()
+    face_up: tuple[str, ...] = ()
+    face_down: tuple[str, ...] = ()
+    tilt_deg: float | None = None
     volumes: str | tuple[str, ...] | None = None
     boxes: tuple[Box, ...] | None = None
     fixed: tuple[Point, ...] = ()
@@ -46,6 +51,7 @@ class PartSettings:
         require_bounds(self, "overhang_angle_deg", at_least=0, at_most=89)
         require_bounds(self, "territory_margin_mm", at_least=0, at_most=LARGEST_LIMIT)
         self._require_boxes()
+        self.orientation_rules  # noqa: B018 reading the property checks the rules
         try:
             self.orientations  # noqa: B018 reading the property checks the rotations
         except JobError as error:
@@ -54,9 +60,17 @@ class PartSettings:
     @property
     def orientations(self) -> Orientations | None:
         """Allowed orientations, or None."""
-        if self.rotations is None or isinstance(self.rotations, str):
-            return None if self.rotations is None else parse_rotations(self.rotations)
+        if self.rotations is None or self.rotations == ORIENT:
+            return None
+        if isinstance(self.rotations, str):
+            return parse_rotations(self.rotations)
         return parse_rotations([[list(row) for row in matrix] for matrix in self.rotations])
+
+    @property
+    def orientation_rules(self) -> OrientationRules:
+        """What restricts the search for orientations."""
+        tilt = 180.0 if self.tilt_deg is None else self.tilt_deg
+        return OrientationRules(self.no_contact, self.face_up, self.face_down, tilt)
 
     @property
     def box_array(self) -> Floats | None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from amprep.arrays import Floats, frozen
+from amprep.validation import require, require_bounds
 
 EDGE_MM, HOLD_MM2, FIRM_DEG = 1.0, 25.0, 3.0
 """In the estimate of the support volume: thickness of the wall below a knife edge; section of the column below a part
@@ -32,6 +33,11 @@ class OrientationRules:
     face_up: tuple[str, ...] = ()
     face_down: tuple[str, ...] = ()
     tilt_deg: float = 180.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "tilt_deg", at_least=0, at_most=180)
+        for name in (*self.no_contact, *self.face_up, *self.face_down):
+            require(bool(name), "no_contact, face_up and face_down must name faces", "an empty text")
 
 
 @dataclass(frozen=True)

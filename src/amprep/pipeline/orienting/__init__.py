@@ -70,7 +70,9 @@ def orient_job(
     with clock.stage("orient") as progress:
         for number, part in enumerate(loaded.parts):
             shown = _share(progress, number, len(loaded.parts))
-            found = oriented(part, job, options.restricted, options.effort, limit, shown)
+            found = oriented(
+                part, job, _joined(part.orient, options.restricted), options.effort, limit, shown
+            )
             parts.append(OrientedPart(part, found.tried, found.drawn, found.proposals))
     record = OrientationRecord(
         name=job.name,
@@ -82,6 +84,18 @@ def orient_job(
         warnings=(*resolved.host.warnings, *warnings_about(loaded.parts)),
     )
     return replace(record, stages=clock.times)
+
+
+def _joined(own: OrientationRules | None, more: OrientationRules) -> OrientationRules:
+    """Return what restricts a part by its entry in the job and by the options of the search."""
+    if own is None:
+        return more
+    return OrientationRules(
+        (*own.no_contact, *more.no_contact),
+        (*own.face_up, *more.face_up),
+        (*own.face_down, *more.face_down),
+        min(own.tilt_deg, more.tilt_deg),
+    )
 
 
 def oriented(

@@ -25,6 +25,7 @@ from amprep.model import (
 )
 from amprep.model.summary import Summarised
 from amprep.overhangs.known import KnownOverhangs
+from amprep.pipeline.orienting.rotations import with_orientations
 from amprep.pipeline.packing.adjusting import adjusted
 from amprep.pipeline.packing.bounding import bound_parts, offered_orientations
 from amprep.pipeline.packing.judging import refuse_wrong_packing
@@ -102,7 +103,7 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
     loaded
         Parts with their job.
     clock
-        Times and shows the stages ``bound`` and ``pack``.
+        Times and shows the stages ``orient`` (if a part asks for it), ``bound`` and ``pack``.
     stop
         Ends both stages early; the packer then returns its best packing so far.
 
@@ -113,6 +114,7 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
     AmprepError
         When nothing fits the build volume.
     """
+    loaded, oriented = with_orientations(loaded, clock, stop)
     resolved, job = loaded.resolved, loaded.resolved.job
     accepts = resolved.packer.listed.offer.accepts
     with clock.stage("bound") as progress:
@@ -138,7 +140,7 @@ def pack_parts(loaded: LoadedParts, clock: Clock, stop: Stop) -> PackedParts:
         PackedBuild(resolved, number, f"{job.name}.build-{number}", placed, overhangs)
         for number, placed in enumerate(placed_builds(parts, problem, packing), start=1)
     )
-    return PackedParts(problem, packing, tuple(builds), (*turned, *notes), known)
+    return PackedParts(problem, packing, tuple(builds), (*oriented, *turned, *notes), known)
 
 
 def _pack(
