@@ -123,6 +123,25 @@ def held() -> Iterator[None]:
             signal.raise_signal(number)
 
 
+def end_with(parent: int, code: int) -> None:
+    """Let the system kill this process when its parent is killed, which only Linux can do.
+
+    Parameters
+    ----------
+    parent
+        Process that started this one; if it has ended meanwhile, this one ends with an exit code.
+    code
+        That exit code.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(code)
+
+
 def exit_at_once() -> NoReturn:
     """Say that nothing was written and end the process; buffers of Python are not used, since they may be in use."""
     with suppress(OSError, ValueError):

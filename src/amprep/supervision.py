@@ -91,7 +91,7 @@ def supervise(folder: Path | None = None, limit_s: float | None = None) -> None:
         os.close(held_by_child)
         _Parent(child, board, alive, folder).wait()
     os.close(alive)
-    _end_with(parent)
+    interruption.end_with(parent, WRONG)
     _STATE.board, _STATE.limit_s = board, limit_s
     interruption.tell_when_files_appear(_files_appeared)
 
@@ -131,17 +131,6 @@ def _files_appeared() -> None:
     if _STATE.board is not None:
         _STATE.board.appeared = True
         _STATE.board.write()
-
-
-def _end_with(parent: int) -> None:
-    """Let the system kill this process when its parent is killed; only Linux can do that."""
-    if sys.platform == "linux":
-        import ctypes
-
-        with suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-    if os.getppid() != parent:
-        os._exit(WRONG)
 
 
 class _Parent:

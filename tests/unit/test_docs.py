@@ -192,7 +192,15 @@ def test_the_example_of_the_page_about_filled_regions_runs(tmp_path, monkeypatch
     assert list((tmp_path / "out").glob("wheel*.3mf"))
 
 
-PUBLIC = {"amprep", "amprep.testing", "amprep.hookspecs", "amprep.model", "amprep.cells", "amprep.errors"}
+PUBLIC = {
+    "amprep",
+    "amprep.testing",
+    "amprep.hookspecs",
+    "amprep.model",
+    "amprep.cells",
+    "amprep.errors",
+    "amprep.workers",
+}
 
 
 def public_sources():

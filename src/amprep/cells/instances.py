@@ -45,6 +45,10 @@ class CellInstances(NamedTuple):
         """Tell which instances belong to a support group."""
         return np.asarray(self.request.edges.group[self.cells.edge] == group)
 
+    def with_new_contents(self) -> "CellInstances":
+        """Return the same instances without voxel contents, whose shapes depend on what was united before."""
+        return self._replace(contents=ContentsTable(self.templates))
+
 
 def classify(request: CellRequest, cells: Cells) -> CellInstances:
     """Classify every instance of an answer."""

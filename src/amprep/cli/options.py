@@ -153,6 +153,15 @@ class JobOptions(ReadingOptions):
     ] = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
+    workers: Annotated[
+        int | None,
+        output_option(
+            "--workers",
+            min=1,
+            metavar="COUNT",
+            help="Largest number of processes; default: one for each core. The results are the same with any number.",
+        ),
+    ] = None
     log: Annotated[
         Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
     ] = None

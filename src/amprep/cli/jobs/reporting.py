@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
-from amprep import cli
+from amprep import cli, workers
 from amprep.cli.log import logging_to
 from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
 
@@ -82,7 +82,8 @@ def call_api(
         for warning in host.warnings:
             log(f"warning: {warning}")
             console.print(f"warning: {warning}", markup=False)
-        return getattr(api, function)(job, plugins=host, watcher=bars, **own)
+        with workers.allowed(options.workers or workers.available()):
+            return getattr(api, function)(job, plugins=host, watcher=bars, **own)
 
 
 def build_and_report(

@@ -1,20 +1,42 @@
 """Keep the solids of support groups that do not change while others lose supports."""
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.cells.instances import CellInstances
 from amprep.model import SupportBody
 from amprep.supports.layout import SupportLayout
+from amprep.workers import share_out
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 Key = bytes
+
+
+class GroupWork(NamedTuple):
+    """The work on all support groups of a layout.
+
+    Attributes
+    ----------
+    keys
+        What the support of each group is made of, as `key_of` tells.
+    triangles
+        Estimated number of triangles of each.
+    is_cancelled
+        Tells whether to end early.
+    done
+        Called with the number of groups that are done.
+    """
+
+    keys: Sequence[Key]
+    triangles: Sequence[float]
+    is_cancelled: Callable[[], bool]
+    done: Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -38,11 +60,24 @@ class KeptSupports:
             self.solids[key] = make()
         return self.solids[key]
 
-    def bodies_of(self, key: Key, make: Callable[[], list[SupportBody]]) -> list[SupportBody]:
-        """Return the bodies of a key; they are made once."""
-        if key not in self.bodies:
-            self.bodies[key] = make()
-        return self.bodies[key]
+    def all_bodies(
+        self, work: GroupWork, make: Callable[[int], list[SupportBody]]
+    ) -> list[list[SupportBody]]:
+        """Return the bodies of all groups; those of a key are made once, in as many processes as are allowed.
+
+        When cancelled, only the bodies of the first groups are returned.
+        """
+        missing = [group for group, key in enumerate(work.keys) if key not in self.bodies]
+        known = len(work.keys) - len(missing)
+        found = share_out(
+            lambda number: make(missing[number]),
+            [work.triangles[group] for group in missing],
+            is_cancelled=work.is_cancelled,
+            done=lambda count: work.done(known + count),
+        )
+        self.bodies.update({work.keys[group]: each for group, each in zip(missing, found, strict=False)})
+        until = missing[len(found)] if len(found) < len(missing) else len(work.keys)
+        return [self.bodies[key] for key in work.keys[:until]]
 
 
 def key_of(layout: SupportLayout, group: int, *answers: CellInstances | None) -> Key:

@@ -4,7 +4,7 @@ Planning knows the squares that supports use, but not what territories, walls an
 the solids are measured as well: what they show of legs above the limit goes, and with it what only those carry.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,6 +17,7 @@ from amprep.model.supports import SLENDER
 from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
 from amprep.supports.legs.leave_out import without_edges
+from amprep.workers import share_out
 
 _BESIDE = 0.25
 """Distance (in pitches) from the box around a leg up to which axes of edges belong to it."""
@@ -60,9 +61,7 @@ def without_long_legs(
     measured: dict[int, _MeasuredBody] = {}
     beside = _BESIDE * layout.grid.pitch
     for _ in range(_MOST_ROUNDS * (ratio > 0.0)):
-        measured = {
-            id(body): measured.get(id(body)) or _measure(body, layout, meshes, ratio) for body in bodies
-        }
+        measured = _all_measured(bodies, measured, layout, meshes, ratio)
         legs = [leg for each in measured.values() for leg in each.legs]
         if not legs:
             break
@@ -88,14 +87,31 @@ class _MeasuredBody(NamedTuple):
     legs: list[_FinishedLeg]
 
 
-def _measure(body: SupportBody, layout: SupportLayout, meshes: Sequence[Mesh], ratio: float) -> _MeasuredBody:
-    """Find the legs of a body that are too long."""
+def _all_measured(
+    bodies: Sequence[SupportBody],
+    known: Mapping[int, _MeasuredBody],
+    layout: SupportLayout,
+    meshes: Sequence[Mesh],
+    ratio: float,
+) -> dict[int, _MeasuredBody]:
+    """Return the legs of bodies that are too long, by the identity of each body; known ones are not measured again."""
+    new = [body for body in bodies if id(body) not in known]
+    work = [float(len(body.mesh.triangles)) for body in new]
+    found = share_out(lambda number: _long_legs_of(new[number], layout, meshes, ratio), work)
+    measured = {id(body): _MeasuredBody(body, legs) for body, legs in zip(new, found, strict=True)}
+    return {id(body): measured.get(id(body)) or known[id(body)] for body in bodies}
+
+
+def _long_legs_of(
+    body: SupportBody, layout: SupportLayout, meshes: Sequence[Mesh], ratio: float
+) -> list[_FinishedLeg]:
+    """Return the legs of a body that are too long."""
     if body.surface or not len(body.mesh.triangles):
-        return _MeasuredBody(body, [])
+        return []
     group = layout.group_parts.index(body.parts)
     held = [meshes[part] for part in body.parts]
     found = long_stretches(body.mesh, layout.grid.step, ratio, held)
-    return _MeasuredBody(body, [_FinishedLeg(group, boxes[len(boxes) // 2]) for boxes in found])
+    return [_FinishedLeg(group, boxes[len(boxes) // 2]) for boxes in found]
 
 
 def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:

@@ -14,7 +14,7 @@ from amprep.model import BuildVolume, Lattice, Mesh, PlacedPart, Progress, Stop,
 from amprep.model.build import MAX_STAND_IN_TRIANGLES
 from amprep.model.contacts import BaseRules, ConnectorRules
 from amprep.supports.layout import SupportLayout
-from amprep.supports.legs.kept_supports import KeptSupports, key_of
+from amprep.supports.legs.kept_supports import GroupWork, KeptSupports, key_of
 from amprep.supports.solids.bases import make_bases, plan_of_others
 from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
 from amprep.supports.solids.connectors import find_column_surfaces
@@ -27,7 +27,10 @@ from amprep.supports.solids.thin_rests import NO_HOLES, without_thin_rests
 from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
+    from manifold3d import CrossSection, Manifold
+
+_TRIANGLES_OF_CELL = 50.0
+"""Number of triangles for which a cell counts when work is estimated."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,23 +165,45 @@ def build_supports(
     obstacles = PartObstacles(parts, clearance, around.earlier)
     context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts, rules.least)
     builder = _SupportBuilder(context, parts, instances, as_beams, rules)
-    solids, names, keys = [], [], []
-    for group, held in enumerate(layout.group_parts):
-        if stop.cancelled.is_set():
-            break
-        names.append(", ".join(parts[part].label for part in held))
-        progress(group / len(layout.group_parts), f"uniting supports of {names[-1]}")
-        keys.append(key_of(layout, group, instances, as_beams))
-        solids.append(around.kept.solid(keys[-1], partial(builder.drained_solid, group)))
-    beside = plan_of_others(around.earlier, around.later, rules.base)
-    regions = [territory_section(layout, group) for group in range(len(solids))]
-    bases = make_bases(solids, parts, rules.base, rules.space, rules.gap, beside, regions)
-    bodies: list[SupportBody] = []
-    for group, (name, solid, own_base) in enumerate(zip(names, solids, bases, strict=True)):
-        make = partial(builder.bodies, group, name, solid, own_base)
-        bodies += around.kept.bodies_of(keys[group], make) if own_base is None else make()
+    names = [", ".join(parts[part].label for part in held) for held in layout.group_parts]
+    keys = [key_of(layout, group, instances, as_beams) for group in range(len(names))]
+    cells = [float(instances.of(group).sum()) for group in range(len(names))]
+    work = GroupWork(
+        keys, [_TRIANGLES_OF_CELL * each for each in cells], stop.cancelled.is_set, _shown(progress, names)
+    )
+    if rules.base.base == "direct":
+        found = around.kept.all_bodies(work, partial(builder.finished_bodies, names))
+    else:
+        beside = plan_of_others(around.earlier, around.later, rules.base)
+        found = _with_bases(builder, names, around.kept, work, beside)
     progress(1.0, "supports finished")
-    return tuple(bodies)
+    return tuple(body for bodies in found for body in bodies)
+
+
+def _shown(progress: Progress, names: Sequence[str]) -> Callable[[int], None]:
+    """Return a callback that shows how many groups are done."""
+    return lambda count: progress(count / len(names), f"uniting supports, {count} of {len(names)} done")
+
+
+def _with_bases(
+    builder: "_SupportBuilder",
+    names: Sequence[str],
+    kept: KeptSupports,
+    work: GroupWork,
+    beside: "CrossSection | None",
+) -> list[list[SupportBody]]:
+    """Return the bodies of all groups with their bases, which keep clear of all solids, and of the region `beside`."""
+    rules, layout = builder.rules, builder.context.layout
+    solids: list[Manifold | None] = []
+    for group, key in enumerate(work.keys):
+        if work.is_cancelled():
+            break
+        solids.append(kept.solid(key, partial(builder.drained_solid, group)))
+        work.done(group + 1)
+    regions = [territory_section(layout, group) for group in range(len(solids))]
+    bases = make_bases(solids, builder.parts, rules.base, rules.space, rules.gap, beside, regions)
+    finished = enumerate(zip(solids, bases, strict=True))
+    return [builder.bodies(group, names[group], solid, base) for group, (solid, base) in finished]
 
 
 def _ask(
@@ -252,6 +277,10 @@ class _SupportBuilder(NamedTuple):
         near, tip_height = self.context.obstacles.near(solid), self._tip_height()
         solid = without_thin_rests(solid, near, self.rules.least, tip_height, holes)
         return None if solid.is_empty() else solid
+
+    def finished_bodies(self, names: Sequence[str], group: int) -> list[SupportBody]:
+        """Return the bodies of a group that has no base."""
+        return self.bodies(group, names[group], self.drained_solid(group), None)
 
     def _tip_height(self) -> float:
         """Return the height (mm) below parts up to which connectors taper; 0 where they do not."""

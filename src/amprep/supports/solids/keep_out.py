@@ -1,7 +1,6 @@
 """Keep supports out of parts and away from their walls, and drop the pieces that float then."""
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,7 +55,11 @@ class WallClearance:
 
 
 class PartObstacles:
-    """The solid parts of a build, and supports that are finished, as obstacles; their solids are made when needed."""
+    """The solid parts of a build, and supports that are finished, as obstacles.
+
+    manifold3d orders the vertices of a result by the ages of its operands. So the solids are made at once: whatever
+    support is built first, they are older than it.
+    """
 
     def __init__(
         self,
@@ -65,10 +68,10 @@ class PartObstacles:
         finished: Sequence[SupportBody] = (),
     ) -> None:
         self._finished = [each.mesh for each in finished if not each.surface]
-        self._finished_solid = cache(lambda index: as_manifold(*self._finished[index].arrays))
+        self._finished_solids = [as_manifold(*mesh.arrays) for mesh in self._finished]
         self._meshes = {index: placed.mesh for index, placed in enumerate(parts) if placed.part.is_solid}
         self._clearance = clearance
-        self._solid = cache(lambda index: as_manifold(*self._meshes[index].arrays))
+        self._solids = {index: as_manifold(*mesh.arrays) for index, mesh in self._meshes.items()}
 
     def subtract_from(
         self, connectors: "Manifold", held: tuple[int, ...], overlap: float, *, down: bool = False
@@ -93,9 +96,9 @@ class PartObstacles:
             depth = overlap if index in held else 0.0
             # half the contact tolerance more, so that faces that should just touch do not intersect
             shift = depth + CONTACT_TOLERANCE / 2
-            connectors -= self._solid(index).translate((0.0, 0.0, -shift if down else shift))
+            connectors -= self._solids[index].translate((0.0, 0.0, -shift if down else shift))
         for index in _meeting(connectors, dict(enumerate(self._finished))):
-            connectors -= self._finished_solid(index)
+            connectors -= self._finished_solids[index]
         return connectors
 
     def clip(self, solids: list["Manifold"]) -> list["Manifold"]:
@@ -106,13 +109,13 @@ class PartObstacles:
 
     def near(self, solid: "Manifold") -> list["Manifold"]:
         """Return the solid parts whose boxes meet that of a solid."""
-        return [self._solid(index) for index in _meeting(solid, self._meshes)]
+        return [self._solids[index] for index in _meeting(solid, self._meshes)]
 
     def contact(self, connectors: "Manifold", held: tuple[int, ...]) -> Floats:
         """Return the triangles ``(t, 3, 3)`` mm of the held parts inside the connectors."""
         found = [np.empty((0, 3, 3))]
         found += [
-            contact_corners(connectors, self._solid(index))
+            contact_corners(connectors, self._solids[index])
             for index in _meeting(connectors, self._meshes)
             if index in held
         ]

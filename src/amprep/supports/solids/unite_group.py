@@ -85,7 +85,7 @@ def solid_of(
     on_beams
         Whether beams carry the solid: then connectors begin no deeper than `SEAT`.
     """
-    layout = context.layout
+    layout, instances = context.layout, instances.with_new_contents()
     mine = instances.of(group) & ~instances.sheet
     if instances.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(instances, group)

@@ -1,0 +1,98 @@
+import os
+import signal
+import time
+
+import pytest
+
+from amprep import workers
+from amprep.errors import JobError
+from amprep.workers import WorkerLost, allowed, share_out
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="workers are forked")
+
+LARGE = [1e6] * 6
+
+
+def process_of(number: int) -> tuple[int, int]:
+    time.sleep(0.02)
+    return number * number, os.getpid()
+
+
+def test_results_come_in_the_order_of_the_tasks_from_several_processes() -> None:
+    with allowed(3):
+        found = share_out(process_of, [1e6, 3e6, 2e6, 5e6, 1e5, 4e6])
+    assert [value for value, _ in found] == [0, 1, 4, 9, 16, 25]
+    processes = {process for _, process in found}
+    assert len(processes - {os.getpid()}) >= 2
+    assert found[4][1] == os.getpid()  # the smallest task loads what the others need
+
+
+@pytest.mark.parametrize(("count", "work"), [(1, LARGE), (4, [10.0] * 6), (4, [1e9, 10.0, 10.0])])
+def test_one_process_does_small_work_and_all_work_by_default(count: int, work: list[float]) -> None:
+    with allowed(count):
+        found = share_out(process_of, work)
+    assert {process for _, process in found} == {os.getpid()}
+    assert {process for _, process in share_out(process_of, LARGE)} == {os.getpid()}
+
+
+def test_large_results_arrive_whole() -> None:
+    with allowed(2):
+        found = share_out(lambda number: bytes([number]) * 3_000_000, LARGE)
+    assert [(len(each), each[:1]) for each in found] == [(3_000_000, bytes([number])) for number in range(6)]
+
+
+def test_the_error_of_a_task_is_raised_as_it_is() -> None:
+    def fails(number: int) -> int:
+        if number == 3:
+            raise JobError("the fourth cell is wrong")
+        return number
+
+    with allowed(2), pytest.raises(JobError, match="the fourth cell is wrong"):
+        share_out(fails, LARGE)
+
+
+def test_a_result_that_cannot_be_sent_is_made_in_this_process() -> None:
+    with allowed(2):
+        found = share_out(lambda number: lambda: number, LARGE)
+    assert [each() for each in found] == list(range(6))
+
+
+def test_a_worker_that_dies_is_an_error_in_one_line() -> None:
+    me = os.getpid()
+
+    def dies(number: int) -> int:
+        if os.getpid() != me:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return number
+
+    with allowed(2), pytest.raises(WorkerLost, match="ended unexpectedly"):
+        share_out(dies, LARGE)
+
+
+def test_a_signal_does_not_run_the_handlers_of_this_process_in_workers() -> None:
+    me = os.getpid()
+
+    def interrupted(number: int) -> int:
+        if os.getpid() != me:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return number
+
+    with allowed(2):
+        assert share_out(interrupted, LARGE) == list(range(6))
+
+
+def test_when_cancelled_the_first_results_are_returned_and_no_worker_stays() -> None:
+    done: list[int] = []
+    with allowed(2):
+        found = share_out(process_of, LARGE, is_cancelled=lambda: len(done) >= 3, done=done.append)
+    assert [value for value, _ in found] == [number * number for number in range(len(found))]
+    assert len(found) < len(LARGE)
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
+def test_the_number_of_processes_holds_in_its_block_alone() -> None:
+    with allowed(5):
+        assert workers._ALLOWED.get() == 5
+    assert workers._ALLOWED.get() == 1
+    assert workers.available() >= 1
