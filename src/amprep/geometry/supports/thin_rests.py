@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats
+from amprep.geometry.slicing.contours import PlaneContours
 from amprep.geometry.supports.footprints import box, union_of
 from amprep.geometry.supports.waists import INWARDS, keep_narrow
 
@@ -121,7 +123,25 @@ class Contours(NamedTuple):
 
 def contours_of(region: "CrossSection") -> Contours:
     """Return the outlines of a region, simplified by at most 0.003 mm."""
-    contours = [np.asarray(contour) for contour in region.simplify(_SMOOTH).to_polygons()]
+    return _with_boxes([np.asarray(contour) for contour in region.simplify(_SMOOTH).to_polygons()])
+
+
+def contours_at(sliced: PlaneContours, plane: int) -> Contours:
+    """Return the contours in a plane, simplified by at most 0.003 mm."""
+    from amprep.kernels.slicing.straight import keep_bends
+
+    own = np.flatnonzero(sliced.plane == plane)
+    sizes = sliced.first[own + 1] - sliced.first[own]
+    first = np.append(0, np.cumsum(sizes))
+    points = sliced.points[np.arange(first[-1]) + np.repeat(sliced.first[own] - first[:-1], sizes)]
+    kept = np.zeros(len(points), np.bool_)
+    keep_bends(points, first, _SMOOTH, kept)
+    bends, ends = points[kept], np.append(0, np.cumsum(kept))[first].tolist()
+    return _with_boxes([bends[start:end] for start, end in pairwise(ends) if end > start + 2])
+
+
+def _with_boxes(contours: list[Floats]) -> Contours:
+    """Return contours with their boxes."""
     if not contours:
         return Contours([], np.empty((0, 2)), np.empty((0, 2)))
     points, first = np.concatenate(contours), np.cumsum([0, *map(len, contours[:-1])])

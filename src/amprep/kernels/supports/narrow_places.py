@@ -85,10 +85,12 @@ def keep_narrow_places(
         if not chosen[vertex] and not (inwards[vertex] and _is_waist(outlines, vertex, width, opposite)):
             continue
         chosen[vertex] = False
+        disc_x, disc_y = np.inf, np.inf
         for k in range(2 * len(_STATIONS) - 1):
             forwards = k < len(_STATIONS)
             distance = _STATIONS[k if forwards else k - len(_STATIONS) + 1] * width
-            if not _is_covered(outlines, vertex, distance, forwards, width):
+            disc_x, disc_y = _disc_at(outlines, vertex, distance, forwards, width, disc_x, disc_y)
+            if disc_x == np.inf:
                 chosen[vertex] = True
                 break
 
@@ -135,8 +137,20 @@ def _is_waist(outlines: OutlineSides, vertex: int, width: float, opposite: float
 
 
 @uncounted
-def _is_covered(outlines: OutlineSides, vertex: int, distance: float, forwards: bool, width: float) -> bool:
-    """Tell whether a disc near a point of the outline covers it, at a distance (mm) along it from a vertex."""
+def _disc_at(
+    outlines: OutlineSides,
+    vertex: int,
+    distance: float,
+    forwards: bool,
+    width: float,
+    known_x: float,
+    known_y: float,
+) -> tuple[float, float]:
+    """Return the centre (mm) of a disc that covers a point of the outline, infinite for none.
+
+    The point is at a distance (mm) along the outline from a vertex. The known disc is looked at first, because one disc
+    often covers several points.
+    """
     points, after, before = outlines.points, outlines.after, outlines.before
     side = vertex
     for _ in range(len(points)):
@@ -151,6 +165,8 @@ def _is_covered(outlines: OutlineSides, vertex: int, distance: float, forwards: 
     part = part if forwards else 1.0 - part
     x = points[side, 0] + part * (points[end, 0] - points[side, 0])
     y = points[side, 1] + part * (points[end, 1] - points[side, 1])
+    if np.hypot(known_x - x, known_y - y) <= _FARTHEST * width:
+        return known_x, known_y
     heading = np.arctan2(points[end, 1] - points[side, 1], points[end, 0] - points[side, 0])
     for turn in _TURNS:
         # from the left, where the region is
@@ -159,7 +175,7 @@ def _is_covered(outlines: OutlineSides, vertex: int, distance: float, forwards: 
         for _ in range(_MOVES):
             dx, dy, distance, inside = _nearest(outlines, centre_x, centre_y, _FARTHEST * width)
             if inside and distance >= _ROOM * width:
-                return True
+                return centre_x, centre_y
             if distance < _TOUCH:
                 break
             step = 1.01 * _ROOM * width / distance
@@ -167,7 +183,7 @@ def _is_covered(outlines: OutlineSides, vertex: int, distance: float, forwards: 
             centre_x, centre_y = centre_x + step * dx, centre_y + step * dy
             if np.hypot(centre_x - x, centre_y - y) > _FARTHEST * width:
                 break
-    return False
+    return np.inf, np.inf
 
 
 @uncounted

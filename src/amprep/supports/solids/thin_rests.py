@@ -9,8 +9,16 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
+from amprep.geometry.slicing.contours import SlicedMesh
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.thin_rests import Contours, are_in, bounds_of, contours_of, find_thin_rests
+from amprep.geometry.supports.thin_rests import (
+    Contours,
+    are_in,
+    bounds_of,
+    contours_at,
+    contours_of,
+    find_thin_rests,
+)
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -109,7 +117,7 @@ def without_thin_rests(
     even = _heights(solid)
     places = [_Place(height) for height in even] + _beside_holes(*holes, even, _WINDOW * least.width)
     for _ in range(_ROUNDS):
-        finder = _RestFinder(solid, parts, least, tip_height)
+        finder = _RestFinder(solid, parts, least, tip_height, [place.height for place in places])
         cuts: dict[int, CrossSection] = {}
         for number, place in enumerate(places):
             layer, waists = round(place.height / _FINE), place.around is not None or number % _EACH_WAIST == 0
@@ -118,6 +126,8 @@ def without_thin_rests(
         if not cuts:
             break
         solid = _without(solid, cuts)
+        if solid.is_empty():
+            break
         places = [
             finder.around((layer + side * _BEYOND) * _FINE, rest)
             for layer, rest in cuts.items()
@@ -209,16 +219,39 @@ def _heights(solid: "Manifold") -> list[float]:
     return np.sort(np.concatenate([even, chosen])).tolist()  # type: ignore[no-any-return]
 
 
+class _SupportContours:
+    """The contours of a solid at some heights (mm) and at the heights of all layers, for which it is cut once."""
+
+    def __init__(self, solid: "Manifold", heights: Sequence[float]) -> None:
+        low, high = np.array(solid.bounding_box())[[2, 5]] / _FINE
+        layers = np.arange(np.floor(low) - 1, np.ceil(high) + 2) * _FINE
+        self._mesh = SlicedMesh(*arrays_of(solid))
+        self._cut = self._mesh.contours(np.unique(np.concatenate([heights, layers])))
+        self.at = cache(self._at)
+
+    def _at(self, height: float) -> Contours:
+        """Return the contours at a height, mm."""
+        plane = int(np.searchsorted(self._cut.heights, height))
+        if plane < len(self._cut.heights) and self._cut.heights[plane] == height:
+            return contours_at(self._cut, plane)
+        return contours_at(self._mesh.contours(np.array([height])), 0)
+
+
 class _RestFinder:
     """Finds the rests in sections of a support."""
 
     def __init__(
-        self, solid: "Manifold", parts: "Sequence[Manifold]", least: LeastSection, tip_height: float
+        self,
+        solid: "Manifold",
+        parts: "Sequence[Manifold]",
+        least: LeastSection,
+        tip_height: float,
+        heights: Sequence[float],
     ) -> None:
         self._parts, self._tip_height = parts, tip_height
         self._width = max(least.width - _LESS, 0.0)
         self._area = max(least.area - 2.0 * _LESS * least.width, 0.0)
-        self._contours = cache(lambda height: contours_of(solid.slice(height)))
+        self._sections = _SupportContours(solid, heights)
         self._part_section = cache(lambda number, height: parts[number].slice(height))
         self._grown_section = cache(
             lambda number, height: contours_of(parts[number].slice(height).offset(_TOUCH))
@@ -233,7 +266,7 @@ class _RestFinder:
 
     def rests(self, place: _Place, *, waists: bool = True) -> "CrossSection | None":
         """Return what is too thin in a section; None for nothing. Near the border of the place nothing is judged."""
-        region: Contours = self._contours(place.height)
+        region = self._sections.at(place.height)
         if place.around is not None:
             region = contours_of(region.inside(*place.around))
         found = find_thin_rests(

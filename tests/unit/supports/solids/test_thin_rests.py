@@ -66,3 +66,7 @@ def test_tips_below_a_part_may_be_thinner_but_not_below_a_tenth(width, stays):
     left = cut(BLOCK + tip, [part], tip_height=0.6)
     rest = (left ^ box((0, 0, 10.1), (3, 3, 10.4))).volume()
     assert rest == pytest.approx(0.3 * width**2 if stays else 0.0, abs=1e-6)
+
+
+def test_nothing_is_left_of_a_support_that_is_thin_everywhere():
+    assert cut(box((0, 0, 0), (0.1, 4, 10))).is_empty()
