@@ -30,6 +30,18 @@ NoPlugins = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
 
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers",
+        min=1,
+        metavar="COUNT",
+        help="Largest number of processes; default: one for each core. The results are the same with any number.",
+        rich_help_panel=_OUTPUT,
+    ),
+]
+
+
 def supervise_plugins(
     modules: list[str] | None,
     *,
@@ -153,15 +165,7 @@ class JobOptions(ReadingOptions):
     ] = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
-    workers: Annotated[
-        int | None,
-        output_option(
-            "--workers",
-            min=1,
-            metavar="COUNT",
-            help="Largest number of processes; default: one for each core. The results are the same with any number.",
-        ),
-    ] = None
+    workers: Workers = None
     log: Annotated[
         Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
     ] = None

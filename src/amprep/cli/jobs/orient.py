@@ -12,6 +12,7 @@ from amprep.cli.options import (
     NoPlugins,
     Plugins,
     ReadingOptions,
+    Workers,
     job_option,
     output_option,
     with_options,
@@ -75,6 +76,7 @@ class OrientationOptions(ReadingOptions):
     ] = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
+    workers: Workers = None
     log: Annotated[
         Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
     ] = None
