@@ -3,7 +3,7 @@
 Strategy. Horizontal planes cut each finished solid. A connected piece of a section is too narrow if nothing is left of
 it when its border moves inwards by half the least wall: no disc of that size fits in it. A fin is too thin if it
 reaches far beyond what such discs cover; near the discs are the corners, which no disc fills. A piece beside a wall of
-a part is one with the part there, and is judged together with it. Contours of a shape that is known to be right need no
+a part is one with the part there, and is judged together with it. Pieces of a shape that is known to be right need no
 further judge (`amprep.checks.supports.shapes`). What is thin in one section, but not in those a least wall above and
 below it, is a burr and no wall. Ends that taper on purpose, of teeth, points and necks, may be as narrow as 0.1 mm, or
 as they are wide if that is less, up to their height below the part.
@@ -17,10 +17,11 @@ import numpy as np
 
 from amprep.arrays import Floats
 from amprep.checks.supports import beams
-from amprep.checks.supports.shapes import KnownShapes
+from amprep.checks.supports.shapes import STRAIGHT, KnownShapes
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.slicing.outlines import outlines_of
 from amprep.model.build import Build, BuildSettings, Lattice, SupportBody
 from amprep.model.control import Stop
 from amprep.model.supports.sizes import SupportSizes
@@ -174,20 +175,17 @@ class _SectionJudge:
 
     def thin_places(self, body: SupportBody) -> ThinPlaces:
         """Return the places where a support is too thin."""
-        solid = self.solids.of(body.mesh)
-        if not accepted(solid):
+        if not accepted(self.solids.of(body.mesh)):
             return ThinPlaces([], 0)
-        places: list[ThinPlace] = []
         heights, sizes = _heights(body), self.settings.sizes_of(body)
-        for height in heights.tolist():
-            found = self._places_at(solid, height, sizes)
-            if found:
-                beside = [
-                    place
-                    for step in (-1.0, 1.0)
-                    for place in self._places_at(solid, height + step * self.burr, sizes)
-                ]
-                places += [place for place in found if _continues(place, beside, 3.0 * self.burr)]
+        found = self._places_at(body, heights, sizes)
+        thin = np.flatnonzero([bool(places) for places in found])
+        beside = heights[thin, None] + (-self.burr, self.burr)
+        around = self._places_at(body, np.unique(beside), sizes)
+        places: list[ThinPlace] = []
+        for row, both in zip(thin.tolist(), np.searchsorted(np.unique(beside), beside).tolist(), strict=True):
+            others = [place for number in both for place in around[number]]
+            places += [place for place in found[row] if _continues(place, others, 3.0 * self.burr)]
         return ThinPlaces(places, len(heights))
 
     @property
@@ -195,12 +193,19 @@ class _SectionJudge:
         """Height (mm) up to which what is too thin is a burr, and no wall: the least wall."""
         return max(self.settings.rules.least_wall_mm, _SLIVER)
 
-    def _places_at(self, solid: "Manifold", height: float, sizes: SupportSizes) -> list[ThinPlace]:
-        region, around = self.shapes.undecided(solid.slice(height))
-        if region.is_empty():
-            return []
-        section = _Section(region, around, height, self.limits, sizes, self.parts)
-        return [*section.small_pieces(), *section.fins()]
+    def _places_at(self, body: SupportBody, heights: Floats, sizes: SupportSizes) -> list[list[ThinPlace]]:
+        """Return the places in each of the sections at ascending heights."""
+        outlines = outlines_of(self.solids.sliced(body.mesh).contours(heights), STRAIGHT)
+        undecided = self.shapes.undecided(outlines)
+        found: list[list[ThinPlace]] = [[] for _ in heights]
+        for plane in np.unique(outlines.plane[undecided.own]).tolist():
+            own, around = (np.flatnonzero(rows & (outlines.plane == plane)) for rows in undecided)
+            region = outlines.region_of(own)
+            if not region.is_empty():
+                near = outlines.region_of(around)
+                section = _Section(region, near, float(heights[plane]), self.limits, sizes, self.parts)
+                found[plane] = [*section.small_pieces(), *section.fins()]
+        return found
 
 
 def _continues(place: ThinPlace, others: Sequence[ThinPlace], distance: float) -> bool:
