@@ -22,12 +22,15 @@ Pairs of points and edges of a region are listed in chunks, and only pairs that 
 """
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.checks.overhangs.borders import RegionEdges
+
+if TYPE_CHECKING:
+    from amprep.kernels.overhangs.anchors import RegionSegments
 
 CHUNK = 1_000_000
 """Pairs of a point and an edge that are computed at once."""
@@ -195,25 +198,29 @@ def _sees_anchor(
     points: Floats, region: Int64s, edges: RegionEdges, reach: float, angle: float, climb: Floats
 ) -> Bools:
     """Tell from which points the nearest anchor is at most `reach` away and visible inside the region."""
-    away = np.full(len(points), np.inf)
-    foot = np.zeros((len(points), 3))
-    for i, j in _pairs(_groups(points, region, edges, np.flatnonzero(edges.is_anchor), reach)):
-        place, distance = _nearest(points[i], edges.start[j], edges.end[j])
-        near = distance <= reach
-        near &= np.abs(place[:, 2] - points[i, 2]) <= distance * np.tan(angle) + _SLACK
-        near &= place[:, 2] - points[i, 2] <= climb[i]
-        order = np.flatnonzero(near)
-        order = order[np.lexsort((distance[order], i[order]))]
-        own, first = np.unique(i[order], return_index=True)
-        away[own], foot[own] = distance[order[first]], place[order[first]]
-    seen = np.isfinite(away)
-    rows = np.flatnonzero(seen)
-    hidden = np.zeros(len(rows), np.bool_)
-    borders = np.flatnonzero(edges.is_border)
-    for i, j in _pairs(_groups(points[rows], region[rows], edges, borders, reach)):
-        hidden[i[_blocks(points[rows[i]], foot[rows[i]], edges.start[j], edges.end[j])]] = True
-    seen[rows] = ~hidden
-    return np.asarray(seen)
+    from amprep.kernels.overhangs.anchors import see_anchors
+
+    seen = np.zeros(len(points), np.bool_)
+    if len(points):
+        regions = int(region.max()) + 1
+        anchors, borders = (_segments_of(edges, rows, regions) for rows in (edges.is_anchor, edges.is_border))
+        limits = (float(reach), float(np.tan(angle)), _SLACK)
+        see_anchors(points, region, np.asarray(climb, np.float64), anchors, borders, limits, seen)
+    return seen
+
+
+def _segments_of(edges: RegionEdges, chosen: Bools, regions: int) -> "RegionSegments":
+    """Return the chosen edges of the first regions, ordered by region and least x."""
+    from amprep.kernels.overhangs.anchors import RegionSegments
+
+    low = np.minimum(edges.start[:, 0], edges.end[:, 0])
+    rows = np.flatnonzero(chosen & (edges.region < regions))
+    rows = rows[np.lexsort((low[rows], edges.region[rows]))]
+    first = np.searchsorted(edges.region[rows], np.arange(regions + 1))
+    high = np.maximum(edges.start[rows, 0], edges.end[rows, 0])
+    for begin, end in zip(first[:-1].tolist(), first[1:].tolist(), strict=True):
+        np.maximum.accumulate(high[begin:end], out=high[begin:end])
+    return RegionSegments(edges.start[rows], edges.end[rows], first, low[rows], high)
 
 
 def _nearest(points: Floats, start: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -223,22 +230,6 @@ def _nearest(points: Floats, start: Floats, end: Floats) -> tuple[Floats, Floats
     fraction = np.clip(((points - start)[:, :2] * along[:, :2]).sum(axis=1) / square, 0.0, 1.0)
     place = start + fraction[:, None] * along
     return place, np.hypot(*(place - points)[:, :2].T)
-
-
-def _blocks(points: Floats, foot: Floats, start: Floats, end: Floats) -> Bools:
-    """Tell which edges cross the segment from a point to its foot in plan, clearly before the foot."""
-    way = foot - points
-    length = np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-12)
-    a, b = start - points, end - points
-    side_a, side_b = (way[:, 0] * each[:, 1] - way[:, 1] * each[:, 0] for each in (a, b))
-    rows = np.flatnonzero((side_a > 0.0) != (side_b > 0.0))
-    fraction = side_a[rows] / (side_a[rows] - side_b[rows])
-    place = a[rows] + fraction[:, None] * (b - a)[rows]
-    at = (place[:, :2] * way[rows, :2]).sum(axis=1) / length[rows]
-    level = np.abs(place[:, 2] - way[rows, 2] * at / length[rows]) <= _SLACK + at
-    found = np.zeros(len(points), np.bool_)
-    found[rows] = (at > 0.0) & (at < length[rows] - 0.01) & level
-    return found
 
 
 def _carried_by_lines(

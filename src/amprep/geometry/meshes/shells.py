@@ -41,15 +41,14 @@ class Shells(NamedTuple):
 
 def label_shells(triangles: Int64s, vertex_count: int) -> tuple[int, Int64s]:
     """Return the number of components (triangles connected by vertices), and that of each triangle, ``(m,)``."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    from amprep.kernels.meshes.components import join_corners
 
-    start, end = triangles[:, [0, 1]].T.ravel(), triangles[:, [1, 2]].T.ravel()
-    graph = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(vertex_count, vertex_count))
-    _, label = connected_components(graph.tocsr(), directed=False)
-    used = np.zeros(len(label), np.bool_)  # components of vertices without a triangle do not count
-    used[label[triangles[:, 0]]] = True
-    return int(used.sum()), (np.cumsum(used) - 1)[label[triangles[:, 0]]]
+    lowest = np.arange(vertex_count)
+    join_corners(np.ascontiguousarray(triangles, np.int64), lowest)
+    label = lowest[triangles[:, 0]]
+    used = np.zeros(vertex_count, np.bool_)
+    used[label] = True
+    return int(used.sum()), (np.cumsum(used) - 1)[label]
 
 
 def measure_shells(vertices: Floats, triangles: Int64s) -> Shells:

@@ -9,7 +9,8 @@ another.
 from typing import NamedTuple
 
 from amprep.arrays import Bools, Floats, Int64s
-from amprep.kernels.helper import kernel, uncounted
+from amprep.kernels.helper import kernel
+from amprep.kernels.meshes.components import root_of
 
 
 class LinkedTriangles(NamedTuple):
@@ -130,14 +131,6 @@ def trace_contours(
     return contours
 
 
-@uncounted
-def _root_of(parent: Int64s, row: int) -> int:
-    while parent[row] != row:
-        parent[row] = parent[parent[row]]
-        row = parent[row]
-    return row
-
-
 @kernel
 def join_slabs(mesh: LinkedTriangles, level: Int64s, slabs: int, rows: LevelRows, parent: Int64s) -> None:
     """Connect the rows of triangles and slabs that share an edge there; equal parents tell what is connected.
@@ -161,8 +154,8 @@ def join_slabs(mesh: LinkedTriangles, level: Int64s, slabs: int, rows: LevelRows
         t, other = half // 3, twin // 3
         one, two = level[triangles[t, half % 3]], level[triangles[t, (half + 1) % 3]]
         for slab in range(max(min(one, two), 0), min(max(one, two), slabs - 1) + 1):
-            a = _root_of(parent, rows.start[t] + slab - rows.first[t])
-            b = _root_of(parent, rows.start[other] + slab - rows.first[other])
+            a = root_of(parent, rows.start[t] + slab - rows.first[t])
+            b = root_of(parent, rows.start[other] + slab - rows.first[other])
             parent[max(a, b)] = min(a, b)
     for row in range(len(parent)):
-        parent[row] = _root_of(parent, row)
+        parent[row] = root_of(parent, row)
