@@ -6,6 +6,7 @@ new ones.
 """
 
 from amprep.api.build_file import diff, verify, write
+from amprep.api.edited_build import replan
 from amprep.api.inspection import explain_regions, inspect
 from amprep.api.orientation import orient
 from amprep.api.steps import emit_cells, load, pack, plan_supports
@@ -22,6 +23,7 @@ from amprep.report.inspection.record import InspectionRecord
 from amprep.report.orientation.record import OrientationRecord
 from amprep.report.record import RunRecord
 from amprep.report.regions import RegionsRecord
+from amprep.report.replanning import ReplanRecord
 
 __all__ = [
     "BuildDifferences",
@@ -34,6 +36,7 @@ __all__ = [
     "PackedParts",
     "PlannedBuild",
     "RegionsRecord",
+    "ReplanRecord",
     "RunRecord",
     "SupportedBuild",
     "Verification",
@@ -47,6 +50,7 @@ __all__ = [
     "orient",
     "pack",
     "plan_supports",
+    "replan",
     "run",
     "support",
     "verify",

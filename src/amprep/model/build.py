@@ -1,9 +1,10 @@
 """One finished build, as a build file records it and `amprep verify` reads it back."""
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -50,6 +51,9 @@ class BuildSettings:
         Sizes of supports that judges need, for bodies that state none.
     plate_origin
         Corner of the plate, x and y in mm, in the coordinates in which the target of the file places objects.
+    planning
+        Further settings by which the supports were planned, with the keys of a job file; no judge reads them. Empty
+        where they are unknown, as in files of earlier versions.
     """
 
     build_id: str
@@ -65,6 +69,7 @@ class BuildSettings:
     supports_as: SupportsAs = "support"
     sizes: SupportSizes = field(default_factory=SupportSizes)
     plate_origin: tuple[float, float] = (0.0, 0.0)
+    planning: Mapping[str, Any] = field(default_factory=dict)
 
     def reach_of(self, body: "SupportBody") -> float:
         """Return the largest distance (mm) of a supported overhang from a contact of a body."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.job import Job
+from amprep.job.planning import planning_table
 from amprep.materials.catalogue import densities_of
 from amprep.measures.removability import Removal, RemovalRules, measure_removal
 from amprep.model import (
@@ -215,7 +216,8 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
     passes = list(planned.passes)
     with clock.stage("cells") as progress:
         for number, own in enumerate(settings):
-            built = _built(planned, number, bodies, stop, _part_of(progress, number, len(settings)))
+            around = (*planned.build.kept, *bodies)
+            built = _built(planned, number, around, stop, _part_of(progress, number, len(settings)))
             made = built.bodies
             bodies += [replace(body, reach=own.reach, sizes=own.sizes) for body in made] if number else made
             passes[number] = passes[number]._replace(layout=built.layout)
@@ -327,6 +329,7 @@ def build_settings(job: Job, build_id: str, pitch: float) -> BuildSettings:
         supports_as=job.supports.write_as,
         sizes=_sizes(job, pitch),
         plate_origin=plate_origin(job.printer, job.target),
+        planning=planning_table(job),
     )
 
 
@@ -371,7 +374,7 @@ def _layout(
             resolved.cell.material(pitch, step),
             measure_cell(resolved.cell.emit, pitch, step, rules) if rules.leg_ratio else None,
         ),
-        scope=PassScope(overhangs, earlier=earlier),
+        scope=PassScope(overhangs, earlier=earlier, kept=[each.mesh for each in build.kept]),
         route=lambda problem, stop, progress: resolved.router.call(
             problem, rng=rng, stop=stop, progress=progress
         ),

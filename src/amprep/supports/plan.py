@@ -2,22 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Ints
+from amprep.arrays import Bools, Bytes, Ints
+from amprep.geometry.voxels.grid import Grid
 from amprep.model.build import PlacedPart
 from amprep.model.build_volume import BuildVolume
 from amprep.model.control import Progress, Stop
 from amprep.model.counting import counted
+from amprep.model.mesh import Mesh
 from amprep.model.supports import SLENDER
 from amprep.model.supports.edges import SupportEdges, square_keys
 from amprep.overhangs.of_part import PartOverhangs, overhangs_of
 from amprep.supports.grid.red_squares import Choose, SupportGrid, make_grid
 from amprep.supports.grid.spacing import are_beside, space_contacts, steps_within
-from amprep.supports.grid.taken import close_taken, taken_by
+from amprep.supports.grid.taken import close_met, close_taken, taken_by
 from amprep.supports.grid.territory import PartTerritory, find_territories
 from amprep.supports.layout import SupportLayout, groups_of
 from amprep.supports.legs.cell import CellProperties
@@ -44,11 +45,20 @@ class PassScope:
         Chooses the red squares to connect; None chooses all.
     earlier
         Layouts of earlier passes, whose voxels are closed.
+    kept
+        Meshes of supports that exist already; the voxels that they meet are closed.
     """
 
     overhangs: Sequence[PartOverhangs] | None = None
     choose: Choose | None = None
     earlier: Sequence[SupportLayout] = ()
+    kept: Sequence[Mesh] = ()
+
+    def close(self, voxels: Bytes, grid: Grid) -> None:
+        """Close the voxels of other supports, in place."""
+        if self.earlier:
+            close_taken(voxels, grid, taken_by(self.earlier))
+        close_met(voxels, grid, self.kept)
 
 
 EVERYTHING = PassScope()
@@ -107,8 +117,7 @@ def plan_supports(
     cell = CellProperties() if cell is None else cell
     overhangs = [overhangs_of(each, rules) for each in parts] if scope.overhangs is None else scope.overhangs
     progress(0.05, "overhangs found")
-    close_voxels = partial(close_taken, taken=taken_by(scope.earlier)) if scope.earlier else None
-    laid = make_grid(parts, overhangs, space, rules, scope.choose, close_voxels)
+    laid = make_grid(parts, overhangs, space, rules, scope.choose, scope.close)
     progress(0.15, "grid laid")
     territories = find_territories(parts, laid, rules)
     every = SupportNetwork(laid, rules, cell.material, route, stop, territories)

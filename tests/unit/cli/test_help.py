@@ -54,11 +54,13 @@ DIFFERENT = {
     "--dry-run": "a run is planned, an import listed",
     "--effort": "of a packer, or of the search for orientations",
     "--json": "the report of a run, or another result",
+    "--job": "what a build is verified against, or by what it is planned again",
+    "--report": "as --job",
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",
     "--set": "a key of the job, or a parameter of a cell",
     "--strict": "about 3MF files, or about G-code",
-    "--time-limit": "of packing and routing, or of volume makers",
+    "--time-limit": "of packing and routing, of routing alone, or of volume makers",
     "--volumes": "the volume maker of a run, or the makers to compare",
 }
 """Option -> why its help differs."""

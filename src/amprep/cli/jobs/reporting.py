@@ -15,6 +15,7 @@ from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from amprep.cli.builds.replan import ReplanningOptions
     from amprep.cli.jobs.inspect import InspectionOptions
     from amprep.cli.jobs.orient import OrientationOptions
     from amprep.report.infill import InfillRecord
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from amprep.report.orientation.record import OrientationRecord
     from amprep.report.record import RunRecord
     from amprep.report.regions import RegionsRecord
+    from amprep.report.replanning import ReplanRecord
 
 
 def call_api(
@@ -139,10 +141,10 @@ def _shown(folder: Path) -> Path:
 
 
 def finish(
-    record: "RunRecord | InfillRecord | InspectionRecord | OrientationRecord | RegionsRecord",
+    record: "RunRecord | InfillRecord | InspectionRecord | OrientationRecord | RegionsRecord | ReplanRecord",
     to_json: Callable[[Any], Any],
     summary: "Callable[[Any], RenderableType]",
-    options: "JobOptions | InspectionOptions | OrientationOptions",
+    options: "JobOptions | InspectionOptions | OrientationOptions | ReplanningOptions",
 ) -> NoReturn:
     """Print a record as JSON, or as a table unless the user asked for quiet, and exit."""
     from rich.console import Console

@@ -133,8 +133,20 @@ def _settings(before: Any, after: Any, within: str = "") -> Iterator[SettingDiff
         old, new = getattr(before, field.name), getattr(after, field.name)
         if is_dataclass(old) and type(old) is type(new):
             yield from _settings(old, new, f"{name}.")
+        elif isinstance(old, Mapping) and isinstance(new, Mapping):
+            yield from _keys(old, new, f"{name}.")
         elif not np.array_equal(old, new):
             yield SettingDifference(name, _plain(old), _plain(new))
+
+
+def _keys(before: Mapping[str, Any], after: Mapping[str, Any], within: str) -> Iterator[SettingDifference]:
+    """Yield the keys of two tables that differ; those of files that record none are not compared."""
+    for key in sorted(before.keys() | after.keys()) if before and after else ():
+        old, new = before.get(key), after.get(key)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            yield from _keys(old, new, f"{within}{key}.")
+        elif old != new:
+            yield SettingDifference(f"{within}{key}", old, new)
 
 
 def _plain(value: Any) -> Any:

@@ -21,6 +21,7 @@ from amprep.model import (
     Placement,
     Progress,
     Stop,
+    SupportBody,
     TurnedVolume,
 )
 from amprep.model.summary import Summarised
@@ -53,6 +54,8 @@ class PackedBuild(Summarised):
         Name of the build in its file, for example ``bracket.build-1``.
     overhangs
         Overhangs of parts that packing found; None where there was no packing.
+    kept
+        Supports of other parts that exist already; new ones keep out of them.
     """
 
     resolved: ResolvedJob
@@ -60,6 +63,7 @@ class PackedBuild(Summarised):
     build_id: str
     parts: tuple[PlacedPart, ...]
     overhangs: KnownOverhangs | None = None
+    kept: tuple[SupportBody, ...] = ()
 
     def __str__(self) -> str:
         """Summary in one line."""

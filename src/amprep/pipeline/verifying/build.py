@@ -1,7 +1,7 @@
 """Judge a build against every promise, whether it was just made or read from a file."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field, replace
 
 from amprep.checks.listed import free_below
 from amprep.checks.neighbours import apart, islands
@@ -18,8 +18,9 @@ from amprep.checks.supports.coverage import check_coverage
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
-from amprep.model import Build, Progress, Stop, silent
+from amprep.model import Build, Progress, Stop, Unsupported, silent
 from amprep.pipeline.verifying.extents import extents_of, removal_extents
+from amprep.pipeline.verifying.nearby import nearby
 
 PROMISES = (
     as_recorded.PROMISE,
@@ -86,6 +87,7 @@ def verify_build(
     *,
     printed: PrintedFile | None = None,
     removability: bool = False,
+    only: Collection[int] | None = None,
     stop: Stop | None = None,
     progress: Progress = silent,
 ) -> Verification:
@@ -99,34 +101,43 @@ def verify_build(
         What the target of its file would print; None for a build that is in no file.
     removability
         Whether powder and access to contacts are judged, which takes long.
+    only
+        Parts whose supports and overhangs are judged, those that share supports with them included; None for all. The
+        places of all parts, and the distances of all supports, are judged in any case.
     stop
         Ends the check of parts and supports early.
     progress
         Called before each group of judges.
     """
+    chosen = build if only is None else nearby(build, only)
+    listed = build if only is None else replace(build, unsupported=_listed_of(build, only))
     stop = stop or Stop()
     solids = KnownSolids()
     progress(0.0, "parts")
     found, pairs = judge_placed(build.parts, build.settings, stop)
     found += unchanged.check_unchanged(build)
     judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
-        ("supports", lambda: [*check_bodies(build, stop, solids), *check_xy_distance(build, stop)]),
+        ("supports", lambda: [*check_bodies(chosen, stop, solids), *check_xy_distance(chosen, stop)]),
         (
             "neighbours",
-            lambda: [*check_islands(build, stop, solids), *apart.check_apart(build, stop, solids)],
+            lambda: [*check_islands(chosen, stop, solids), *apart.check_apart(build, stop, solids)],
         ),
-        ("coverage", lambda: [*check_coverage(build), *free_below.check_listed(build)]),
+        ("coverage", lambda: [*check_coverage(chosen), *free_below.check_listed(listed)]),
     )
     if removability:
         judges += (
-            ("removal", lambda: [*powder.check_powder(build, stop), *access.check_access(build, stop)]),
+            ("removal", lambda: [*powder.check_powder(chosen, stop), *access.check_access(chosen, stop)]),
         )
     for index, (name, judge) in enumerate(judges, start=1):
         progress(index / (len(judges) + 2), name)
         found += judge()
     progress(1.0 - 1.0 / (len(judges) + 2), "limits")
-    judged = limits.check_limits(build, stop, solids)
+    judged = limits.check_limits(chosen, stop, solids)
     seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
     extent = extents_of(build, pairs, printed) | judged.extent | removal_extents(removability)
     return Verification((*seen, *found, *judged.violations), pairs, extent)
+
+
+def _listed_of(build: Build, parts: Collection[int]) -> tuple[Unsupported, ...]:
+    return tuple(each for each in build.unsupported if each.part in parts)

@@ -1,4 +1,4 @@
-"""Close the voxels that the supports of earlier passes of planning take."""
+"""Close the voxels that other supports take: those of earlier passes of planning, and finished ones."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -7,6 +7,8 @@ import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Bytes, Floats
 from amprep.geometry.voxels.grid import Grid
+from amprep.geometry.voxels.voxelise import met_voxels
+from amprep.model.mesh import Mesh
 from amprep.model.supports import Voxel
 from amprep.supports.layout import SupportLayout
 
@@ -44,3 +46,11 @@ def close_taken(voxels: Bytes, grid: Grid, taken: TakenSpace) -> None:
     for (x, y, z), (x_end, y_end, z_end) in zip(first.tolist(), last.tolist(), strict=True):
         met[z:z_end, y:y_end, x:x_end] = True
     voxels[met & (voxels == Voxel.FREE)] = Voxel.CLOSED
+
+
+def close_met(voxels: Bytes, grid: Grid, meshes: Sequence[Mesh]) -> None:
+    """Close the free voxels whose interior meets a mesh of a support; `voxels` is modified in place."""
+    for mesh in meshes:
+        block = grid.block(*mesh.bounds)
+        inside = voxels[block.slices]
+        inside[met_voxels(block, *mesh.arrays) & (inside == Voxel.FREE)] = Voxel.CLOSED

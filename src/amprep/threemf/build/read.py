@@ -10,14 +10,23 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.printed.found import PrintedBody, PrintedFile
 from amprep.errors import InputError
-from amprep.model.build import Build, PlacedPart, StoredSupport, SupportBody
+from amprep.model.build import Build, BuildSettings, PlacedPart, StoredSupport, SupportBody
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.threemf.as_read import read_as_printed
 from amprep.threemf.build import record
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
-from amprep.threemf.build.values import as_list, boolean, from_json, integer, integers, string, table
+from amprep.threemf.build.values import (
+    as_list,
+    as_object,
+    boolean,
+    from_json,
+    integer,
+    integers,
+    string,
+    table,
+)
 from amprep.threemf.package.open import open_package
 from amprep.threemf.read.arrays import load_model
 from amprep.threemf.transforms import from_corner
@@ -52,7 +61,7 @@ def read_build_file(path: Path) -> BuildFile:
 
     try:
         metadata = read_metadata(package.data)
-        _check_version(metadata.model.get(record.FORMAT), path)
+        check_version(metadata.model.get(record.FORMAT), path)
         model = load_model(package.data).model
         build = _build(model, metadata)
         return BuildFile(build, _as_printed(package.data, model, build, path))
@@ -83,7 +92,8 @@ def _moved_by(body: PrintedBody, x: float, y: float) -> PrintedBody:
     return replace(body, mesh=Mesh(body.mesh.vertices + (x, y, 0.0), body.mesh.triangles))
 
 
-def _check_version(version: str | None, path: Path) -> None:
+def check_version(version: str | None, path: Path) -> None:
+    """Raise InputError unless the format version of a record is the one that this version of amprep reads."""
     if version is None:
         raise InputError(
             f"{path}: expected a build that amprep wrote, found a 3MF file without amprep's metadata; "
@@ -97,14 +107,14 @@ def _check_version(version: str | None, path: Path) -> None:
 
 
 def _build(model: Any, metadata: BuildMetadata) -> Build:
-    space = record.volume_of(_value(metadata.model, record.VOLUME))
-    settings = record.settings_of(_value(metadata.model, record.SETTINGS), space)
+    settings = settings_in(metadata)
     known = as_list(_value(metadata.model, record.PARTS), record.PARTS)
     stored = BodyReader(model).read([_value(item, record.BODIES) for item in metadata.items])
     bodies = [replace(each, matrix=from_corner(each.matrix, settings.plate_origin)) for each in stored]
-    parts = _placed_parts([body for body in bodies if body.role == "part"], known)
+    parts = placed_parts([body for body in bodies if body.role == "part"], known)
     supports = tuple(
-        _support(body, len(parts)) for body in _in_order([body for body in bodies if body.role == "support"])
+        support_of(body, len(parts))
+        for body in _in_order([body for body in bodies if body.role == "support"])
     )
     if record.CONTENTS in metadata.model:
         record.check_contents(_value(metadata.model, record.CONTENTS), len(parts), len(supports))
@@ -114,6 +124,16 @@ def _build(model: Any, metadata: BuildMetadata) -> Build:
     )
 
 
+def settings_in(metadata: BuildMetadata) -> BuildSettings:
+    """Return the settings of a build from its metadata; raise ValueError for damaged ones."""
+    space = record.volume_of(_value(metadata.model, record.VOLUME))
+    settings = record.settings_of(_value(metadata.model, record.SETTINGS), space)
+    if record.PLANNING not in metadata.model:
+        return settings
+    planning = as_object(_value(metadata.model, record.PLANNING), record.PLANNING)
+    return replace(settings, planning=planning)
+
+
 def _value(entries: dict[str, str], name: str) -> Any:
     """Return the value of the metadata entry `name`, which must be present."""
     if name not in entries:
@@ -121,7 +141,7 @@ def _value(entries: dict[str, str], name: str) -> Any:
     return from_json(entries[name])
 
 
-def _placed_parts(bodies: Sequence[StoredBody], known: Sequence[Any]) -> tuple[PlacedPart, ...]:
+def placed_parts(bodies: Sequence[StoredBody], known: Sequence[Any]) -> tuple[PlacedPart, ...]:
     """Return the parts in their order in the build; copies with the same geometry share one `Part`."""
     shared: dict[tuple[int, str], Part] = {}
     placed = []
@@ -160,7 +180,7 @@ def _moved(body: StoredBody, placement: Floats) -> float:
     return round(float(np.linalg.norm(off, axis=0).max()), 4)
 
 
-def _support(body: StoredBody, parts: int) -> SupportBody:
+def support_of(body: StoredBody, parts: int) -> SupportBody:
     """Return a support; the mesh of one with beams is the mesh for readers that do not know beams."""
     lattice, matrix = body.lattice, body.matrix
     if lattice is not None:

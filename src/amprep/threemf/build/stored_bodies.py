@@ -1,7 +1,8 @@
 """Read the parts and supports of a build file from its components, or from sections of merged meshes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,14 +86,19 @@ class BodyReader:
             If the items and their metadata do not agree.
         """
         found: list[StoredBody] = []
-        items = self._model.GetBuildItems()
-        if items.Count() != len(recorded):
-            raise ValueError(f"the metadata is that of {len(recorded)} items, the build has {items.Count()}")
-        for entries in recorded:
-            items.MoveNext()
+        items = list(self.items())
+        if len(items) != len(recorded):
+            raise ValueError(f"the metadata is that of {len(recorded)} items, the build has {len(items)}")
+        for read, entries in zip(items, recorded, strict=True):
             records = [as_object(each, "a body") for each in as_list(entries, record.BODIES)]
-            found += self._item(items.GetCurrent(), records)
+            found += read(records)
         return found
+
+    def items(self) -> Iterator[Callable[[Sequence[JsonObject]], Iterator[StoredBody]]]:
+        """Yield for each build item a function that reads its bodies, given their records."""
+        items = self._model.GetBuildItems()
+        while items.MoveNext():
+            yield partial(self._item, items.GetCurrent())
 
     def _item(self, item: "Lib3MF.BuildItem", records: Sequence[JsonObject]) -> Iterator[StoredBody]:
         target, matrix = item.GetObjectResource(), _finite_matrix(item.GetObjectTransform())

@@ -51,6 +51,8 @@ def build_metadata(build: Build, parts: Sequence[Part]) -> Metadata:
         record.PARTS: to_json([record.part_record(part) for part in parts]),
         record.UNSUPPORTED: to_json([record.unsupported_record(region) for region in build.unsupported]),
     }
+    if build.settings.planning:
+        entries[record.PLANNING] = to_json(build.settings.planning)
     own = tuple(section for name, value in entries.items() for section in own_metadata(name, value))
     return title_metadata(build.settings.build_id) + own
 

@@ -1,0 +1,194 @@
+"""Find what an edited file was made from: its own record, the report of its run, a build file beside it, or a job."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from amprep.checks.printed.found import PrintedBody
+from amprep.errors import InputError
+from amprep.files import read_json
+from amprep.host import Host
+from amprep.job import Job
+from amprep.job.planning import job_of_build
+from amprep.model import Build, Mesh, PlacedPart
+from amprep.pipeline.packing import labels
+from amprep.pipeline.reading import read_job
+from amprep.pipeline.resolve import ResolvedJob, resolve
+from amprep.pipeline.stages import Clock
+from amprep.pipeline.verifying.order import settings_for
+from amprep.sealing.seal import file_digest
+from amprep.threemf.build.identifier import read_identifier
+
+if TYPE_CHECKING:
+    from amprep.threemf import EditedFile
+
+_LARGEST_REPORT = 256 * 1024 * 1024
+"""Largest report, bytes."""
+_MOST_FILES = 5000
+"""Most build files that are looked at beside an edited file."""
+
+
+@dataclass(frozen=True, eq=False)
+class BuildSource:
+    """What an edited file was made from.
+
+    Attributes
+    ----------
+    original
+        The build as it was written; of a job, its parts at the origin.
+    deleted
+        Number of parts that are gone and of which nothing is known.
+    resolved
+        The job by which supports are planned again.
+    words
+        Where it was found.
+    places_known
+        False if only a job is known, so that every part counts as new.
+    bodies
+        The bodies in the edited file, mm from the corner of the plate.
+    """
+
+    original: Build
+    deleted: int
+    resolved: ResolvedJob
+    words: str
+    places_known: bool
+    bodies: tuple[PrintedBody, ...]
+
+
+def find_source(path: Path, *, job: Job | None, report: Path | None, host: Host, clock: Clock) -> BuildSource:
+    """Return what an edited file was made from.
+
+    Parameters
+    ----------
+    path
+        The edited file.
+    job
+        The job by which supports are planned, instead of the recorded settings; None for these.
+    report
+        JSON report of the run, beside the build file that was edited; None to do without.
+    host
+        Offers of plugins.
+    clock
+        Times and shows the stage ``read``.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or nothing says what the file was made from.
+    JobError, PluginError
+        If the job is wrong, or the recorded settings cannot be used.
+    """
+    from amprep.threemf import read_edited_file
+
+    with clock.stage("read"):
+        file = read_edited_file(path)
+        original, words = _original(path, file, report)
+    if original is None:
+        if job is None:
+            raise InputError(_nothing_known(path, file))
+        return _of_job(file, resolve(job, host), clock)
+    if job is not None:
+        words = f"{words}; supports by {job.source}"
+    elif not original.settings.planning:
+        raise InputError(
+            f"{path}: the build was written by an earlier version, which did not record how supports were "
+            "planned; give its job by --job JOB.toml"
+        )
+    resolved = resolve(job or job_of_build(original.settings, path), host)
+    deleted = file.deleted if file.recorded is original else 0
+    return BuildSource(original, deleted, resolved, words, True, _on_plate(file, original))
+
+
+def _original(path: Path, file: "EditedFile", report: Path | None) -> tuple[Build | None, str]:
+    """Return the build that the file was made from, and where it was found."""
+    if report is not None:
+        found = _reported(report, file)
+        return _read(found), f"made from {found.name}, by {report.name}"
+    if file.recorded is not None:
+        return file.recorded, "made from the build that the file records"
+    beside = sorted(each for each in path.resolve().parent.glob("*.3mf") if each.name != path.name)
+    for each in beside[:_MOST_FILES] if file.identifiers else ():
+        if read_identifier(each) in file.identifiers and (build := _read(each)) is not None:
+            return build, f"made from {each.name}, by the identifier in names of objects"
+    return None, ""
+
+
+def _read(path: Path) -> Build | None:
+    """Return the build that a file records; None if parts of it are no longer in the file, which was edited, too."""
+    from amprep.threemf import read_edited_file
+
+    file = read_edited_file(path)
+    return None if file.deleted else file.recorded
+
+
+def _reported(report: Path, file: "EditedFile") -> Path:
+    """Return the build file that a report states and that the edited file was made from.
+
+    Raises
+    ------
+    InputError
+        If the report names no such file, or it is not beside the report as it was written.
+    """
+    record = read_json(report, "a report of amprep", _LARGEST_REPORT)
+    builds = record.get("builds") if isinstance(record, dict) else None
+    entries = [each for each in builds if isinstance(each, dict)] if isinstance(builds, list) else []
+    stated = [(each.get("file"), each.get("sha256")) for each in entries]
+    stated += [(record.get("file"), record.get("sha256"))] if isinstance(record, dict) else []
+    present = [
+        (report.parent / name, digest) for name, digest in stated if isinstance(name, str) and _is_name(name)
+    ]
+    whole = [path for path, digest in present if path.is_file() and file_digest(path) == digest]
+    named = [each for each in whole if read_identifier(each) in file.identifiers]
+    if len(named or whole) != 1:
+        raise InputError(
+            f"{report}: expected one build file of this report beside it, unchanged, got {len(named or whole)}; "
+            "give the report of the run that made the build, in its folder"
+        )
+    return (named or whole)[0]
+
+
+def _is_name(name: str) -> bool:
+    return Path(name).name == name and name.lower().endswith(".3mf")
+
+
+def _nothing_known(path: Path, file: "EditedFile") -> str:
+    named = f" (its objects name the build {file.identifiers[0]})" if file.identifiers else ""
+    return (
+        f"{path}: the record of amprep is gone{named}: slicers drop it when they save; put the file beside the build "
+        "file that was edited, or give --report REPORT.json of its run, or its job by --job JOB.toml"
+    )
+
+
+def _of_job(file: "EditedFile", resolved: ResolvedJob, clock: Clock) -> BuildSource:
+    """Return a job as the source: its parts without places, so that all supports are planned again."""
+    loaded = read_job(resolved, clock)
+    parts = tuple(
+        PlacedPart(label, loaded.parts[index], np.eye(4), loaded.parts[index].orientations)
+        for (index, _), label in sorted(labels(loaded.parts).items())
+    )
+    build = Build(settings_for(resolved, Build(_no_settings(resolved), parts)), parts)
+    words = f"parts and settings by {resolved.job.source}; the file has no record, so all supports are planned again"
+    return BuildSource(build, 0, resolved, words, False, _on_plate(file, build))
+
+
+def _no_settings(resolved: ResolvedJob) -> Any:
+    from amprep.pipeline.supporting import build_settings
+
+    return build_settings(resolved.job, resolved.job.name, 1.0)
+
+
+def _on_plate(file: "EditedFile", build: Build) -> tuple[PrintedBody, ...]:
+    """Return the bodies of a file, from the corner of the plate: PrusaSlicer counts from the origin of the machine."""
+    x, y = build.settings.plate_origin
+    return tuple(_moved(file.bodies, -x, -y)) if x or y else file.bodies
+
+
+def _moved(bodies: Iterable[PrintedBody], x: float, y: float) -> Iterable[PrintedBody]:
+    for each in bodies:
+        beams = each.beams and replace(each.beams, ends=each.beams.ends + (x, y, 0.0))
+        mesh = Mesh(each.mesh.vertices + (x, y, 0.0), each.mesh.triangles)
+        yield replace(each, mesh=mesh, beams=beams)

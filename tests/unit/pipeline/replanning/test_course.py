@@ -1,0 +1,213 @@
+"""An edited build is planned again: what still holds is kept, the rest is planned, and all promises hold."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.shared.edited import edit, shift, turn
+from tests.shared.solids import mesh_of
+from tests.shared.supported import box
+
+import amprep
+from amprep.errors import InputError
+from amprep.pipeline.replanning.course import new_name
+from amprep.stl import write_stl
+from amprep.threemf import read_build
+
+JOB = """
+printer = "EOS M290"
+[packing]
+strategy = "extreme-points"
+clearance_mm = 4.0
+lift_mm = 0.0
+[supports]
+rules = "thesis"
+pitch_mm = 2.0
+[cells]
+strategy = "prism"
+connector = "full"
+[[part]]
+file = "tee.stl"
+quantity = 3
+[[part]]
+file = "bar.stl"
+"""
+NAMES = ["tee", "tee-2", "tee-3", "bar"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A build of three tees with supports and a bar without."""
+    folder = tmp_path_factory.mktemp("made")
+    write_stl(mesh_of(box((4, 12, 10), (10, 0, 0)) + box((24, 12, 3), (0, 0, 9))), folder / "tee.stl")
+    write_stl(mesh_of(box((12, 6, 5), (0, 0, 0))), folder / "bar.stl")
+    (folder / "job.toml").write_text(JOB)
+    record = amprep.run(folder / "job.toml", output=folder)
+    assert record.faults == 0
+    return folder
+
+
+@pytest.fixture
+def plate(made):
+    return made / "job.build-1.3mf"
+
+
+@pytest.fixture(scope="module", params=["prusaslicer", "cura"])
+def for_slicer(request, made):
+    """The same build for a slicer; PrusaSlicer counts from the middle of its plate here."""
+    build = read_build(made / "job.build-1.3mf")
+    settings = replace(build.settings, target=request.param)
+    if request.param == "prusaslicer":
+        settings = replace(settings, plate_origin=(-125.0, -125.0))
+    return amprep.write(replace(build, settings=settings), made / request.param / "for-slicer.3mf")
+
+
+@pytest.fixture
+def replanned(plate, tmp_path):
+    """Edit the build, plan it again, and return the record by labels, and the new build."""
+
+    def make(moved=None, bare=False, place=None, deleted=(), copied=(), **options):
+        file = edit(
+            plate, (place or tmp_path) / "edited.3mf", moved, deleted=deleted, copied=copied, bare=bare
+        )
+        record = amprep.replan(file, output=tmp_path, **options)
+        return record, read_build(tmp_path / record.file)
+
+    return make
+
+
+def supports_of(record):
+    return {each.label: (each.change, each.supports) for each in record.parts}
+
+
+def corner(build, label):
+    return next(each.mesh.bounds[0] for each in build.parts if each.label == label)
+
+
+def digests(build):
+    return {body.name: body.mesh.digest for body in build.supports}
+
+
+def test_a_build_that_nobody_changed_stays_as_it_is(plate, replanned):
+    record, build = replanned()
+    assert supports_of(record) == dict.fromkeys(NAMES[:3], ("none", "kept")) | {
+        "bar": ("none", "none needed")
+    }
+    assert record.faults == 0
+    assert [each.name for each in amprep.diff(plate, build).settings] == ["build_id"]
+    assert not amprep.diff(plate, build).supports
+
+
+def test_a_part_that_moved_along_the_plate_takes_its_supports_along(plate, replanned, tmp_path):
+    record, build = replanned({0: shift(y=120.0)})
+    before = read_build(plate)
+    assert supports_of(record)["tee"] == ("moved", "taken along")
+    assert corner(build, "tee") == pytest.approx(corner(before, "tee") + (0.0, 120.0, 0.0), abs=1e-4)
+    old, new = digests(before), digests(build)
+    assert {name for name in old if old[name] != new[name]} == {"supports of tee"}
+    moved = [each for each in build.supports if each.name == "supports of tee"]
+    assert moved[0].mesh.signed_volume == pytest.approx(before.supports[0].mesh.signed_volume, rel=1e-4)
+    assert amprep.verify(tmp_path / record.file).ok, "all supports, judged from the file alone"
+
+
+def test_turned_and_raised_parts_are_planned_again_and_the_others_keep_their_supports(
+    plate, replanned, tmp_path
+):
+    record, build = replanned({1: shift(y=60.0) @ turn(40.0, 40.0, 10.0), 2: shift(y=120.0, z=2.0)})
+    found = supports_of(record)
+    assert found == {
+        "tee": ("none", "kept"),
+        "tee-2": ("turned", "planned again"),
+        "tee-3": ("moved", "planned again"),
+        "bar": ("none", "none needed"),
+    }
+    assert record.parts[1].turned_deg == pytest.approx(40.0)
+    assert len(build.supports) == 3
+    assert digests(build)["supports of tee"] == digests(read_build(plate))["supports of tee"]
+    assert amprep.verify(tmp_path / record.file).ok
+
+
+def test_files_for_slicers_are_replanned_alike_with_and_without_their_record(for_slicer, tmp_path):
+    moved = {0: shift(y=120.0), 1: shift(y=60.0) @ turn(40.0, 40.0, 10.0)}
+    if "prusaslicer" in str(for_slicer):
+        moved[1] = shift(y=60.0) @ turn(40.0, 40.0 - 125.0, 10.0 - 125.0)
+    for bare, folder in ((False, tmp_path), (True, for_slicer.parent)):
+        file = edit(for_slicer, folder / "edited.3mf", moved, bare=bare)
+        record = amprep.replan(file, output=tmp_path)
+        found = supports_of(record)
+        assert (found["tee"], found["tee-3"]) == (("moved", "taken along"), ("none", "kept"))
+        assert found["tee-2"] == ("turned", "planned again")
+        assert record.faults == 0
+        assert amprep.verify(tmp_path / record.file).ok
+
+
+def test_copies_and_deleted_parts_are_named(replanned, tmp_path):
+    record, build = replanned(deleted=[0], copied=[(1, shift(y=100.0)), (3, shift(y=50.0))])
+    found = supports_of(record)
+    assert found["tee"] == ("copied", "taken along")
+    assert found["bar-2"] == ("copied", "none needed")
+    assert record.deleted == ("1 part",)
+    assert sorted(body.name for body in build.supports) == [f"supports of {each}" for each in NAMES[:3]]
+    assert amprep.verify(tmp_path / record.file).ok
+
+
+def test_a_record_that_is_gone_is_found_by_the_report_beside_the_build(made, replanned, tmp_path):
+    with pytest.raises(InputError, match=r"record of amprep is gone.*--report.*--job"):
+        replanned({0: shift(y=120.0)}, bare=True)
+    record, _ = replanned({0: shift(y=120.0)}, bare=True, report=made / "job.report.json")
+    assert supports_of(record)["tee"] == ("moved", "taken along")
+    assert "by job.report.json" in record.source
+    assert amprep.verify(tmp_path / record.file).ok
+
+
+def test_a_build_beside_the_file_is_found_by_the_identifier_in_its_names(made, replanned):
+    record, _ = replanned({0: shift(y=120.0)}, bare=True, place=made)
+    (made / "edited.3mf").unlink()
+    assert supports_of(record)["tee"] == ("moved", "taken along")
+    assert "identifier" in record.source
+
+
+def test_parts_that_collide_leave_the_plate_or_are_too_near_are_refused_by_name(replanned, tmp_path):
+    with pytest.raises(InputError, match=r"tee.* overlaps tee-2 by"):
+        replanned({0: shift(x=10.0)})
+    with pytest.raises(InputError, match=r"bar: it extends 5\d\d.* beyond the"):
+        replanned({3: shift(x=700.0)})
+    with pytest.raises(InputError, match=r"mm from tee-2, expected at least 4 mm"):
+        replanned({0: shift(x=1.0)})
+    assert [path.name for path in tmp_path.iterdir()] == ["edited.3mf"]
+
+
+def test_a_scaled_part_is_refused_by_name(replanned):
+    with pytest.raises(InputError, match=r"^tee\S* has another shape"):
+        replanned({0: np.diag([1.0, 1.0, 1.2, 1.0])})
+
+
+def test_the_same_file_gives_the_same_bytes(replanned, tmp_path):
+    contents = []
+    for _ in range(2):
+        record, _ = replanned({1: shift(y=60.0) @ turn(40.0, 40.0, 10.0)})
+        contents.append((tmp_path / record.file).read_bytes())
+    assert contents[0] == contents[1]
+
+
+def test_a_job_gives_parts_and_settings_when_nothing_else_is_left(made, plate, tmp_path):
+    file = edit(plate, tmp_path / "edited.3mf", bare=True)
+    record = amprep.replan(file, output=tmp_path, job=made / "job.toml", dry_run=True)
+    assert sorted(supports_of(record)) == sorted(NAMES)
+    assert {each.supports for each in record.parts} == {"planned again", "none needed"}
+    assert record.violations == ()
+    assert record.file == ""
+
+
+def test_the_report_says_what_happened(replanned, tmp_path):
+    record, _ = replanned({0: shift(y=120.0)})
+    report = json.loads((tmp_path / record.report_file).read_text())
+    assert report["parts"][0]["supports"] == "taken along"
+    assert (report["file"], report["sha256"]) == (record.file, record.sha256)
+
+
+def test_new_names_count():
+    names = [new_name(Path(each)) for each in ("a.build-1.3mf", "a.replanned.3mf", "a.replanned-2.3mf")]
+    assert names == ["a.build-1.replanned", "a.replanned-2", "a.replanned-3"]
