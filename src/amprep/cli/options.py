@@ -235,7 +235,7 @@ class BuildOptions(JobOptions):
             "--time-limit",
             min=0.0,
             metavar="SECONDS",
-            help="Stop packing and routing after this time and use the best result found.",
+            help="Stop packing and routing after this time, and leave out supports not finished after twice this time.",
         ),
     ] = None
     allow_surface: Annotated[

@@ -63,7 +63,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
     if counts[CAPACITY]:
         yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"
     if counts[OUT_OF_TIME]:
-        yield f"{_have(counts[OUT_OF_TIME])} no path yet, because the time ended; allow a longer time limit"
+        yield f"{_have(counts[OUT_OF_TIME])} no support yet, because the time ended; allow a longer time limit"
 
 
 def _stand_on_part(grounding: Grounding) -> str:

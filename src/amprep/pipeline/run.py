@@ -10,7 +10,7 @@ from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.record import run_record
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import support_build
+from amprep.pipeline.supporting import SupportStops, support_build
 from amprep.pipeline.writing import finish_build, write_reports
 from amprep.report.record import RunRecord
 
@@ -61,11 +61,11 @@ def run_job(resolved: ResolvedJob, options: RunOptions, *, watcher: Watcher, sto
     AmprepError
         For wrong input, a plugin that fails, or when nothing fits the build volume.
     """
-    clock, limit = Clock(watcher), stop.within(options.time_limit)
+    clock, stops = Clock(watcher), SupportStops.after(options.time_limit, stop)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
-    packed = pack_parts(loaded, clock, limit)
+    packed = pack_parts(loaded, clock, stops.routing)
     outputs = OutputFolder(options.folder, resolved.job.name)
-    return make_builds(loaded, packed, outputs, options, clock, limit, stop)
+    return make_builds(loaded, packed, outputs, options, clock, stops, stop)
 
 
 def make_builds(
@@ -74,7 +74,7 @@ def make_builds(
     outputs: OutputFolder,
     options: RunOptions,
     clock: Clock,
-    limit: Stop,
+    stops: SupportStops,
     stop: Stop,
 ) -> RunRecord:
     """Support, write and verify builds, write the reports, publish all files and return the record.
@@ -89,11 +89,11 @@ def make_builds(
         Options of the run.
     clock
         Times and shows the stages.
-    limit, stop
-        End routing early with the best result so far, and the run without a result.
+    stops, stop
+        End the support of builds early with the best result so far, and the run without a result.
     """
     with outputs:
-        supported = [support_build(build, clock, limit) for build in packed.builds]
+        supported = [support_build(build, clock, stops) for build in packed.builds]
         records = [
             finish_build(
                 each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stop

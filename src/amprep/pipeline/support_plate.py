@@ -15,6 +15,7 @@ from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.run import RunOptions, make_builds
 from amprep.pipeline.stages import Clock, Watcher
+from amprep.pipeline.supporting import SupportStops
 from amprep.report.record import RunRecord
 from amprep.threemf.transforms import round_as_stored
 
@@ -46,7 +47,7 @@ def support_plate(
     AmprepError
         For wrong input, a plugin that fails, or a part outside the build volume.
     """
-    clock, limit = Clock(watcher), stop.within(options.time_limit)
+    clock, stops = Clock(watcher), SupportStops.after(options.time_limit, stop)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
     placed = place_as_read(loaded, center=center)
     notes = () if resolved.job.supports.enabled else (_SUPPORTED_ANYWAY,)
@@ -54,7 +55,7 @@ def support_plate(
     not_packed = Packing((), stop_reason="as it lies")
     packed = PackedParts(PackingProblem((), resolved.job.printer.space), not_packed, (placed,))
     outputs = OutputFolder(options.folder, placed.build_id, numbered=False)
-    return make_builds(lying, packed, outputs, options, clock, limit, stop)
+    return make_builds(lying, packed, outputs, options, clock, stops, stop)
 
 
 def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:

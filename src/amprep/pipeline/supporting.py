@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,12 +32,16 @@ from amprep.pipeline.passes import PlannedPass, TakenRegions, passes_of, plan_in
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.printers.catalogue import Printer
+from amprep.supports.effort import effort_of, leave_out_late, require_memory
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
 from amprep.supports.legs.short_legs import BuiltSupports, without_long_legs
 from amprep.supports.plan import PassScope, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, Surroundings, build_supports
 from amprep.supports.solids.thin_cells import suitable_pitch, wall_advice
+
+LEAST_BUILDING = 30.0
+"""Seconds that making supports solid may take at least after a time limit has ended their routing."""
 
 LARGEST_REACH = 5.0
 """Upper limit (mm) of the default reach: even in a coarse grid, no face farther from a contact counts as held."""
@@ -125,9 +130,22 @@ class PlannedBuild(Summarised):
         )
 
 
-def support_build(build: PackedBuild, clock: Clock, stop: Stop) -> SupportedBuild:
+class SupportStops(NamedTuple):
+    """When to end the routing of supports, and when supports that are not finished are left out."""
+
+    routing: Stop
+    building: Stop
+
+    @classmethod
+    def after(cls, seconds: float | None, stop: Stop) -> "SupportStops":
+        """Return stops after a time limit (None for none), and after as long again, at least `LEAST_BUILDING`."""
+        later = None if seconds is None else seconds + max(seconds, LEAST_BUILDING)
+        return cls(stop.within(seconds), stop.within(later))
+
+
+def support_build(build: PackedBuild, clock: Clock, stops: "SupportStops") -> SupportedBuild:
     """Return a build with supports for all of its overhangs; overhangs without support are listed with a reason."""
-    return emit_supports(plan_build(build, clock, stop), clock, stop)
+    return emit_supports(plan_build(build, clock, stops.routing), clock, stops.building)
 
 
 def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
@@ -196,12 +214,14 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
     clock
         Times and shows the stages ``cells`` and ``judge``.
     stop
-        Ends the work early.
+        Ends the work early: supports that cannot be finished before its deadline are left out.
 
     Raises
     ------
     PluginError
         When the cell fails.
+    JobError
+        When the supports need more memory than this machine has.
     """
     parts, resolved = planned.build.parts, planned.build.resolved
     job = resolved.job
@@ -270,11 +290,22 @@ def _built(
             progress=progress,
         )
 
-    built = without_long_legs(build, own.layout, parts, rules.leg_ratio)
+    layout = _within_means(own.layout, resolved, stop)
+    built = without_long_legs(build, layout, parts, rules.leg_ratio, stop)
     if number == 0:
         return built
     name = f"rule {own.rules[0]}"
     return built._replace(bodies=tuple(replace(body, name=f"{body.name}, {name}") for body in built.bodies))
+
+
+def _within_means(layout: SupportLayout, resolved: ResolvedJob, stop: Stop) -> SupportLayout:
+    """Return a layout without the supports that cannot be finished in time; refuse those that memory cannot hold."""
+    if not len(layout.edges):
+        return layout
+    effort = effort_of(resolved.cell.emit, layout.grid.pitch, layout.grid.step, resolved.job.supports)
+    layout = leave_out_late(layout, effort, stop)
+    require_memory(layout, effort)
+    return layout
 
 
 def _unsupported(

@@ -12,7 +12,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats
 from amprep.measures.legs import long_stretches
-from amprep.model import Mesh, PlacedPart, SupportBody
+from amprep.model import Mesh, PlacedPart, Stop, SupportBody
 from amprep.model.supports import SLENDER
 from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
@@ -38,6 +38,7 @@ def without_long_legs(
     layout: SupportLayout,
     parts: Sequence[PlacedPart],
     ratio: float,
+    stop: Stop | None = None,
 ) -> BuiltSupports:
     """Build supports, and again without those whose legs are too long, until there is none.
 
@@ -51,6 +52,8 @@ def without_long_legs(
         Placed parts of the build.
     ratio
         Largest ratio of length to width of a leg; 0 for no limit.
+    stop
+        Ends the work early: legs that are too long may then be left. None for no limit.
 
     Notes
     -----
@@ -61,6 +64,8 @@ def without_long_legs(
     measured: dict[int, _MeasuredBody] = {}
     beside = _BESIDE * layout.grid.pitch
     for _ in range(_MOST_ROUNDS * (ratio > 0.0)):
+        if stop is not None and stop():
+            break
         measured = _all_measured(bodies, measured, layout, meshes, ratio)
         legs = [leg for each in measured.values() for leg in each.legs]
         if not legs:

@@ -46,10 +46,14 @@ def from_json(text: str) -> Any:
 
 def plain(array: Floats, decimals: int | None = None) -> Any:
     """Return an array as nested lists, with whole numbers as integers to keep the JSON short."""
-    if array.ndim > 1:
-        return [plain(row, decimals) for row in array]
     values = array if decimals is None else np.round(array, decimals)
-    return [int(value) if value.is_integer() and abs(value) < 2**53 else value for value in values.tolist()]
+    return _short(values.tolist())
+
+
+def _short(values: list[Any]) -> list[Any]:
+    if values and isinstance(values[0], list):
+        return [_short(row) for row in values]
+    return [int(value) if value.is_integer() and abs(value) < 2**53 else value for value in values]
 
 
 def as_object(value: Any, name: str) -> JsonObject:

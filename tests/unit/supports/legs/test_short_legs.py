@@ -54,3 +54,10 @@ def test_without_a_limit_and_without_long_legs_nothing_is_built_twice():
 
     assert without_long_legs(build, planned, PARTS, 0.0).layout is planned
     assert len(calls) == 1
+
+
+def test_a_stop_ends_the_rounds():
+    planned = layout(PARTS, leg_ratio=0.0, territory="shared", oblique_cost=100)
+    built = without_long_legs(builder(lambda _: 0.4), planned, PARTS, 10.0, Stop.after(0.0))
+    assert built.layout is planned
+    assert len(built.bodies) == 1
