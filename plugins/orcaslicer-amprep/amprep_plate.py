@@ -186,7 +186,7 @@ def run(command: list[str], dialog: Any) -> Ended:
         )
         reader.start()
         while (line := _next(lines)) is not None:
-            step = _progress_of(line)
+            step = progress_of(line)
             error = line.strip() if line and step is None else error
             goes_on = dialog.update(round(100 * step[1]), step[0]) if step else dialog.pulse()
             if not goes_on and not cancelled:
@@ -216,12 +216,15 @@ def _next(lines: "queue.Queue[str | None]") -> str | None:
         return ""
 
 
-def _progress_of(line: str) -> tuple[str, float] | None:
+def progress_of(line: str) -> tuple[str, float] | None:
     """Return the text and fraction of a line of progress; None if it is something else."""
     if not line.startswith("{"):
         return None
-    step = json.loads(line)
-    return f"{step['stage']}: {step['message']}".rstrip(": "), step["fraction"]
+    try:
+        step = json.loads(line)
+        return f"{step['stage']}: {step['message']}".rstrip(": "), float(step["fraction"])
+    except (ValueError, RecursionError, KeyError, TypeError):
+        return None
 
 
 def _show(report: dict[str, Any], folder: Path) -> Any:

@@ -202,3 +202,12 @@ def test_what_must_be_fixed_is_said(orca, tmp_path):
     assert execute(orca)[0] == "success"
     assert orca.messages[0].startswith("1 not placed\n2 findings must be fixed\n")
     assert str(tmp_path / "plate.build-1.3mf") in orca.messages[0]
+
+
+@pytest.mark.parametrize(
+    "line", ["{", "{}", "[1]", '{"stage": "a", "message": "b", "fraction": "c"}', "{" * 9999]
+)
+def test_a_foreign_line_is_no_progress(orca, line):  # noqa: ARG001 - the script imports the module
+    progress_of = import_module("amprep_plate").progress_of
+    assert progress_of(line) is None
+    assert progress_of('{"stage": "pack", "message": "", "fraction": 0.5}') == ("pack", 0.5)

@@ -75,9 +75,12 @@ class OutputFolder:
 
     def path(self, suffix: str) -> Path:
         """Return the path at which to write the file ``STEM.suffix``; it will be published."""
-        path = self.staged(suffix)
-        self._names.append(path.name)
-        return path
+        return self.named(self.name(suffix))
+
+    def named(self, name: str) -> Path:
+        """Return the path at which to write a file of any name; it will be published."""
+        self._names.append(name)
+        return self._staging / name
 
     def staged(self, suffix: str) -> Path:
         """Return the path of the file ``STEM.suffix`` before it is published."""

@@ -9,8 +9,8 @@ from amprep.pipeline.packing import PackedParts, pack_parts
 from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.record import run_record
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import SupportStops, support_build
+from amprep.pipeline.stages import Clock, SupportStops, Watcher
+from amprep.pipeline.supporting import support_build
 from amprep.pipeline.writing import finish_build, write_reports
 from amprep.report.record import RunRecord
 

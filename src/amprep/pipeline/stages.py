@@ -1,11 +1,11 @@
-"""Time the stages of a run and report their progress."""
+"""Time the stages of a run, report their progress, and say when they must end."""
 
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-from amprep.model import Progress, silent
+from amprep.model import Progress, Stop, silent
 from amprep.report.record import StageTime
 
 
@@ -56,3 +56,20 @@ class Clock:
     def times(self) -> tuple[StageTime, ...]:
         """Seconds that each stage took, in the order in which the stages were first entered."""
         return tuple(StageTime(name, seconds) for name, seconds in self._seconds.items())
+
+
+LEAST_BUILDING = 30.0
+"""Seconds that making supports solid may take at least after a time limit has ended their routing."""
+
+
+class SupportStops(NamedTuple):
+    """When to end the routing of supports, and when supports that are not finished are left out."""
+
+    routing: Stop
+    building: Stop
+
+    @classmethod
+    def after(cls, seconds: float | None, stop: Stop) -> "SupportStops":
+        """Return stops after a time limit (None for none), and after as long again, at least `LEAST_BUILDING`."""
+        later = None if seconds is None else seconds + max(seconds, LEAST_BUILDING)
+        return cls(stop.within(seconds), stop.within(later))

@@ -14,8 +14,7 @@ from amprep.pipeline.packing import PackedBuild, PackedParts, labels
 from amprep.pipeline.reading import LoadedParts, read_job
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.run import RunOptions, make_builds
-from amprep.pipeline.stages import Clock, Watcher
-from amprep.pipeline.supporting import SupportStops
+from amprep.pipeline.stages import Clock, SupportStops, Watcher
 from amprep.report.record import RunRecord
 from amprep.threemf.transforms import round_as_stored
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -30,18 +29,15 @@ from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import PlannedPass, TakenRegions, passes_of, plan_in_order, take_regions
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.stages import Clock
+from amprep.pipeline.stages import Clock, SupportStops
 from amprep.printers.catalogue import Printer
-from amprep.supports.effort import effort_of, leave_out_late, require_memory
+from amprep.supports.effort import within_means
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
 from amprep.supports.legs.short_legs import BuiltSupports, without_long_legs
 from amprep.supports.plan import PassScope, SupportLayout, plan_supports
 from amprep.supports.solids.build import SolidRules, Surroundings, build_supports
 from amprep.supports.solids.thin_cells import suitable_pitch, wall_advice
-
-LEAST_BUILDING = 30.0
-"""Seconds that making supports solid may take at least after a time limit has ended their routing."""
 
 LARGEST_REACH = 5.0
 """Upper limit (mm) of the default reach: even in a coarse grid, no face farther from a contact counts as held."""
@@ -130,20 +126,7 @@ class PlannedBuild(Summarised):
         )
 
 
-class SupportStops(NamedTuple):
-    """When to end the routing of supports, and when supports that are not finished are left out."""
-
-    routing: Stop
-    building: Stop
-
-    @classmethod
-    def after(cls, seconds: float | None, stop: Stop) -> "SupportStops":
-        """Return stops after a time limit (None for none), and after as long again, at least `LEAST_BUILDING`."""
-        later = None if seconds is None else seconds + max(seconds, LEAST_BUILDING)
-        return cls(stop.within(seconds), stop.within(later))
-
-
-def support_build(build: PackedBuild, clock: Clock, stops: "SupportStops") -> SupportedBuild:
+def support_build(build: PackedBuild, clock: Clock, stops: SupportStops) -> SupportedBuild:
     """Return a build with supports for all of its overhangs; overhangs without support are listed with a reason."""
     return emit_supports(plan_build(build, clock, stops.routing), clock, stops.building)
 
@@ -290,22 +273,12 @@ def _built(
             progress=progress,
         )
 
-    layout = _within_means(own.layout, resolved, stop)
+    layout = within_means(own.layout, resolved.cell.emit, job.supports, stop)
     built = without_long_legs(build, layout, parts, rules.leg_ratio, stop)
     if number == 0:
         return built
     name = f"rule {own.rules[0]}"
     return built._replace(bodies=tuple(replace(body, name=f"{body.name}, {name}") for body in built.bodies))
-
-
-def _within_means(layout: SupportLayout, resolved: ResolvedJob, stop: Stop) -> SupportLayout:
-    """Return a layout without the supports that cannot be finished in time; refuse those that memory cannot hold."""
-    if not len(layout.edges):
-        return layout
-    effort = effort_of(resolved.cell.emit, layout.grid.pitch, layout.grid.step, resolved.job.supports)
-    layout = leave_out_late(layout, effort, stop)
-    require_memory(layout, effort)
-    return layout
 
 
 def _unsupported(

@@ -13,7 +13,7 @@ from amprep.errors import JobError
 from amprep.model.control import Stop
 from amprep.model.supports import OUT_OF_TIME
 from amprep.model.supports.edges import square_keys
-from amprep.model.supports.rules import SectionRules
+from amprep.model.supports.rules import SectionRules, SupportRules
 from amprep.supports.layout import SupportLayout
 
 SECONDS, MEGABYTES = 1e-4, 3.5e-3
@@ -28,6 +28,33 @@ class Effort(NamedTuple):
 
     seconds: float
     megabytes: float
+
+
+def within_means(layout: SupportLayout, emit: Emit, rules: SupportRules, stop: Stop) -> SupportLayout:
+    """Return a layout without the supports that cannot be finished in time.
+
+    Parameters
+    ----------
+    layout
+        Routed supports of the build.
+    emit
+        Calls the cell.
+    rules
+        The least wall, and the leg ratio, by which cells choose default sizes.
+    stop
+        Has the deadline.
+
+    Raises
+    ------
+    JobError
+        If the supports need more memory than this machine has.
+    """
+    if not len(layout.edges):
+        return layout
+    effort = effort_of(emit, layout.grid.pitch, layout.grid.step, rules)
+    layout = leave_out_late(layout, effort, stop)
+    require_memory(layout, effort)
+    return layout
 
 
 def effort_of(emit: Emit, pitch: float, step: float, rules: SectionRules) -> Effort:

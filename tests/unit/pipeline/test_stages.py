@@ -4,7 +4,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from amprep.pipeline.stages import Clock, ProgressWatcher
+from amprep.model import Stop
+from amprep.pipeline.stages import Clock, ProgressWatcher, SupportStops
 
 
 def test_a_stage_that_is_entered_again_adds_to_its_time_and_keeps_its_place():
@@ -39,3 +40,11 @@ def test_a_stage_that_fails_is_timed_and_left():
     with pytest.raises(ValueError, match="no"), clock.stage("read"):
         raise ValueError("no")
     assert (left, [stage.name for stage in clock.times]) == (["read"], ["read"])
+
+
+def test_supports_are_finished_as_long_after_the_time_limit_as_it_is_but_at_least_half_a_minute():
+    for limit, later in ((1.0, 31.0), (100.0, 200.0)):
+        stops = SupportStops.after(limit, Stop())
+        assert stops.routing.remaining() == pytest.approx(limit, abs=1.0)
+        assert stops.building.remaining() == pytest.approx(later, abs=1.0)
+    assert SupportStops.after(None, Stop()).building.deadline is None

@@ -9,10 +9,13 @@ import numpy as np
 from amprep.arrays import Bools, Floats
 from amprep.checks.gcode.expected import ExpectedObject, plain_name
 from amprep.checks.gcode.found import SlicedObject, SlicedPlate
+from amprep.errors import InputError
 from amprep.model.build_volume import BuildVolume
 
 _OTHER_NAME = 1e6
 """Cost (mm) of taking an object with another name."""
+MOST_PAIRS = 4_000_000
+"""Largest number of pairs of an object of the build and one of the G-code; 2,000 objects of each are matched."""
 _NEAR = 1.0
 """Distance (mm) up to which the build lies where one of the usual origins puts it."""
 _COPY = re.compile(r"\(\d+\)$")
@@ -60,10 +63,20 @@ def match_objects(
         The build volume.
     titles
         What names of objects may have behind the labels: name and identifier of the build.
+
+    Raises
+    ------
+    InputError
+        If there are more than `MOST_PAIRS` pairs of objects.
     """
     from scipy.optimize import linear_sum_assignment
 
     printed = [each for each in plate.objects if not each.body.is_empty]
+    if len(expected) * len(printed) > MOST_PAIRS:
+        raise InputError(
+            f"the G-code prints {len(printed)} objects and the build has {len(expected)}: more than {MOST_PAIRS} pairs "
+            "cannot be matched"
+        )
     apart = _distances(expected, printed)
     apart += np.where(_named(expected, printed, titles), 0.0, _OTHER_NAME)
     rows, columns = linear_sum_assignment(apart)
@@ -96,10 +109,11 @@ def _label_in(name: str, titles: Sequence[str]) -> str:
 
 def _distances(expected: Sequence[ExpectedObject], printed: Sequence[SlicedObject]) -> Floats:
     """Return the distances of the corners of all objects, ``(n, m)`` mm."""
+    from scipy.spatial.distance import cdist
+
     ours = np.array([np.concatenate(each.bounds) for each in expected]).reshape(-1, 6)
     theirs = np.array([np.concatenate([each.body.low, each.body.high]) for each in printed]).reshape(-1, 6)
-    apart: Floats = np.linalg.norm(ours[:, None] - theirs[None], axis=2)
-    return apart
+    return np.asarray(cdist(ours, theirs), np.float64)
 
 
 def _origin(

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 _OUTLINE_STEP = 0.4
 _LINE_STEP = 0.3
 """Distance (mm) of the points of outlines and of printed lines."""
+_MOST_POINTS = 1_000_000
+"""Most points of the outlines of a section; they are farther apart where there would be more."""
 _THIN = 0.7
 """What is thinner than this fraction of the width of a line may be missing."""
 _CLOSED = 0.05
@@ -125,7 +127,8 @@ def _points_of(section: "CrossSection") -> Floats:
         return np.empty((0, 2))
     starts = np.concatenate(polygons)
     ends = np.concatenate([np.roll(each, -1, axis=0) for each in polygons])
-    return _along(starts, ends, _OUTLINE_STEP)[0]
+    length = float(np.linalg.norm(ends - starts, axis=1).sum())
+    return _along(starts, ends, max(_OUTLINE_STEP, length / _MOST_POINTS))[0]
 
 
 def _along(starts: Floats, ends: Floats, step: float) -> tuple[Floats, Int64s]:

@@ -81,22 +81,22 @@ def _chosen(profiles: "list[PrinterProfile]", names: list[str]) -> "list[Printer
 
 
 def _write(profiles: "list[PrinterProfile]", folder: Path, *, force: bool) -> list[Path]:
-    """Write one file for each profile; without `force`, an existing file is an error and nothing is written."""
+    """Write one file for each profile, all or none; without `force`, an existing file is an error."""
     from amprep.errors import AmprepError
-    from amprep.files import replacing
+    from amprep.pipeline.outputs import OutputFolder
     from amprep.profiles import profile_text
 
     paths = [folder / f"{stem}.toml" for stem in _stems([profile.name for profile in profiles])]
     known = [path for path in paths if path.exists()]
     if known and not force:
         raise AmprepError(f"{known[0]} exists already; use --force to replace it, or -o for another folder")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise AmprepError(f"cannot make the folder {folder}: {error.strerror or error}") from error
-    for profile, path in zip(profiles, paths, strict=True):
-        with replacing(path) as temporary:
-            temporary.write_text(profile_text(asdict(profile)), encoding="utf-8")
+    with OutputFolder(folder, "printers") as outputs:
+        try:
+            for profile, path in zip(profiles, paths, strict=True):
+                outputs.named(path.name).write_text(profile_text(asdict(profile)), encoding="utf-8")
+        except OSError as error:
+            raise AmprepError(f"cannot write to the folder {folder}: {error.strerror or error}") from error
+        outputs.publish()
     return paths
 
 

@@ -63,10 +63,18 @@ def _findings() -> dict[str, dict[str, Any]]:
     }
 
 
+def _requirements() -> list[str]:
+    """Return what amprep requires; nothing where its files are used without an installation."""
+    try:
+        return requires("amprep") or []
+    except PackageNotFoundError:
+        return []
+
+
 def _packages() -> dict[str, str]:
     """Return the version of each package that amprep needs, or may use."""
     found = {}
-    for requirement in requires("amprep") or []:
+    for requirement in _requirements():
         name = re.split(r"[^\w.-]", requirement, maxsplit=1)[0]
         optional = "extra ==" in requirement
         if "test" in requirement.partition("extra ==")[2]:

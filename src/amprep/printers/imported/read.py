@@ -1,7 +1,8 @@
 """Read the printers in a file or folder of a slicer."""
 
 from dataclasses import replace
-from functools import cache
+from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,12 @@ from amprep.printers.imported.cura import SUFFIX, is_visible, read_definition
 from amprep.printers.imported.orcaslicer import is_printer, read_machine
 from amprep.printers.imported.prusaslicer import read_ini
 from amprep.printers.imported.texts import LARGEST_FILE
+
+LARGEST_JSON, MOST_KEPT = 2_000_000, 32
+"""Bytes of a profile in JSON (those of slicers have up to 500,000), and how many are kept for their children."""
+
+MOST_FILES = 100_000
+"""Largest number of files and folders in a folder of profiles; that of OrcaSlicer has 15,000."""
 
 
 def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
@@ -31,14 +38,14 @@ def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
     Raises
     ------
     InputError
-        If the file cannot be read or has no printer.
+        If the file cannot be read or has no printer, or the folder has too many files.
     """
-    read = cache(lambda path: read_json(path, "a profile", LARGEST_FILE))
+    read = lru_cache(MOST_KEPT)(lambda path: read_json(path, "a profile", LARGEST_JSON))
     if not path.is_dir():
         return _named_apart(_of_file(path, read)), []
     printers: list[PrinterProfile] = []
     warnings: list[str] = []
-    for each in sorted(path.rglob("*")):
+    for each in _files_in(path):
         try:
             if _is_offered(each, read):
                 printers += _of_file(each, read)
@@ -49,6 +56,15 @@ def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
             f"{path}: has no printer profiles of PrusaSlicer (.ini), OrcaSlicer (.json) or Cura (.def.json)"
         )
     return _named_apart(printers), warnings
+
+
+def _files_in(folder: Path) -> list[Path]:
+    found = list(islice(folder.rglob("*"), MOST_FILES + 1))
+    if len(found) > MOST_FILES:
+        raise InputError(
+            f"{folder}: has more than {MOST_FILES} files; choose the folder of the profiles alone"
+        )
+    return sorted(found)
 
 
 def _is_offered(path: Path, read: Any) -> bool:

@@ -11,6 +11,9 @@ MOST_LINES_OF_A_LAYER = 20_000
 MOST_LINES_OF_ALL = 2_000_000
 """Lines beyond these numbers are left out; 2 million lines take 40 MB."""
 
+LENGTH_OF_A_LAYER = 300_000.0
+"""Length (mm) of lines beyond which those of a layer are left out: judges lay a point on every 0.3 mm of them."""
+
 
 class LayerSamples:
     """The recorded layers of each row of the tracks."""
@@ -20,6 +23,7 @@ class LayerSamples:
         self._heights: dict[int, list[float]] = defaultdict(list)
         self._thickness: dict[tuple[int, float], float] = {}
         self._counts: dict[tuple[int, float], int] = defaultdict(int)
+        self._lengths: dict[tuple[int, float], float] = defaultdict(float)
         self._dropped: set[tuple[int, float]] = set()
         self._total = 0
 
@@ -39,6 +43,8 @@ class LayerSamples:
         if key not in self._thickness:
             self._heights[key[0]].append(key[1])
         self._thickness[key] = float(run[0, 2])
+        lengths = self._lengths[key] + np.cumsum(np.hypot(run[:, 5] - run[:, 3], run[:, 6] - run[:, 4]))
+        room = min(room, int(np.searchsorted(lengths, LENGTH_OF_A_LAYER, side="right")))
         if len(run) > room:
             self._dropped.add(key)
         if room <= 0 and key in self._pieces:
@@ -46,6 +52,7 @@ class LayerSamples:
         kept = run[: max(room, 0), 3:].astype(np.float32)
         self._pieces[key].append(kept)
         self._counts[key] += len(kept)
+        self._lengths[key] = float(lengths[room - 1]) if room > 0 else self._lengths[key]
         self._total += len(kept)
 
     def of_row(self, row: int) -> tuple[SlicedLayer, ...]:

@@ -72,7 +72,11 @@ def install(
         return Installation(command, lines)
     folders = [folder] if folder is not None else settings_folders(slicer, environment, Path.home())
     path = find_profile(slicer, profile, folders)
-    text = (with_script_json if is_json else with_script_ini)(_read(path), command)
+    before = _read(path)
+    try:
+        text = (with_script_json if is_json else with_script_ini)(before, command)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
         shutil.copymode(path, temporary)

@@ -48,9 +48,9 @@ def with_script_json(text: str, command: str) -> str:
     try:
         values: Any = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"the profile is not JSON ({error})") from error
+        raise InputError(f"not a profile: not JSON ({error})") from error
     if not isinstance(values, dict):
-        raise InputError("the profile is not a JSON object")
+        raise InputError("not a profile: not a JSON object")
     scripts = values.get(SCRIPTS, [])
     known = [str(each) for each in scripts] if isinstance(scripts, list) else [str(scripts)]
     values[SCRIPTS] = [*_others([each for each in known if each]), command]

@@ -5,10 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from manifold3d import CrossSection
 from tests.shared.gcode import L_PRISMS, Prism, Slicer, build_of, prepared
 
-from amprep.checks.gcode import bed, slicing
+from amprep.checks.gcode import bed, matching, sections, slicing
 from amprep.checks.gcode.judge import NOT_JUDGED, NUMBER, POSITION, SHAPE, SIZE, judge_gcode
+from amprep.errors import InputError
 from amprep.model import PlacedPart
 from amprep.model.mesh import join_meshes
 from amprep.model.supports.rules import SupportRules
@@ -235,3 +237,15 @@ def test_copies_that_a_slicer_shows_as_instances_have_one_name(tmp_path):
     build = replace(build, parts=(first, PlacedPart("bracket-2", first.part, aside)))
     copies = (L_PRISMS[0], replace(L_PRISMS[1], label="bracket"))
     assert judged(tmp_path / "a.gcode", build, "job", Slicer().gcode(copies, "job")).ok
+
+
+def test_more_objects_than_can_be_matched_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(matching, "MOST_PAIRS", 3)
+    with pytest.raises(InputError, match="prints 2 objects and the build has 2: more than 3 pairs"):
+        verdict_of(tmp_path / "a.gcode", Slicer())
+
+
+def test_a_section_with_long_outlines_gets_few_points(monkeypatch):
+    section = CrossSection([[(0, 0), (4000, 0), (4000, 4000), (0, 4000)]])
+    monkeypatch.setattr(sections, "_MOST_POINTS", 100)
+    assert 100 <= len(sections._points_of(section)) <= 110

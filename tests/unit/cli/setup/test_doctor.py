@@ -1,12 +1,14 @@
 """`amprep doctor` says what is installed, in words and as JSON."""
 
 import json
+from importlib.metadata import PackageNotFoundError
 
 import numba
 from typer.testing import CliRunner
 
 from amprep import __version__
 from amprep.cli.app import app
+from amprep.cli.setup import doctor
 
 
 def test_packages_slicers_plugins_profiles_and_kernels_are_named(monkeypatch, tmp_path):
@@ -25,3 +27,11 @@ def test_packages_slicers_plugins_profiles_and_kernels_are_named(monkeypatch, tm
     assert 0 <= int(done) <= int(total)
     assert int(total) > 100
     assert f"version: {__version__}" in CliRunner().invoke(app, ["doctor"]).stdout
+
+
+def test_without_an_installation_no_packages_are_listed(monkeypatch):
+    def missing(name):
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(doctor, "requires", missing)
+    assert json.loads(CliRunner().invoke(app, ["doctor", "--json"]).stdout)["packages"] == {}

@@ -1,6 +1,7 @@
 """Printers come in from the profiles of PrusaSlicer, OrcaSlicer and Cura, with what they inherit."""
 
 import json
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 from amprep.cli.catalogues.printers import app
 from amprep.errors import AmprepError, InputError
 from amprep.printers.catalogue import find_printer
+from amprep.printers.imported import read
 from amprep.printers.imported.read import read_printers
 
 BUNDLE = """
@@ -189,3 +191,34 @@ def test_printers_with_names_that_files_cannot_tell_apart_get_files_of_their_own
         "Maker-One.toml",
         "maker-one-3.toml",
     ]
+
+
+def test_imported_printers_appear_all_or_none(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "write_text", failing_at("M2-0.8.toml", Path.write_text))
+    source = tmp_path / "maker.ini"
+    source.write_bytes(BUNDLE.encode())
+    run = CliRunner().invoke(app, ["import", str(source), "-o", str(tmp_path / "out")])
+    assert isinstance(run.exception, AmprepError)
+    assert "No space left" in str(run.exception)
+    assert not (tmp_path / "out").exists()
+
+
+def failing_at(name, write):
+    """A function that writes files but for one of a name, for which there is no space."""
+
+    def fail(path, *arguments, **named):
+        if path.name == name:
+            raise OSError(28, "No space left on device")
+        return write(path, *arguments, **named)
+
+    return fail
+
+
+def test_folders_of_too_many_files_and_profiles_too_large_are_refused(tmp_path, monkeypatch):
+    saved(tmp_path, "maker.ini", BUNDLE)
+    monkeypatch.setattr(read, "MOST_FILES", 0)
+    with pytest.raises(InputError, match="more than 0 files"):
+        read_printers(tmp_path)
+    monkeypatch.setattr(read, "LARGEST_JSON", 10)
+    with pytest.raises(InputError, match="larger than 10 bytes"):
+        read_printers(saved(tmp_path, "machine.json", {"type": "machine"}))

@@ -171,3 +171,11 @@ def test_lines_beyond_the_limit_of_memory_take_none(monkeypatch):
         assert (len(layer.lines), layer.complete) == (3, False)
     assert sum(map(len, kept._pieces.values())) == 6
     assert kept.of_row(5) == ()
+
+
+def test_lines_too_long_to_be_sampled_are_left_out_and_the_layer_is_not_complete(tmp_path):
+    path = tmp_path / "a.gcode"
+    path.write_text("M83\nG1 Z0.2\nG1 X10 E1\nG1 X900000 E1\nG1 Z0.4\nG1 X5 E1\n", encoding="utf-8")
+    (layer, *_) = read_gcode(path, read_head(path), HEIGHTS).apart.body.samples
+    assert layer.lines[:, :4].tolist() == [[0, 0, 10, 0]]
+    assert not layer.complete

@@ -76,3 +76,11 @@ def test_windows_knows_only_double_quotes(monkeypatch, settings):
     monkeypatch.setattr(sys, "platform", "win32")
     done = install("prusaslicer", ["--folder", "a b"], profile="My fine", folder=settings, write=False)
     assert done.command.endswith('hook gcode --folder "a b"')
+
+
+def test_a_profile_that_is_no_json_is_named(settings):
+    path = settings / "user/default/process/My fine.json"
+    path.write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match=r"My fine\.json: not a profile: not JSON"):
+        install("orcaslicer", [], profile="My fine", folder=settings, write=True)
+    assert path.read_text(encoding="utf-8") == "{"
