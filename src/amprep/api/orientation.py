@@ -11,7 +11,8 @@ from amprep.job import Job
 from amprep.job.settings.packing import Effort
 from amprep.model import Progress, Stop, silent
 from amprep.model.orientation import OrientationRules
-from amprep.pipeline.orienting import MEASURED, OrientOptions, orient_job
+from amprep.pipeline.orienting.course import OrientOptions, orient_job
+from amprep.pipeline.orienting.proposals import MEASURED
 from amprep.pipeline.resolve import resolve
 from amprep.pipeline.stages import ProgressWatcher, Watcher
 from amprep.report.orientation.record import OrientationRecord

@@ -52,6 +52,7 @@ def measure_orientation(part: Part, rotation: Floats, rules: SupportRules, lift:
     along = ends[:, 1] - ends[:, 0]
     below = float(np.hypot(along[:, 0], along[:, 1]) @ ends[:, :, 2].mean(axis=1))
     held = tipping >= FIRM_DEG or lift > rules.plate_mm
+    hold = 0.0 if held else HOLD_MM2 * float(centre[2])
     size = np.ptp(placed.mesh.vertices, axis=0)
     return OrientationFigures(
         height_mm=float(size[2]),
@@ -60,7 +61,8 @@ def measure_orientation(part: Part, rotation: Floats, rules: SupportRules, lift:
         shadow_mm3=shadow,
         edges_mm=float(np.linalg.norm(along, axis=1).sum()),
         tips=len(found.tips),
-        cost_mm3=shadow + EDGE_MM * below + (0.0 if held else HOLD_MM2 * float(centre[2])),
+        hold_mm3=hold,
+        cost_mm3=shadow + EDGE_MM * below + hold,
         contact_mm2=_contact(whole, lift + rules.plate_mm),
         tipping_deg=tipping,
     )

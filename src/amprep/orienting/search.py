@@ -1,6 +1,6 @@
 """Propose orientations of a part: try many directions quickly, measure the best exactly, and choose a few."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
@@ -45,13 +45,16 @@ class OrientationSearch(NamedTuple):
     fits
         Tells which rotations ``(k, 3, 3)`` fit the printer; None where all do.
     routed
-        Plans supports for the proposals; None to leave it out.
+        Plans supports for the best ones and for the proposals; None to leave it out.
+    compared
+        Number of orientations with the least estimate of support for which supports are planned, if at all.
     """
 
     measured: int = 10
     proposals: int = 5
     fits: Callable[[Floats], Bools] | None = None
     routed: Routed | None = None
+    compared: int = 8
 
 
 class FoundOrientations(NamedTuple):
@@ -130,10 +133,19 @@ def propose_orientations(
             f"part {part.name!r} has no orientation in which supports touch none of the faces named"
         )
     drawn = OrientationProposal(np.eye(3), measure_orientation(part, np.eye(3), rules, lift), ("as drawn",))
-    chosen = _chosen(measured, settings.proposals)
-    if settings.routed is not None:
-        drawn, *chosen = (_with_supports(part, each, settings.routed, stop) for each in (drawn, *chosen))
-        chosen = sorted(chosen, key=_support_cost)
+    routed = settings.routed
+    if routed is None:
+        return FoundOrientations(tried, drawn, _with_merits(_chosen(measured, settings.proposals)))
+
+    def supported(proposals: list[OrientationProposal]) -> Iterator[OrientationProposal]:
+        for number, each in enumerate(proposals):
+            progress(number / len(proposals), f"{part.name}: supports of {len(proposals)} orientations")
+            yield _with_supports(part, each, routed, stop)
+
+    measured = _ordered(measured)
+    best = list(supported([drawn, *measured[: settings.compared]]))
+    drawn, measured[: settings.compared] = best[0], best[1:]
+    chosen = list(supported(_chosen(measured, settings.proposals)))
     return FoundOrientations(tried, drawn, _with_merits(chosen))
 
 
@@ -176,15 +188,30 @@ def _shortlist(part: TurnablePart, found: TriedDirections, settings: Orientation
     return apart([*chosen, *others], directions, most, DIRECTIONS_APART_DEG, allowed)
 
 
-def _costs(figures: OrientationFigures) -> tuple[float, ...]:
-    """Return the figures that are to be small, in the order of `_MERITS`."""
-    return (
-        figures.cost_mm3,
-        figures.overhang_mm2 + figures.edges_mm,
-        figures.box_mm3,
-        figures.height_mm,
-        -figures.tipping_deg,
+def _costs(proposals: list[OrientationProposal]) -> Floats:
+    """Return the figures ``(k, 5)`` that are to be small, in the order of `_MERITS`."""
+    figures = [proposal.figures for proposal in proposals]
+    others = [
+        (each.overhang_mm2 + each.edges_mm, each.box_mm3, each.height_mm, -each.tipping_deg)
+        for each in figures
+    ]
+    return np.round(np.column_stack([_support_costs(figures), others]), 6)
+
+
+def _support_costs(figures: list[OrientationFigures]) -> Floats:
+    """Return the estimates of support ``(k,)``, or the volumes of supports if they were planned for some.
+
+    Then those come first that leave nothing unsupported, and those without planned supports last.
+    """
+    estimates = np.array([each.cost_mm3 for each in figures])
+    planned = np.array(
+        [np.nan if each.support_mm3 is None else each.support_mm3 + each.hold_mm3 for each in figures]
     )
+    if np.isnan(planned).all():
+        return estimates
+    most = float(np.nanmax(planned)) + 1.0
+    open_ones = np.array([each.unsupported > 0 for each in figures])
+    return np.where(np.isnan(planned), 2.0 * most + estimates, planned + most * open_ones)
 
 
 _MERITS = ("support", "overhang", "box", "height", "stability")
@@ -195,24 +222,25 @@ def _chosen(measured: list[OrientationProposal], most: int) -> list[OrientationP
 
     Orientations that another one beats by every objective are proposed only where there are too few others.
     """
-    costs = np.array([_costs(each.figures) for each in measured])
+    costs = _costs(measured)
     balance = balanced(costs)
-    unbeaten = non_dominated(np.round(costs, 6))
+    unbeaten = non_dominated(costs)
     best = [int(ranked(costs[:, column], ~unbeaten, balance)[0]) for column in range(costs.shape[1])]
     order = ranked(~unbeaten, balance).tolist()
     rows = list(dict.fromkeys([best[0], *best[2:4], order[0], *best, *order]))[:most]
-    return sorted((measured[row] for row in rows), key=_support_cost)
+    return [measured[row] for row in rows]
 
 
-def _support_cost(proposal: OrientationProposal) -> tuple[float, ...]:
-    figures = proposal.figures
-    planned = figures.support_mm3 if figures.support_mm3 is not None else figures.cost_mm3
-    return (float(figures.unsupported), round(planned, 6), round(figures.height_mm, 6))
+def _ordered(proposals: list[OrientationProposal]) -> list[OrientationProposal]:
+    """Return proposals by their support, those that are alike by their height."""
+    costs = _costs(proposals)
+    return [proposals[row] for row in ranked(costs[:, 0], costs[:, _MERITS.index("height")])]
 
 
 def _with_merits(proposals: list[OrientationProposal]) -> tuple[OrientationProposal, ...]:
-    """Return the proposals with what each of them is the best for among them."""
-    costs = np.round([_costs(each.figures) for each in proposals], 6)
+    """Return the proposals by their support, with what each of them is the best for among them."""
+    proposals = _ordered(proposals)
+    costs = _costs(proposals)
     merits: list[list[str]] = [[] for _ in proposals]
     for name, row in zip(_MERITS, costs.argmin(axis=0).tolist(), strict=True):
         merits[row].append(name)
@@ -224,7 +252,7 @@ def _with_merits(proposals: list[OrientationProposal]) -> tuple[OrientationPropo
 def _with_supports(
     part: Part, proposal: OrientationProposal, routed: Routed, stop: Stop
 ) -> OrientationProposal:
-    if stop():
+    if stop() or proposal.figures.support_mm3 is not None:
         return proposal
     volume, unsupported = routed(part, proposal.rotation)
     return replace(proposal, figures=replace(proposal.figures, support_mm3=volume, unsupported=unsupported))

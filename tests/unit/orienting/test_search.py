@@ -111,3 +111,23 @@ def test_the_same_part_gets_the_same_proposals(found):
     assert [each.rotation.tolist() for each in again.proposals] == [
         each.rotation.tolist() for each in found.proposals
     ]
+
+
+def test_planned_supports_order_the_proposals_and_what_stays_unsupported_comes_last():
+    asked = []
+
+    def routed(part, rotation):
+        asked.append(rotation)
+        # the more tilted, the fewer supports; but upside down something stays unsupported
+        return 1000.0 * (1.0 + rotation[2, 2]), int(rotation[2, 2] < -0.9)
+
+    settings = FEW._replace(routed=routed, compared=2)
+    found = propose_orientations(table(), METAL, 0.0, OrientationRules(), settings, stop=Stop())
+    figures = [each.figures for each in found.proposals]
+    assert found.drawn.figures.support_mm3 == pytest.approx(2000)
+    assert all(each.support_mm3 is not None for each in figures)
+    costs = [(each.support_mm3 or 0.0) + each.hold_mm3 for each in figures if not each.unsupported]
+    assert costs == sorted(costs)
+    assert [each.unsupported > 0 for each in figures] == sorted(each.unsupported > 0 for each in figures)
+    # the part as drawn, two of the others, and the proposals among which these may be
+    assert 6 <= len(asked) <= 8

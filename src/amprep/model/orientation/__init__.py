@@ -56,9 +56,11 @@ class OrientationFigures:
         Volume of the vertical columns between these faces and the plate.
     edges_mm, tips
         Length of the knife edges and number of the tips that need support.
+    hold_mm3
+        Volume of what must hold a part that does not stand by itself on the plate: a column of 25 mm2 up to its centre
+        of mass; else 0.
     cost_mm3
-        Estimate of the support volume: the shadow volume, below knife edges a wall 1 mm thick, and below a part that
-        does not stand by itself on the plate a column of 25 mm2 up to its centre of mass.
+        Estimate of the support volume: the shadow volume, below knife edges a wall 1 mm thick, and `hold_mm3`.
     contact_mm2
         Area of the faces on the plate, or at the lift above it.
     tipping_deg
@@ -75,6 +77,7 @@ class OrientationFigures:
     shadow_mm3: float
     edges_mm: float
     tips: int
+    hold_mm3: float
     cost_mm3: float
     contact_mm2: float
     tipping_deg: float

@@ -9,7 +9,7 @@ from amprep.model import Orientations, Part, Stop
 from amprep.model.orientation import OrientationProposal
 from amprep.model.rotations import quarter_turns
 from amprep.orienting.search import FoundOrientations
-from amprep.pipeline.orienting import oriented
+from amprep.pipeline.orienting.proposals import oriented
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.stages import Clock
 

@@ -62,7 +62,7 @@ def test_wrong_restrictions_are_refused(table, wrong):
 
 
 def test_only_proposals_with_little_support_are_packed(table):
-    figures = OrientationFigures(1.0, (1.0, 1.0, 1.0), 0.0, 0.0, 0.0, 0, 0.0, 1.0, 0.0)
+    figures = OrientationFigures(1.0, (1.0, 1.0, 1.0), 0.0, 0.0, 0.0, 0, 0.0, 0.0, 1.0, 0.0)
     proposals = tuple(
         OrientationProposal(np.eye(3), replace(figures, cost_mm3=cost)) for cost in (140.0, 100.0, 126.0)
     )
