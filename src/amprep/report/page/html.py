@@ -17,7 +17,10 @@ from amprep.report.record import RunRecord
 VIEWER = """\
 <section id="viewer" aria-label="3D view of the builds">
 <div id="stage">
-<canvas id="canvas" tabindex="0" title="Drag to rotate, scroll to zoom, right-drag to pan, click to identify"></canvas>
+<canvas id="canvas" tabindex="0" aria-label="3D view: keys 1 to 5 choose a view, arrows move it, \
+Shift and arrows turn it, + and - zoom, m measures" \
+title="Drag to rotate, scroll to zoom, right-drag to pan, click to identify; \
+keys: 1 to 5, arrows, + and -, m to measure"></canvas>
 <div id="wait">Loading the geometry ...
 <noscript>The 3D view needs scripts; the tables below are complete.</noscript></div>
 <div class="bar" id="top"><div class="group" id="tabs" role="tablist"></div>
@@ -27,10 +30,12 @@ VIEWER = """\
 <div class="bar" id="bottom"><div class="group" id="views"></div>
 <div class="group">
 <label>Cut at height <input id="section" type="range" min="0" max="1" step="0.1" value="1"></label>
-<span id="section-value">off</span></div></div>
+<span id="section-value">off</span></div>
+<div class="group"><button type="button" id="measure" aria-pressed="false">Measure</button></div></div>
 </div>
 <div id="lists"></div>
 </section>
+<div id="printed"></div>
 """
 
 

@@ -24,6 +24,16 @@ from amprep.report.removal_order import hindrances_of, removal_rows, removal_sum
 from amprep.report.triage.findings import findings_of
 from amprep.report.triage.rules import rules_of
 
+_SIGNATURES = (
+    '<section class="signatures"><h2>Release</h2>\n<table><thead><tr><th></th><th>Name</th><th>Date</th>'
+    "<th>Signature</th></tr></thead><tbody>"
+    + "".join(
+        f"<tr><th>{words}</th><td></td><td></td><td></td></tr>" for words in ("Prepared by", "Released by")
+    )
+    + "</tbody></table></section>\n"
+)
+"""A table to sign on paper; the screen does not show it."""
+
 
 def header(record: RunRecord) -> str:
     """Return the title with the number of findings of each class, the run's settings and the key figures."""
@@ -76,7 +86,7 @@ def body_sections(record: RunRecord) -> str:
         "recoating and scanning by the speeds of the material profile, without warming up and cooling down. A demand "
         "square is a square of the support grid below an overhang."
     )
-    return f"{body}<footer>{footer}</footer>\n"
+    return f"{body}{_SIGNATURES}<footer>{footer}</footer>\n"
 
 
 def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:

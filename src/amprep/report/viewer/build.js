@@ -4,6 +4,7 @@ import { decodeMesh } from "./decode.js";
 
 const CREASE_DEG = 28;
 const BALL = new THREE.IcosahedronGeometry(1, 1);
+const DIAMOND = new THREE.OctahedronGeometry(1.35); // another shape than what must be fixed, for those who see no colours
 
 export class Geometries {
   constructor(bytes, meshes) {
@@ -109,14 +110,15 @@ export function showVolumes(volumes, geometries) {
   return { meshes: shown, group };
 }
 
-// Spheres at the points of a finding; they are faintly visible through parts.
+// Spheres (what must be fixed) or diamonds (what is worth a check) at the points of a finding; they are faintly visible through parts.
 function marks(finding, index, geometries) {
   const positions = geometries.get(finding.points).getAttribute("position");
   const group = new THREE.Group();
   const pose = new THREE.Matrix4();
   for (const [through, opacity] of [[true, 0.2], [false, 1]]) {
     const look = new THREE.MeshBasicMaterial({ color: finding.colour, transparent: through, opacity, depthTest: !through });
-    const mesh = new THREE.InstancedMesh(BALL, look, positions.count);
+    const shape = finding.triage === "must fix" ? BALL : DIAMOND;
+    const mesh = new THREE.InstancedMesh(shape, look, positions.count);
     for (let i = 0; i < positions.count; i++) {
       pose.makeScale(finding.radius, finding.radius, finding.radius);
       pose.setPosition(positions.getX(i), positions.getY(i), positions.getZ(i));

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { inflate } from "./decode.js";
 import { addEdges, Geometries, pointer, retire, showBuild, showVolumes } from "./build.js";
+import { Ruler } from "./ruler.js";
 import { Stage, surroundings } from "./stage.js";
 
 const VIEWS = {
@@ -11,6 +12,7 @@ const VIEWS = {
   right: new THREE.Vector3(1, 0, 0.0001),
   below: new THREE.Vector3(0.4, -0.7, -0.62),
 };
+const MOST_PRINTED = 12;
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const element = (id) => document.getElementById(id);
 
@@ -53,6 +55,9 @@ class Viewer {
     this.#picking();
     this.pointer = pointer();
     this.stage.scene.add(this.pointer);
+    this.ruler = new Ruler(this.stage);
+    this.#keys();
+    this.#printing();
     document.addEventListener("show-finding", ({ detail }) => this.point(detail));
     dark.addEventListener("change", () => this.#surround());
     this.stage.resize();
@@ -73,7 +78,7 @@ class Viewer {
     this.#lists();
     this.#choices();
     this.choose(-1);
-    this.select(null);
+    this.measure(false);
     const slider = element("section");
     slider.max = Math.ceil(10 * this.build.height) / 10 || 1;
     slider.value = slider.max;
@@ -124,6 +129,21 @@ class Viewer {
     card.hidden = !found;
     if (found) this.#describe(found, card);
     this.stage.draw();
+  }
+
+  // Begins or ends measuring: the next two clicks are the ends of a distance.
+  measure(on) {
+    this.ruler.clear();
+    this.measuring = on;
+    element("measure").setAttribute("aria-pressed", String(on));
+    this.select(null);
+    if (on) this.#say("Measure", ["Click two points. Corners near the pointer attract it. Escape ends."]);
+  }
+
+  #say(title, lines) {
+    const card = element("card");
+    card.replaceChildren(make("strong", {}, title), ...lines.map((line) => make("span", {}, line)));
+    card.hidden = false;
   }
 
   // Shows a point of a build with its description, as a row of the tables asks.
@@ -216,6 +236,43 @@ class Viewer {
     const views = Object.keys(VIEWS).map((name) => make("button", { type: "button", onclick: () => this.view(name) }, name));
     element("views").replaceChildren(...views);
     element("section").addEventListener("input", () => this.#cut());
+    element("measure").addEventListener("click", () => this.measure(!this.measuring));
+  }
+
+  // Keys work while the view has the focus; arrows move it, and turn it together with Shift.
+  #keys() {
+    this.stage.canvas.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const name = Object.keys(VIEWS)[Number(event.key) - 1];
+      if (name) this.view(name);
+      else if (event.key === "m") this.measure(!this.measuring);
+      else if (event.key === "Escape") this.measure(false);
+      else if (event.key === "+" || event.key === "-") this.stage.zoom(event.key === "+" ? 1 / 1.2 : 1.2);
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  // Paper has no 3D view: it shows a picture of each build, and all that is folded.
+  #printing() {
+    const before = [];
+    window.addEventListener("beforeprint", () => {
+      for (const folded of document.querySelectorAll("main details:not([open])")) {
+        folded.open = true;
+        before.push(folded);
+      }
+      const shown = this.number;
+      const pictures = this.model.builds.slice(0, MOST_PRINTED).map((build, number) => {
+        if (number !== this.number) this.open(number);
+        return make("figure", {}, make("img", { src: this.stage.picture(), alt: build.id }), make("figcaption", {}, build.id));
+      });
+      if (this.number !== shown) this.open(shown);
+      element("printed").replaceChildren(...pictures);
+    });
+    window.addEventListener("afterprint", () => {
+      for (const folded of before.splice(0)) folded.open = false;
+      element("printed").replaceChildren();
+    });
   }
 
   #choices() {
@@ -278,8 +335,16 @@ class Viewer {
       const x = (2 * (event.clientX - frame.left)) / frame.width - 1;
       const y = 1 - (2 * (event.clientY - frame.top)) / frame.height;
       caster.setFromCamera(new THREE.Vector2(x, y), this.stage.camera);
-      this.select(this.#hit(caster));
+      const hit = this.#hit(caster);
+      if (this.measuring) this.#measureAt(hit, frame);
+      else this.select(hit ? hit.object.userData : null);
     });
+  }
+
+  #measureAt(hit, frame) {
+    if (!hit) return;
+    const lines = this.ruler.add(hit, frame);
+    this.#say(lines ? lines[0] : "Measure", lines ? lines.slice(1) : ["Click the second point."]);
   }
 
   #hit(caster) {
@@ -288,7 +353,7 @@ class Viewer {
     const cut = this.stage.renderer.clippingPlanes;
     const hits = caster.intersectObjects(visible, false)
       .filter(({ point }) => cut.every((plane) => plane.distanceToPoint(point) >= 0));
-    return hits.length ? hits[0].object.userData : null;
+    return hits[0] ?? null;
   }
 }
 

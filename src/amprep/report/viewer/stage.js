@@ -64,6 +64,19 @@ export class Stage {
     this.draw();
   }
 
+  // Moves the camera to a multiple of its distance.
+  zoom(factor) {
+    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    this.controls.update();
+    this.draw();
+  }
+
+  // What is shown, as the address of a picture.
+  picture() {
+    this.renderer.render(this.scene, this.camera);
+    return this.canvas.toDataURL("image/png");
+  }
+
   setClip(height) {
     this.clip.constant = height;
     this.renderer.clippingPlanes = Number.isFinite(height) ? [this.clip] : [];
