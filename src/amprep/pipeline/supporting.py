@@ -389,8 +389,7 @@ def _layout(
 
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
     """Return the figures of each support body of `build`."""
-    cells = job.cells
-    density = cells.density_g_cm3
+    cells, density = job.cells, job.cells.density_g_cm3
     densities = part_densities(job, build) if density is None else (density,) * len(build.parts)
     rules = RemovalRules(job.supports.layer_mm, densities, cells.powder_hole_mm, cells.removability)
     return measure_removal(build, rules)
@@ -398,5 +397,4 @@ def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
 
 def part_densities(job: Job, build: Build) -> tuple[float | None, ...]:
     """Return the density (g/cm3) of each part: that of its own material, or else that of the job's."""
-    materials = [placed.part.appearance.material for placed in build.parts]
-    return densities_of(materials, job.material, job.folder)
+    return densities_of([placed.part.appearance.material for placed in build.parts], job.material, job.folder)
