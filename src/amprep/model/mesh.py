@@ -46,6 +46,8 @@ class Mesh:
     @cached_property
     def signed_volume(self) -> float:
         """Enclosed volume, mm3; overlaps count repeatedly, and the volume is negative if the mesh is inside out."""
+        if not len(self.triangles):
+            return 0.0
         corners = self.vertices[self.triangles] - self.vertices[:1]
         return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0)
 
