@@ -93,7 +93,7 @@ def make_builds(
         End the support of builds early with the best result so far, and the run without a result.
     """
     with outputs:
-        supported = [support_build(build, clock, stops) for build in packed.builds]
+        supported = [support_build(build, clock, stops.routing, stops.building) for build in packed.builds]
         records = [
             finish_build(
                 each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stop

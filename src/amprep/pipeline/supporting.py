@@ -29,7 +29,7 @@ from amprep.pipeline.advice import advice_for
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import PlannedPass, TakenRegions, passes_of, plan_in_order, take_regions
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.stages import Clock, SupportStops
+from amprep.pipeline.stages import Clock
 from amprep.printers.catalogue import Printer
 from amprep.supports.effort import within_means
 from amprep.supports.grid.sizing import choose_pitch
@@ -126,9 +126,12 @@ class PlannedBuild(Summarised):
         )
 
 
-def support_build(build: PackedBuild, clock: Clock, stops: SupportStops) -> SupportedBuild:
-    """Return a build with supports for all of its overhangs; overhangs without support are listed with a reason."""
-    return emit_supports(plan_build(build, clock, stops.routing), clock, stops.building)
+def support_build(
+    build: PackedBuild, clock: Clock, stop: Stop, building: Stop | None = None
+) -> SupportedBuild:
+    """Plan and emit supports; what is not finished before the deadline of `building` is left out."""
+    building = Stop(cancelled=stop.cancelled) if building is None else building
+    return emit_supports(plan_build(build, clock, stop), clock, building)
 
 
 def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
@@ -175,11 +178,6 @@ def pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:
     rules = resolved.job.supports
     pitch = choose_pitch(parts, resolved.job.printer.space, rules)
     return pitch if rules.pitch_mm is not None else suitable_pitch(resolved.cell.emit, pitch, rules)
-
-
-def _wall_advice(resolved: ResolvedJob, pitch: float) -> Iterator[str]:
-    job = resolved.job
-    return wall_advice(job.cells.strategy, resolved.cell.emit, pitch, job.supports)
 
 
 def _part_of(progress: Progress, number: int, count: int) -> Progress:
@@ -231,11 +229,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         removal = removal_of(job, build)
     advice = [
         *advice_for(job, build, planned.pitch_mm),
-        *(
-            words
-            for each in planned.passes
-            for words in _wall_advice(resolved.for_rule(each.rules[0]), each.pitch_mm)
-        ),
+        *(words for each in planned.passes for words in _wall_advice(resolved.for_rule(each.rules[0]), each)),
     ]
     found, rules = taken.overhangs, frozenset(taken.used)
     return SupportedBuild(build, planned.layouts, found, tuple(dict.fromkeys(advice)), removal, rules)
@@ -385,6 +379,10 @@ def _layout(
         stop=stop.within(rules.time_limit_s),
         progress=progress,
     )
+
+
+def _wall_advice(resolved: ResolvedJob, own: PlannedPass) -> Iterator[str]:
+    return wall_advice(resolved.job.cells.strategy, resolved.cell.emit, own.pitch_mm, resolved.job.supports)
 
 
 def removal_of(job: Job, build: Build) -> tuple[Removal, ...]:
