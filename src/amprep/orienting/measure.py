@@ -68,6 +68,13 @@ def measure_orientation(part: Part, rotation: Floats, rules: SupportRules, lift:
     )
 
 
+def overhang_mesh(part: Part, rotation: Floats, rules: SupportRules, lift: float) -> Mesh:
+    """Return the faces of a part in an orientation that need support; parameters as of `measure_orientation`."""
+    own = overhangs_of(stood(part, rotation, lift), rules)
+    used, corners = np.unique(own.mesh.triangles[own.overhangs.faces], return_inverse=True)
+    return Mesh(own.mesh.vertices[used], corners.reshape(-1, 3))
+
+
 def touched_area(
     part: Part, rotation: Floats, rules: SupportRules, lift: float, names: Sequence[str]
 ) -> float:

@@ -7,6 +7,7 @@ from amprep import __version__
 from amprep.job.settings.packing import Effort
 from amprep.model import Progress, Stop
 from amprep.model.orientation import OrientationRules
+from amprep.pipeline.orienting.outputs import write_orientations
 from amprep.pipeline.orienting.proposals import oriented
 from amprep.pipeline.orienting.routed import routed_by
 from amprep.pipeline.reading import read_job, warnings_about
@@ -77,6 +78,9 @@ def orient_job(
         parts=tuple(parts),
         warnings=(*resolved.host.warnings, *warnings_about(loaded.parts)),
     )
+    if options.folder is not None:
+        with clock.stage("report") as progress:
+            record = write_orientations(record, job, options.folder, progress)
     return replace(record, stages=clock.times)
 
 

@@ -20,8 +20,9 @@ HEADINGS = (
     "height mm",
     "box cm³",
     "on plate mm²",
-    "tips over at °",
+    "tips at °",
 )
+"""Figures of each row, with their units."""
 
 
 def summary(record: OrientationRecord, folder: Path = Path()) -> "RenderableType":
@@ -51,8 +52,9 @@ def _table(each: OrientedPart) -> "Table":
     table = Table(box=box.SIMPLE_HEAD, padding=0)
     table.add_column("")
     for heading in HEADINGS:
-        table.add_column(heading, justify="right")
-    table.add_column("best by", overflow="fold")
+        words, _, unit = heading.rpartition(" ")
+        table.add_column(f"{words}\n{unit}", justify="right", no_wrap=True)
+    table.add_column("best by", overflow="fold", min_width=9)
     for name, proposal in rows(each):
         style = "dim" if name == "drawn" else ""
         table.add_row(name, *cells(proposal), Text(", ".join(proposal.merits)), style=style)

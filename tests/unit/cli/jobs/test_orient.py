@@ -72,3 +72,25 @@ def test_the_example_of_the_page_runs(table, monkeypatch):
 def test_wrong_arguments_are_refused(table, wrong):
     with pytest.raises(amprep.errors.JobError, match=next(iter(wrong))):
         amprep.orient(table, **wrong)
+
+
+def test_page_report_and_picture_show_every_orientation(table, tmp_path):
+    from PIL import Image
+
+    result = run(table, "-q", "--effort", "fast", "--printer", "Prusa MK4", "-o", tmp_path)
+    assert result.exit_code == 0, result.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        f"table.orient.{suffix}" for suffix in ("html", "json", "png")
+    ]
+    record = json.loads((tmp_path / "table.orient.json").read_text(encoding="utf-8"))
+    assert record["report_files"] == ["table.orient.html", "table.orient.json", "table.orient.png"]
+    count = len(record["parts"][0]["proposals"]) + 1
+    picture = np.asarray(Image.open(tmp_path / "table.orient.png"), float)
+    side = picture.shape[0]
+    assert picture.shape == (side, side * count, 3)
+    red = (picture[..., 0] > 1.4 * picture[..., 1]).reshape(side, count, side).sum(axis=(0, 2))
+    assert red[0] == 0, "upside down nothing needs support"
+    assert red[-1] > 100, "as drawn the top does"
+    page = (tmp_path / "table.orient.html").read_text(encoding="utf-8")
+    assert all(f'"table, {name}"' in page for name in ("1", "2", "drawn"))
+    assert page.count("data:image/png;base64,") == 1
