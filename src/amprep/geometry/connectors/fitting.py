@@ -1,10 +1,13 @@
 """Move the places of teeth and points so that whole tips are on the contact, or leave them out."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
+from amprep.geometry.meshes.shells import label_shells
+from amprep.geometry.meshes.topology import merge_equal_vertices
 from amprep.geometry.supports.footprints import box, union_of
 
 if TYPE_CHECKING:
@@ -29,8 +32,9 @@ _SPECK = 1e-5
 """Area (mm2) of a cell outside the contact that rounding leaves."""
 
 # Strategy. A tip that the border of the contact cuts leaves slivers, so tips are only where they are whole.
-# 1. Most cells are covered entirely by contact, and their tips are whole. Only the others are looked at.
-# 2. The centres of discs that fit into the contact are the contact shrunk by their radius. A tip moves to the nearest
+# 1. Most cells are covered entirely by one surface, and their tips are whole. Only the others are looked at. Surfaces
+#    with a wall between them are two contacts: a tip below both would end in a sliver beside the wall.
+# 2. The centres of discs that fit into a contact are the contact shrunk by their radius. A tip moves to the nearest
 #    of them in its cell; if there is none, the tip becomes as narrow as the least section, and at last may be partly in
 #    the next cell. Where none of that helps, the cell has no tip, unless it would be the only one of its column.
 # 3. Below the part a tip widens towards its root, as far as the contact reaches: then its column is whole, too.
@@ -85,12 +89,27 @@ def unfitted(spot: Floats, width: float) -> TipPlaces:
     return TipPlaces(spot, np.full(count, width), np.ones(count), every, every)
 
 
+def surfaces_of(contact: Floats) -> Int64s:
+    """Return the connected surface ``(t,)`` of each triangle that faces down; -1 for the others.
+
+    Walls between two surfaces are steep, and connect none.
+    """
+    label = np.full(len(contact), -1)
+    down = np.flatnonzero(_faces_down(contact))
+    if len(down):
+        corner = np.arange(3 * len(down)).reshape(-1, 3)
+        points, triangles = merge_equal_vertices(contact[down].reshape(-1, 3), corner)
+        label[down] = label_shells(triangles, len(points))[1]
+    return label
+
+
 def fit_tips(
     places: TipPlaces,
-    fraction: Floats,
+    whole: Bools,
     corners: tuple[Floats, Floats],
     column: Int64s,
     contact: Floats,
+    surface: Int64s,
     narrow: float,
 ) -> TipPlaces:
     """Return places at which tips are whole.
@@ -99,23 +118,25 @@ def fit_tips(
     ----------
     places
         Tips of one width at the spots where they are wanted.
-    fraction
-        ``(s,)`` fraction of each cell that the contact covers.
+    whole
+        ``(s,)`` whether one surface of the contact covers the cell entirely.
     corners
         Least and greatest corners ``(s, 2)`` mm of the cells.
     column
         ``(s,)`` column of each cell.
     contact
         ``(t, 3, 3)`` mm, triangles of the part inside the connectors; only faces that point down are used.
+    surface
+        ``(t,)`` result of `surfaces_of`.
     narrow
         Width (mm) of the narrowest tips.
     """
     spot, width, spread = places.spot.copy(), places.width.copy(), places.spread.copy()
     inside, kept = places.inside.copy(), places.kept.copy()
-    rows = np.flatnonzero(fraction < WHOLE)
+    rows = np.flatnonzero(~whole)
     if not len(rows):
         return places
-    cells, outline = _TipCells(*corners, column), _outline(contact)
+    cells, outlines = _TipCells(*corners, column), _outlines(contact, surface)
     wide = float(width[0])
     narrow = min(narrow, wide)
     kept[rows] = False
@@ -125,10 +146,10 @@ def fit_tips(
         (narrow, _MARGIN, False),
     ):
         left = rows[~kept[rows]]
-        found, nearest = _nearest(_centres(outline, size), spot[left], *cells.shrunk(left, margin))
+        found, nearest = _nearest(_centres(outlines, size), spot[left], *cells.shrunk(left, margin))
         own = left[found]
         spot[own], width[own], inside[own], kept[own] = nearest[found], size, within, True
-    _reach_into_columns(spot, width, inside, kept, cells, outline, narrow)
+    _reach_into_columns(spot, width, inside, kept, cells, outlines, narrow)
     spread[rows] = 0.0
     for fraction_of_root in _SPREADS:
         left = rows[kept[rows] & inside[rows] & (spread[rows] == 0.0)]
@@ -141,7 +162,7 @@ def fit_tips(
             fraction_of_root,
         )
         middle = (cells.lo[left] + cells.hi[left]) / 2.0
-        spread[left[_are_covered(outline, lo, hi, middle)]] = fraction_of_root
+        spread[left[_are_covered(outlines, lo, hi, middle)]] = fraction_of_root
     return TipPlaces(spot, width, spread, inside, kept)
 
 
@@ -154,20 +175,27 @@ def root_of(
     )
 
 
-def _outline(contact: Floats) -> "CrossSection":
-    """Return the contact in plan, without seams."""
+def _faces_down(contact: Floats) -> Bools:
+    one, other = contact[:, 1, :2] - contact[:, 0, :2], contact[:, 2, :2] - contact[:, 0, :2]
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0.0)
+
+
+def _outlines(contact: Floats, surface: Int64s) -> "list[CrossSection]":
+    """Return the surfaces of the contact in plan, without seams."""
     from manifold3d import CrossSection, FillRule, JoinType
 
-    plan = contact[:, :, :2]
-    one, other = plan[:, 1] - plan[:, 0], plan[:, 2] - plan[:, 0]
-    down = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0.0
-    region = CrossSection(list(np.ascontiguousarray(plan[down][:, ::-1])), FillRule.NonZero)
-    return region.offset(_SEAM, JoinType.Miter).offset(-_SEAM, JoinType.Miter)
+    order = np.argsort(surface, kind="stable")
+    order = order[surface[order] >= 0]
+    found = []
+    for own in np.split(order, np.flatnonzero(np.diff(surface[order])) + 1):
+        region = CrossSection(list(np.ascontiguousarray(contact[own, ::-1, :2])), FillRule.NonZero)
+        found.append(region.offset(_SEAM, JoinType.Miter).offset(-_SEAM, JoinType.Miter))
+    return found
 
 
-def _centres(outline: "CrossSection", size: float) -> "CrossSection":
-    """Return the centres of the discs of a diameter (mm) that fit into an outline."""
-    return outline.offset(-size / 2.0 - _MARGIN)
+def _centres(outlines: "Sequence[CrossSection]", size: float) -> "CrossSection":
+    """Return the centres of the discs of a diameter (mm) that fit into one of the outlines."""
+    return union_of([outline.offset(-size / 2.0 - _MARGIN) for outline in outlines])
 
 
 def _nearest(region: "CrossSection", spot: Floats, lo: Floats, hi: Floats) -> tuple[Bools, Floats]:
@@ -191,13 +219,19 @@ def _nearest(region: "CrossSection", spot: Floats, lo: Floats, hi: Floats) -> tu
     return found, nearest
 
 
-def _are_covered(outline: "CrossSection", lo: Floats, hi: Floats, middle: Floats) -> Bools:
-    """Tell which rectangles ``(k,)``, each in the cell around a middle ``(k, 2)`` mm, an outline covers."""
-    covered = np.ones(len(lo), np.bool_)
-    for piece in (_boxes(lo, hi) - outline).decompose():
-        if piece.area() > _SPECK:
-            covered[_sides(piece, middle)[2]] = False
-    return covered
+def _are_covered(outlines: "Sequence[CrossSection]", lo: Floats, hi: Floats, middle: Floats) -> Bools:
+    """Tell which rectangles ``(k,)``, each in the cell around a middle ``(k, 2)`` mm, one of the outlines covers."""
+    found = np.zeros(len(lo), np.bool_)
+    for outline in outlines:
+        left = np.flatnonzero(~found)
+        bounds = np.asarray(outline.bounds())
+        left = left[((lo[left] >= bounds[:2] - _SEAM) & (hi[left] <= bounds[2:] + _SEAM)).all(axis=1)]
+        covered = np.ones(len(left), np.bool_)
+        for piece in (_boxes(lo[left], hi[left]) - outline).decompose():
+            if piece.area() > _SPECK:
+                covered[_sides(piece, middle[left])[2]] = False
+        found[left] = covered
+    return found
 
 
 def _boxes(lo: Floats, hi: Floats) -> "CrossSection":
@@ -224,14 +258,14 @@ def _reach_into_columns(
     inside: Bools,
     kept: Bools,
     cells: _TipCells,
-    outline: "CrossSection",
+    outlines: "Sequence[CrossSection]",
     narrow: float,
 ) -> None:
     """Place one tip for each column without any: where it reaches into the column, or as it was wanted."""
     lost = np.setdiff1d(cells.column, cells.column[kept])
     if not len(lost):
         return
-    centres, reach = _centres(outline, narrow), 0.4 * narrow
+    centres, reach = _centres(outlines, narrow), 0.4 * narrow
     for column in lost.tolist():
         rows = np.flatnonzero(cells.column == column)
         lo, hi = cells.lo[rows].min(axis=0) - reach, cells.hi[rows].max(axis=0) + reach

@@ -6,7 +6,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.connectors.columns import ConnectorColumns, clip_to_columns
-from amprep.geometry.connectors.fitting import WHOLE, fit_tips, unfitted
+from amprep.geometry.connectors.fitting import WHOLE, fit_tips, surfaces_of, unfitted
 from amprep.kernels.meshes.patches import Patches
 
 _LEAST = 1e-3
@@ -43,6 +43,8 @@ class Sites(NamedTuple):
         ``(s,)`` fraction of the widening towards the whole cell that the root of the tip has.
     inside
         ``(s,)`` whether the tip is moved into its cell; otherwise its centre is exactly at the spot.
+    whole
+        ``(s,)`` whether contact covers the whole cell, and where tips are fitted, one surface of it.
     """
 
     column: Int64s
@@ -56,11 +58,7 @@ class Sites(NamedTuple):
     width: Floats
     spread: Floats
     inside: Bools
-
-    @property
-    def is_whole(self) -> Bools:
-        """Whether contact covers the whole cell, ``(s,)``."""
-        return np.asarray(self.fraction >= WHOLE)
+    whole: Bools
 
 
 def find_sites(
@@ -95,9 +93,11 @@ def find_sites(
     np.maximum.at(best, owner, area)
     chosen = np.flatnonzero((area > 0.0) & ((area >= _LEAST) | (area == best[owner])))
     tips = unfitted(_spots(patches, fine, cells, width)[chosen], width)
+    whole = area >= WHOLE
     if narrow is not None:
-        corners = fine.lo[chosen, :2], fine.hi[chosen, :2]
-        tips = fit_tips(tips, area[chosen], corners, owner[chosen], contact, narrow)
+        surface, corners = surfaces_of(contact), (fine.lo[chosen, :2], fine.hi[chosen, :2])
+        whole &= _have_one_surface(patches, surface, len(area))
+        tips = fit_tips(tips, whole[chosen], corners, owner[chosen], contact, surface, narrow)
         chosen, tips = chosen[tips.kept], tips.those_kept()
     lowest = _lowest_around(tips.spot, width, contact, fine, chosen, cells.lowest[chosen])
     # the part is no steeper than 45 degrees above a tip that is partly in the next cell
@@ -115,7 +115,17 @@ def find_sites(
         tips.width,
         tips.spread,
         tips.inside,
+        whole[chosen],
     )
+
+
+def _have_one_surface(patches: Patches, surface: Int64s, count: int) -> Bools:
+    """Tell in which of `count` cells all patches belong to one surface; `surface` ``(t,)`` of each triangle."""
+    cell, own = patches.owner[:, 0], surface[patches.owner[:, 1]]
+    least, greatest = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
+    np.minimum.at(least, cell, own)
+    np.maximum.at(greatest, cell, own)
+    return np.asarray(least >= greatest)
 
 
 def _subdivided(columns: ConnectorColumns, count: int) -> tuple[ConnectorColumns, Int64s, Int64s]:

@@ -71,7 +71,7 @@ def make_tips(
     if not len(sites.column):
         return Manifold()
     rings = _rings(sites, profile, level, base, overlap)
-    shoulder = np.where(sites.is_whole, level, np.minimum(plate, level))
+    shoulder = np.where(sites.whole, level, np.minimum(plate, level))
     has_stem = shoulder < level - _DIP
     stems = rings[has_stem]
     low = stems[:, :1].copy()

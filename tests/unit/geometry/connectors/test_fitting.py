@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from manifold3d import CrossSection
 from tests.shared.examples import examples
 
-from amprep.geometry.connectors.fitting import ROOT, fit_tips, root_of, unfitted
+from amprep.geometry.connectors.fitting import ROOT, WHOLE, fit_tips, root_of, surfaces_of, unfitted
 
 WIDE, NARROW, SIDE, COUNT = 0.5, 0.36, 0.8, 6
 
@@ -33,7 +33,9 @@ def fitted(contact, region):
     own = np.flatnonzero(area > 1e-3 * SIDE**2)
     column = own // (2 * COUNT) * COUNT + own % COUNT // 2
     wanted = unfitted((lo + hi)[own] / 2.0, WIDE)
-    return fit_tips(wanted, area[own] / SIDE**2, (lo[own], hi[own]), column, contact, NARROW), own, column
+    whole = area[own] >= WHOLE * SIDE**2
+    surface = surfaces_of(contact)
+    return fit_tips(wanted, whole, (lo[own], hi[own]), column, contact, surface, NARROW), own, column
 
 
 @given(st.tuples(st.floats(1.0, 4.0), st.floats(1.0, 4.0)), st.floats(0.45, 3.0), st.floats(0.0, 180.0))
@@ -84,3 +86,23 @@ def test_a_tip_between_two_columns_reaches_into_the_one_without_a_tip():
     for row in np.flatnonzero(tips.kept & above):
         assert tips.spot[row, 1] + tips.width[row] / 2.0 > 1.6
         assert tips.spot[row, 1] + tips.width[row] / 2.0 == pytest.approx(1.725 - 0.01, abs=0.02)
+
+
+def test_a_tip_between_two_surfaces_at_a_wall_is_below_one_of_them():
+    """The wall is at x = 2.1; cells are covered, but by two surfaces."""
+    low, left = band((0.1, 2.4), 4.8, 0.0)[0], 2.1
+    low[..., 0] = np.where(low[..., 0] > 0.0, left, -8.0)
+    high = low.copy()
+    high[..., 0] = np.where(low[..., 0] == left, 12.0, left)
+    high[..., 2] = 7.0
+    contact = np.concatenate([low, high])
+    lo, hi = corners()
+    own = np.arange(len(lo))
+    surface = surfaces_of(contact)
+    assert len(set(surface.tolist())) == 2
+    whole = (hi[:, 0] < left) | (lo[:, 0] > left)
+    tips = fit_tips(unfitted((lo + hi) / 2.0, WIDE), whole, (lo, hi), own, contact, surface, NARROW)
+    assert tips.kept.all()
+    away = np.abs(tips.spot[:, 0] - left)
+    assert (away >= tips.width / 2.0 - 1e-6).all()
+    assert (tips.width[~whole] < WIDE).all()

@@ -20,10 +20,8 @@ def sites(count=2, lowest=8.0, width=0.4):
     level = np.full(len(x), lowest)
     one = np.ones(len(x))
     column, square = np.zeros(len(x), np.int64), np.column_stack([y, x])
-    middle = lo + cell / 2
-    return Sites(
-        column, square, lo, lo + cell, middle, level, level, one, width * one, one, one.astype(np.bool_)
-    )
+    middle, every = lo + cell / 2, np.ones(len(x), np.bool_)
+    return Sites(column, square, lo, lo + cell, middle, level, level, one, width * one, one, every, every)
 
 
 def tips(profile, count=2, lowest=8.0):
