@@ -203,6 +203,12 @@ class BuildOptions(JobOptions):
             autocompletion=completion.materials,
         ),
     ] = None
+    labels: Annotated[
+        str | None,
+        job_option(
+            "--labels", metavar="FILE.csv", help="List of texts to engrave into copies of parts, or raise."
+        ),
+    ] = None
     router: Annotated[
         str | None,
         job_option("--router", help="Support router by name.", autocompletion=completion.routers),
@@ -249,6 +255,7 @@ class BuildOptions(JobOptions):
             "printer": self.printer,
             "material": self.material,
             "supports.strategy": self.router,
+            "labels": self.labels,
             **super().changes,
             "seed": self.seed,
             "supports.write_as": self.supports_as,

@@ -33,6 +33,7 @@ KEYS = (
     "seed",
     "target",
     "inputs",
+    "labels",
     "reading",
     "packing",
     "supports",
@@ -142,6 +143,7 @@ def make_job(table: Mapping[str, Any], *, name: str, folder: Path | None, source
     return Job(
         name=_stated_name(table, source) or name,
         inputs=_inputs(table, parts, folder, source),
+        labels=_labels(table, folder, source),
         printer=printer,
         folder=folder,
         material=material,
@@ -208,6 +210,17 @@ def _cell_file(cell: str, folder: Path | None, where: str) -> str:
     if not path.is_file():
         raise JobError(f"{where}: no file at {path}")
     return str(path.resolve())
+
+
+def _labels(table: Mapping[str, Any], folder: Path | None, source: str) -> Path | None:
+    """Return the path of the list of labels; None without one."""
+    if "labels" not in table:
+        return None
+    name: str = convert(table["labels"], str, f"{source}: labels")
+    path = (folder or Path()) / name
+    if "\0" in name or not path.is_file():
+        raise JobError(f"{source}: labels: no file at {str(path)!r}")
+    return path
 
 
 def _rules(

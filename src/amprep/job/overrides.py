@@ -18,7 +18,7 @@ _PARAMS_OF = {
     "supports.strategy": "supports.params",
     "cells.strategy": "cells.params",
 }
-_NAME_OR_FILE = ("printer", "material", "cells.strategy")
+_NAME_OR_FILE = ("printer", "material", "cells.strategy", "labels")
 
 
 def apply_sets(job: Job, sets: Sequence[str]) -> Job:

@@ -16,6 +16,7 @@ from amprep.model.control import Progress, silent
 from amprep.model.mesh import Mesh
 from amprep.model.part import Appearance, Part, Region, RegionKind
 from amprep.model.summary import Summarised
+from amprep.pipeline.labelling.apply import labelled
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.unit_question import with_unit_question
@@ -263,7 +264,8 @@ def read_job(
         parts += [repair_part(part, allow_surface=allow_surface) for part in more]
         parts = [with_unit_question(part, job) for part in parts]
         parts = apply_part_settings(with_unique_names(parts), job)
-        return LoadedParts(resolved, tuple(with_region_files(parts, job, resolved.read)))
+        parts = with_unique_names(labelled(with_region_files(parts, job, resolved.read), job.labels))
+        return LoadedParts(resolved, tuple(parts))
 
 
 def with_region_files(parts: Sequence[Part], job: Job, read: Read) -> list[Part]:

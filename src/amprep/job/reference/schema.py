@@ -31,6 +31,7 @@ _SCALARS = {bool: "boolean", int: "integer", float: "number", str: "string"}
 _TOP: Mapping[str, Any] = {
     "name": {"type": "string"},
     "inputs": {"type": "array", "items": {"type": "string"}},
+    "labels": {"type": "string"},
     "printer": {"anyOf": [{"type": "string"}, {"type": "object"}]},
     "material": {"type": "string"},
     "seed": {"type": "integer", "minimum": 0},

@@ -75,6 +75,8 @@ class Job:
         output files are named after it.
     folder
         Folder of the job file, where relative paths start; None without a job file.
+    labels
+        The list of labels (.csv); None for none.
     table
         The keys as given, from which `amprep.job.override` and `apply_sets` make a new job.
     """
@@ -92,6 +94,7 @@ class Job:
     cells: CellSettings = field(default_factory=CellSettings)
     parts: tuple[PartSettings, ...] = ()
     rules: tuple[RuleSettings, ...] = ()
+    labels: Path | None = None
     source: str = "job"
     table: Mapping[str, Any] = field(default_factory=dict)
 

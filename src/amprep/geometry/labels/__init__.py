@@ -1,0 +1,1 @@
+"""Text as solids on flat faces of meshes."""

@@ -1,0 +1,1 @@
+"""Labels on the parts of a job."""
