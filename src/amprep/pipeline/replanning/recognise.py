@@ -7,13 +7,14 @@ rigid motion that takes its triangles to those in the file, a support by being w
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import count
+from typing import NamedTuple
 
 import numpy as np
 
 from amprep.arrays import CONTACT_TOLERANCE, Floats
 from amprep.checks.printed.found import PrintedBody
 from amprep.errors import InputError
-from amprep.geometry.motions.rigid import angle_deg, displacement, find_motion, largest_distance
+from amprep.geometry.motions.rigid import angle_deg, displacement, find_motion
 from amprep.model import Build, Mesh, Part, PlacedPart, SupportBody
 from amprep.pipeline.reading import repair_part
 from amprep.pipeline.replanning.records import EditedBuild, EditedPart
@@ -24,6 +25,40 @@ _SUPPORT_KINDS = ("support", "open support")
 _PART_KINDS = ("model", "surface")
 _NAMES_OF_SUPPORTS = ("supports of ", "walls of ")
 _LEAST_ANGLE_DEG = 0.01
+_EVERY = 64
+"""Of so many triangles one is compared before all are."""
+
+
+class _BodyCorners(NamedTuple):
+    """The corners of a body, in their order.
+
+    Attributes
+    ----------
+    mesh
+        Its triangles.
+    ends
+        ``(m, 2, 3)`` mm, ends of its beams; None if it has none.
+    """
+
+    mesh: Mesh
+    ends: Floats | None = None
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """Numbers of triangles and beams."""
+        return len(self.mesh.triangles), 0 if self.ends is None else len(self.ends)
+
+    def points(self, every: int = 1) -> Floats:
+        """Return the corners ``(n, 3)`` mm, of every so many triangles and beams."""
+        corners = self.mesh.vertices[self.mesh.triangles[::every]].reshape(-1, 3)
+        return corners if self.ends is None else np.concatenate([corners, self.ends[::every].reshape(-1, 3)])
+
+    def is_at(self, other: "_BodyCorners") -> bool:
+        """Tell whether all corners are where those of another shape with as many triangles and beams are."""
+        for every in (_EVERY, 1):
+            if np.abs(self.points(every) - other.points(every)).max(initial=0.0) > CONTACT_TOLERANCE:
+                return False
+        return True
 
 
 class _Bodies:
@@ -32,24 +67,24 @@ class _Bodies:
     def __init__(self, bodies: Sequence[PrintedBody]) -> None:
         self.all = bodies
         self.free = [each.kind in _PART_KINDS + _SUPPORT_KINDS for each in bodies]
-        self._points = [
-            _points(each.mesh, None if each.beams is None else each.beams.ends) for each in bodies
+        self._shapes = [
+            _BodyCorners(each.mesh, None if each.beams is None else each.beams.ends) for each in bodies
         ]
 
-    def like(self, points: Floats) -> Iterator[int]:
-        """Yield the free bodies with as many corners as a part or support has."""
-        for number, own in enumerate(self._points):
-            if self.free[number] and len(own) == len(points) > 0:
+    def like(self, shape: _BodyCorners) -> Iterator[int]:
+        """Yield the free bodies with as many triangles and beams as a part or support has."""
+        for number, own in enumerate(self._shapes):
+            if self.free[number] and own.sizes == shape.sizes and any(own.sizes):
                 yield number
 
-    def motion_of(self, number: int, points: Floats) -> Floats | None:
-        """Return the motion that takes corners to those of a body."""
-        return find_motion(points, self._points[number])
+    def motion_of(self, number: int, shape: _BodyCorners) -> Floats | None:
+        """Return the motion that takes the corners of a shape to those of a body."""
+        return find_motion(shape.points(), self._shapes[number].points())
 
-    def take_at(self, points: Floats) -> bool:
-        """Take the body that is at corners; return whether there is one."""
-        for number in self.like(points):
-            if largest_distance(np.eye(4), points, self._points[number]) <= CONTACT_TOLERANCE:
+    def take_at(self, shape: _BodyCorners) -> bool:
+        """Take the body that is where a shape is; return whether there is one."""
+        for number in self.like(shape):
+            if self._shapes[number].is_at(shape):
                 self.free[number] = False
                 return True
         return False
@@ -90,19 +125,13 @@ def _is_support(body: PrintedBody) -> bool:
     return body.kind in _SUPPORT_KINDS or body.name.startswith(_NAMES_OF_SUPPORTS)
 
 
-def _points(mesh: Mesh, ends: Floats | None = None) -> Floats:
-    """Return the corners ``(n, 3)`` of triangles, and of beams if there are any, in their order."""
-    corners = mesh.vertices[mesh.triangles].reshape(-1, 3)
-    return corners if ends is None else np.concatenate([corners, ends.reshape(-1, 3)])
-
-
 def _recognised(own: _Bodies, original: Build, places_known: bool) -> list[EditedPart]:
     """Return the parts of the original that are in the file, in the order of the original, then their copies."""
     matches: list[tuple[float, int, int, Floats]] = []
     for part in dict.fromkeys(each.part for each in original.parts):
-        points = _points(part.mesh)
-        for number in own.like(points):
-            if not _is_support(own.all[number]) and (matrix := own.motion_of(number, points)) is not None:
+        shape = _BodyCorners(part.mesh)
+        for number in own.like(shape):
+            if not _is_support(own.all[number]) and (matrix := own.motion_of(number, shape)) is not None:
                 matches += [
                     (_badness(own.all[number], each, matrix), number, index, matrix)
                     for index, each in enumerate(original.parts)
@@ -194,7 +223,7 @@ def _supports(
         for index, body in enumerate(original.supports):
             if tuple(held) == body.parts and _is_intact(body):
                 moved = _moved(body, motion, tuple(held.values()), found)
-                if own.take_at(_points(*_shape(moved))):
+                if own.take_at(_shape(moved)):
                     supports.append(moved)
                     sources.append(index)
     return tuple(supports), tuple(sources)
@@ -219,10 +248,14 @@ def _is_intact(body: SupportBody) -> bool:
     return stored is None or stored.recorded_digest in ("", stored.digest)
 
 
-def _shape(body: SupportBody) -> tuple[Mesh, Floats | None]:
-    """Return the mesh and the ends of the beams by which a support is recognised."""
+def _shape(body: SupportBody) -> _BodyCorners:
+    """Return the shape by which a support is recognised."""
     lattice = body.lattice
-    return (body.mesh, None) if lattice is None else (lattice.solids, lattice.nodes[lattice.struts])
+    return (
+        _BodyCorners(body.mesh)
+        if lattice is None
+        else _BodyCorners(lattice.solids, lattice.nodes[lattice.struts])
+    )
 
 
 def _moved(
