@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from amprep import cli
+from amprep import cli, workers
+from amprep.cli.options import Workers
 
 if TYPE_CHECKING:
     from amprep.pipeline.verifying.build import Verification
@@ -51,6 +52,7 @@ def verify(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells the result.")
     ] = False,
+    count: Workers = None,
     debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
     """Verify builds from their files, and against what was ordered.
@@ -69,10 +71,13 @@ def verify(
     """
     from amprep import api
 
-    results = {
-        file: api.verify(file, job=job, printer=printer, report=report, key=key, removability=removability)
-        for file in files
-    }
+    with workers.allowed(count or workers.available()):
+        results = {
+            file: api.verify(
+                file, job=job, printer=printer, report=report, key=key, removability=removability
+            )
+            for file in files
+        }
     if as_json:
         records = [_json(file, result) for file, result in results.items()]
         typer.echo(json.dumps(records[0] if len(records) == 1 else records, indent=2))

@@ -1,7 +1,8 @@
 """Judge a build against every promise, whether it was just made or read from a file."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from amprep.checks.listed import free_below
 from amprep.checks.neighbours import apart, islands
@@ -21,6 +22,7 @@ from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, Unsupported, silent
 from amprep.pipeline.verifying.extents import extents_of, removal_extents
 from amprep.pipeline.verifying.nearby import nearby
+from amprep.workers import share_out
 
 PROMISES = (
     as_recorded.PROMISE,
@@ -109,34 +111,72 @@ def verify_build(
     progress
         Called before each group of judges.
     """
-    chosen = build if only is None else nearby(build, only)
-    listed = build if only is None else replace(build, unsupported=_listed_of(build, only))
     stop = stop or Stop()
-    solids = KnownSolids()
-    progress(0.0, "parts")
-    found, pairs = judge_placed(build.parts, build.settings, stop)
-    found += unchanged.check_unchanged(build)
-    judges: tuple[tuple[str, Callable[[], list[Violation]]], ...] = (
-        ("supports", lambda: [*check_bodies(chosen, stop, solids), *check_xy_distance(chosen, stop)]),
-        (
-            "neighbours",
-            lambda: [*check_islands(chosen, stop, solids), *apart.check_apart(build, stop, solids)],
+    judges = _judges(build, only, stop, removability=removability)
+    judged = share_out(
+        lambda number: judges[number].judge(),
+        [each.work for each in judges],
+        is_cancelled=stop.cancelled.is_set,
+        done=lambda count: progress(
+            count / (len(judges) + 1), f"{count} of {len(judges)} groups of promises judged"
         ),
-        ("coverage", lambda: [*check_coverage(chosen), *free_below.check_listed(listed)]),
     )
-    if removability:
-        judges += (
-            ("removal", lambda: [*powder.check_powder(chosen, stop), *access.check_access(chosen, stop)]),
-        )
-    for index, (name, judge) in enumerate(judges, start=1):
-        progress(index / (len(judges) + 2), name)
-        found += judge()
-    progress(1.0 - 1.0 / (len(judges) + 2), "limits")
-    judged = limits.check_limits(chosen, stop, solids)
     seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
-    extent = extents_of(build, pairs, printed) | judged.extent | removal_extents(removability)
-    return Verification((*seen, *found, *judged.violations), pairs, extent)
+    found = [violation for each in judged for violation in each.violations]
+    pairs = sum((each.pairs for each in judged), PairCounts())
+    own = {promise: words for each in judged for promise, words in (each.extent or {}).items()}
+    extent = extents_of(build, pairs, printed) | own | removal_extents(removability)
+    return Verification((*seen, *found), pairs, extent)
+
+
+class _Judged(NamedTuple):
+    """What a judge found, how many pairs it judged, and to what extent it judged promises."""
+
+    violations: list[Violation]
+    pairs: PairCounts = PairCounts()
+    extent: Mapping[str, str] | None = None
+
+
+class _Judge(NamedTuple):
+    """A judge, which needs no other one, and its estimated work in triangles."""
+
+    work: float
+    judge: Callable[[], _Judged]
+
+
+def _judges(build: Build, only: Collection[int] | None, stop: Stop, *, removability: bool) -> list[_Judge]:
+    """Return the judges of a build in the order in which what they find is told; for `only`, see `verify_build`."""
+    chosen = build if only is None else nearby(build, only)
+    listed = build if only is None else replace(build, unsupported=_listed_of(build, only))
+    solids = KnownSolids()
+    parts = float(sum(len(each.mesh.triangles) for each in build.parts))
+    supports = float(sum(len(each.mesh.triangles) for each in chosen.supports))
+
+    def placed() -> _Judged:
+        found, pairs = judge_placed(build.parts, build.settings, stop)
+        return _Judged(found + unchanged.check_unchanged(build), pairs)
+
+    def bodies() -> _Judged:
+        return _Judged([*check_bodies(chosen, stop, solids), *check_xy_distance(chosen, stop)])
+
+    def neighbours() -> _Judged:
+        return _Judged([*check_islands(chosen, stop, solids), *apart.check_apart(build, stop, solids)])
+
+    def covered() -> _Judged:
+        return _Judged([*check_coverage(chosen), *free_below.check_listed(listed)])
+
+    def removal() -> _Judged:
+        return _Judged([*powder.check_powder(chosen, stop), *access.check_access(chosen, stop)])
+
+    def limited() -> _Judged:
+        found = limits.check_limits(chosen, stop, solids)
+        return _Judged(found.violations, extent=found.extent)
+
+    judges = [_Judge(parts, placed), _Judge(2.0 * supports + parts, bodies), _Judge(supports, neighbours)]
+    judges += [_Judge(supports + parts, covered)]
+    judges += [_Judge(8.0 * supports, removal)] if removability else []
+    return [*judges, _Judge(4.0 * supports, limited)]
 
 
 def _listed_of(build: Build, parts: Collection[int]) -> tuple[Unsupported, ...]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from tests.shared.supported import box, build_of, table
 
+from amprep import workers
 from amprep.checks.supports.limits import NOT_JUDGED, PROMISES
 from amprep.model.supports.sizes import SupportSizes
 from amprep.pipeline.verifying.build import PROMISES as ALL_PROMISES
@@ -68,3 +69,17 @@ def test_removability_is_judged_when_it_is_asked_for(tmp_path):
     (powder,) = (each for each in found.violations if each.promise == "powder can leave")
     assert "1 pocket" in powder.message
     assert "0.2 mm" in found.extent["powder can leave"]
+
+
+def test_two_processes_judge_as_one_does(monkeypatch):
+    monkeypatch.setattr(workers, "_WORTH_IT", 0.0)
+    build = build_of([table(10), table(10, corner=(8, 0))], [box((0.05, 0.05, 10.05), (2, 5, 0))])
+    alone = verify_build(build)
+    with workers.allowed(2):
+        together = verify_build(build)
+    assert {each.promise for each in alone.violations} > {"no intersection"}
+    assert (together.violations, together.pairs, together.extent) == (
+        alone.violations,
+        alone.pairs,
+        alone.extent,
+    )
