@@ -73,7 +73,7 @@ def measure_overhangs(placed: PlacedPart, rules: SupportRules) -> OverhangFigure
     carried = _face_area(found.mesh, found.overhangs.beside)
     carried += sum(region.measure for region in held if region.feature == "face")
     down, on_plate = _downward(found.mesh, rules.plate_mm if rules.has_limits else CONTACT_TOLERANCE)
-    without, enforced = (_with_regions(placed, rules, kinds) for kinds in ((), ("enforcer",)))
+    without, enforced = (_with_regions(placed, rules, kinds, faces) for kinds in ((), ("enforcer",)))
     return OverhangFigures(
         angle_deg=rules.overhang_angle_deg if own is None else own,
         faces_mm2=faces,
@@ -100,9 +100,11 @@ def _face_area(mesh: Mesh, faces: Int32s) -> float:
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-def _with_regions(placed: PlacedPart, rules: SupportRules, kinds: tuple[str, ...]) -> float:
-    """Return the area that needs support if only regions of these kinds exist."""
+def _with_regions(placed: PlacedPart, rules: SupportRules, kinds: tuple[str, ...], faces: float) -> float:
+    """Return the area that needs support if only regions of these kinds exist; it is `faces` with all regions."""
     chosen = tuple(region for region in placed.part.regions if region.kind in kinds)
+    if len(chosen) == len(placed.part.regions):
+        return faces
     return _area(overhangs_of(replace(placed, part=replace(placed.part, regions=chosen)), rules))
 
 

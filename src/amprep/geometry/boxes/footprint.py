@@ -4,18 +4,38 @@ import numpy as np
 
 from amprep.arrays import Floats
 
+_MANY, _DIRECTIONS = 1000, 32
+"""Number of points from which those inside are left out first, and the directions that tell them."""
+
 
 def convex_outline(points: Floats) -> Floats:
     """Return the corners of the convex hull of points ``(n, 2)``, counter-clockwise (Andrew 1979).
 
-    Andrew's monotone chain, DOI 10.1016/0020-0190(79)90072-3. Points on its sides are no corners.
+    Andrew's monotone chain, DOI 10.1016/0020-0190(79)90072-3. Points on its sides are no corners. Of many points, those
+    within the polygon of the farthest ones in some directions are left out first (Akl and Toussaint 1978, DOI
+    10.1016/0020-0190(78)90003-0).
     """
-    ordered = np.unique(points, axis=0)
+    ordered = np.unique(points if len(points) < _MANY else _outer_points(points), axis=0)
     if len(ordered) < 3:
         return ordered
     rows = [(x, y) for x, y in ordered.tolist()]
     lower, upper = _chain(rows), _chain(rows[::-1])
     return np.array(lower[:-1] + upper[:-1])
+
+
+def _outer_points(points: Floats) -> Floats:
+    """Return the points ``(n, 2)`` without those clearly inside the polygon of the farthest ones in some directions."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS, endpoint=False)
+    corners = points[
+        [int((points @ way).argmax()) for way in np.column_stack([np.cos(angles), np.sin(angles)])]
+    ]
+    sides = np.roll(corners, -1, axis=0) - corners
+    outer = np.zeros(len(points), np.bool_)
+    tolerance = 1e-9 * float(np.ptp(points, axis=0).max()) ** 2
+    for (x, y), (dx, dy) in zip(corners.tolist(), sides.tolist(), strict=True):
+        if dx or dy:
+            outer |= dx * (points[:, 1] - y) - dy * (points[:, 0] - x) <= tolerance
+    return points[outer] if outer.any() else points
 
 
 def _chain(rows: list[tuple[float, float]]) -> list[tuple[float, float]]:

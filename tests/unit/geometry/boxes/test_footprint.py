@@ -65,3 +65,22 @@ def test_a_flush_angle_turns_its_side_parallel_to_x_longest_first():
     longest = turn @ (outline[0] - outline[2])
     assert longest[1] == pytest.approx(0.0, abs=1e-12)
     assert longest[0] == pytest.approx(np.hypot(1, 7))
+
+
+@pytest.mark.parametrize("shape", ["disc", "square", "line", "point"])
+def test_of_many_points_the_outline_is_the_same_as_of_the_hull(shape):
+    rng = np.random.default_rng(5)
+    points = rng.normal(size=(3000, 2))
+    if shape == "square":
+        points = np.round(rng.uniform(0, 50, (3000, 2)))
+    elif shape != "disc":
+        points = np.outer(rng.integers(0, 9, 3000) * (shape == "line"), [2.0, 3.0])
+    outline = convex_outline(points)
+    assert {tuple(each) for each in outline.tolist()} == {tuple(each) for each in hull_of(points)}
+
+
+def hull_of(points):
+    """The corners by Qhull; the ends of points on a line."""
+    if np.linalg.matrix_rank(points - points[0]) < 2:
+        return [points.min(axis=0).tolist(), points.max(axis=0).tolist()]
+    return points[ConvexHull(points).vertices].tolist()
