@@ -11,7 +11,7 @@ from amprep.model import Part, PlacedPart, Stop
 from amprep.orienting.measure import stood
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.stages import Clock, ProgressWatcher, SupportStops
+from amprep.pipeline.stages import Clock, ProgressWatcher
 from amprep.pipeline.supporting import pitch_of, support_build
 
 
@@ -37,7 +37,7 @@ def routed_by(resolved: ResolvedJob, stop: Stop) -> Callable[[Part, Floats], tup
         supports = replace(resolved.job.supports, enabled=True, pitch_mm=pitches[id(part)])
         own = replace(resolved, job=replace(resolved.job, supports=supports))
         build = PackedBuild(own, 1, part.name, (_in_the_middle(own, part, rotation),))
-        built = support_build(build, Clock(ProgressWatcher()), SupportStops(stop, stop)).build
+        built = support_build(build, Clock(ProgressWatcher()), stop).build
         return support_volume(built), sum(not each.minor for each in built.unsupported)
 
     return routed

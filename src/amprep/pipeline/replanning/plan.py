@@ -10,7 +10,7 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.replanning.keep import Kept
 from amprep.pipeline.replanning.records import EditedBuild
 from amprep.pipeline.resolve import ResolvedJob
-from amprep.pipeline.stages import Clock, SupportStops
+from amprep.pipeline.stages import Clock
 from amprep.pipeline.supporting import support_build
 from amprep.pipeline.verifying.nearby import are_near, as_obstacle, boxes_in_plan, distance_that_matters
 
@@ -46,7 +46,7 @@ def plan_again(
     supports, listed = list(kept.supports), _listed(edited, kept, original)
     if kept.reasons:
         again, numbers = _part_of_build(parts, kept, original, resolved, name)
-        made = support_build(again, clock, SupportStops(stop, stop)).build
+        made = support_build(again, clock, stop).build
         supports += [_numbered(body, numbers, made, original) for body in made.supports]
         listed += [replace(region, part=numbers[region.part]) for region in made.unsupported]
     return Build(
