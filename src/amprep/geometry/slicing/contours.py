@@ -49,20 +49,24 @@ class PlaneContours:
 class SlicedMesh:
     """A mesh whose triangles know their neighbours, so that it can be cut again and again.
 
-    Equal vertices are merged. Where bodies touch along an edge only, four triangles share it; those that bound one body
+    Where bodies touch along an edge only, four triangles share it; those that bound one body
     are neighbours, so the contours of the bodies are apart.
 
     Parameters
     ----------
     vertices, triangles
         The mesh, ``(n, 3)`` mm, finite, and ``(m, 3)``, outward oriented. Contours end at open edges.
+    merge
+        Whether equal vertices are merged first.
     """
 
-    def __init__(self, vertices: Floats, triangles: Ints) -> None:
+    def __init__(self, vertices: Floats, triangles: Ints, *, merge: bool = True) -> None:
         from amprep.kernels.slicing.contours import LinkedTriangles
         from amprep.kernels.slicing.edges import order_edges, pair_edges
 
-        points, corners = merge_equal_vertices(vertices, np.asarray(triangles, np.int64))
+        points, corners = vertices, np.asarray(triangles, np.int64)
+        if merge:
+            points, corners = merge_equal_vertices(points, corners)
         points, corners = np.ascontiguousarray(points), np.ascontiguousarray(corners)
         order, twin = np.empty(corners.size, np.int64), np.empty(corners.size, np.int64)
         order_edges(corners, np.empty(len(points) + 1, np.int64), twin, order)
@@ -74,7 +78,7 @@ class SlicedMesh:
         """Cut the mesh by planes at ascending heights, ``(k,)`` mm. A vertex at a plane counts as above it."""
         from amprep.kernels.slicing.contours import LevelRows, TracedContours, trace_contours
 
-        level, low, high = self._levels(heights)
+        level, low, high = self.levels(heights)
         count = high - low
         size = int(count.sum())
         plane, triangle = np.empty(size, np.int64), np.empty(size, np.int64)
@@ -103,7 +107,7 @@ class SlicedMesh:
         from amprep.kernels.slicing.contours import LevelRows, join_slabs
 
         slabs = len(contours.heights) - 1
-        level, low, high = self._levels(contours.heights)
+        level, low, high = self.levels(contours.heights)
         first = np.maximum(low, 0)
         count = np.maximum(np.minimum(high, slabs - 1) - first + 1, 0)
         rows = LevelRows(first, np.cumsum(count) - count)
@@ -115,7 +119,7 @@ class SlicedMesh:
             found[has] = piece[rows.start[triangle] + contours.plane[has] + step - first[triangle]]
         return below, above
 
-    def _levels(self, heights: Floats) -> tuple[Int64s, Int64s, Int64s]:
+    def levels(self, heights: Floats) -> tuple[Int64s, Int64s, Int64s]:
         """Return the highest plane at or below each vertex, and the lowest and highest of them for each triangle."""
         level = np.searchsorted(heights, self.linked.points[:, 2], side="right") - 1
         corners = level[self.linked.triangles]

@@ -159,3 +159,36 @@ def join_slabs(mesh: LinkedTriangles, level: Int64s, slabs: int, rows: LevelRows
             parent[max(a, b)] = min(a, b)
     for row in range(len(parent)):
         parent[row] = root_of(parent, row)
+
+
+@kernel
+def join_corners(
+    triangles: Int64s, level: Int64s, rows: LevelRows, parent: Int64s, corner_row: Int64s
+) -> None:
+    """Connect the rows of triangles that share a corner in a slab, too.
+
+    Parameters
+    ----------
+    triangles
+        ``(m, 3)``.
+    level, rows
+        See `join_slabs`; here each triangle meets the slabs of all its corners.
+    parent
+        ``(r,)`` root of each row, modified in place.
+    corner_row
+        ``(v,)`` of -1; then the root of the rows at each vertex, -1 for vertices of no triangle.
+    """
+    for t in range(len(triangles)):
+        for corner in range(3):
+            vertex = triangles[t, corner]
+            row = rows.start[t] + level[vertex] - rows.first[t]
+            if corner_row[vertex] < 0:
+                corner_row[vertex] = row
+            else:
+                a, b = root_of(parent, row), root_of(parent, corner_row[vertex])
+                parent[max(a, b)] = min(a, b)
+    for row in range(len(parent)):
+        parent[row] = root_of(parent, row)
+    for vertex in range(len(corner_row)):
+        if corner_row[vertex] >= 0:
+            corner_row[vertex] = parent[corner_row[vertex]]

@@ -86,7 +86,7 @@ def _write_readable(path: Path, document: Document, skeleton: Skeleton) -> None:
     others = [(name, len(data), [data]) for name, data in skeleton.others.items()]
     for padding in _PADDINGS:
         model = (MODEL_NAME, size, _model_text(document, skeleton, padding))
-        write_package(path, [*others, model], repetitive=any(each.beams for each in document.objects))
+        write_package(path, [*others, model])
         if b"&" not in skeleton.model or is_readable(path):
             return
     raise AmprepError(
