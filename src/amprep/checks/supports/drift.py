@@ -119,8 +119,10 @@ def _samples(body: SupportBody) -> Floats:
     """Return the highest points in each square of the plan, of the vertices and of points along edges."""
     vertices, corners = body.mesh.vertices, body.mesh.triangles
     start, end = corners.ravel(), corners[:, [1, 2, 0]].ravel()
-    way = np.abs(vertices[start] - vertices[end]).sum(axis=1)
-    long = np.flatnonzero((start < end) & (way > _SPACING))
+    once = start < end
+    start, end = start[once], end[once]
+    way = sum(np.abs(axis[start] - axis[end]) for axis in np.ascontiguousarray(vertices.T))
+    long = np.flatnonzero(way > _SPACING)
     along, _ = sample_segments(vertices[start[long]], vertices[end[long]], _SPACING)
     points = np.concatenate([vertices, along])
     return points[_highest(points)]

@@ -46,8 +46,12 @@ def read_metadata(package: bytes) -> BuildMetadata:
 
 def without_meshes(text: bytes) -> bytes:
     """Return the model without its meshes, which are nearly all of its text."""
-    head, *rest = text.split(b"<mesh>")
-    return head + b"".join(each.partition(b"</mesh>")[2] for each in rest)
+    kept, at = [], 0
+    while (begin := text.find(b"<mesh>", at)) >= 0:
+        kept.append(text[at:begin])
+        end = text.find(b"</mesh>", begin)
+        at = end + len(b"</mesh>") if end >= 0 else len(text)
+    return b"".join([*kept, text[at:]])
 
 
 def _own_entries(scope: "_Element", metadata: Iterable["_Element"]) -> dict[str, str]:
