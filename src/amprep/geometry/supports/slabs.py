@@ -75,11 +75,11 @@ def pieces_of_slabs(vertices: Floats, triangles: Ints, first: float, thickness: 
     number = np.append(np.cumsum(root == np.arange(len(root))) - 1, -1)  # -1 for vertices of no triangle
     contours = sliced.contours(heights)
     row = (rows.start - low)[contours.triangle] + contours.plane
-    surface = _Surface(number[root[row - 1]], number[root[row]], number[corner])
+    surface = _ConnectedSurface(number[root[row - 1]], number[root[row]], number[corner])
     return _measured(vertices, level, contours, surface, first, thickness)
 
 
-class _Surface(NamedTuple):
+class _ConnectedSurface(NamedTuple):
     """Number of the connected surface below and above each contour, and of that at each vertex, -1 for none."""
 
     below: Int64s
@@ -91,7 +91,7 @@ def _measured(
     vertices: Floats,
     slab: Int64s,
     contours: PlaneContours,
-    surface: _Surface,
+    surface: _ConnectedSurface,
     first: float,
     thickness: float,
 ) -> SlabPieces:
