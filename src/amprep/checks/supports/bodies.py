@@ -53,6 +53,8 @@ def check_bodies(build: Build, stop: Stop, solids: KnownSolids | None = None) ->
     """
     found: list[Violation] = []
     solids = solids or KnownSolids()
+    boxes = [placed.mesh.bounds for placed in build.parts]
+    low, high = (np.array([box[side] for box in boxes]).reshape(-1, 3) for side in (0, 1))
     for support in build.supports:
         beside = None if support.lattice is None else support.lattice.solids
         body = JudgedBody(support if beside is None else replace(support, mesh=beside), solids)
@@ -61,10 +63,10 @@ def check_bodies(build: Build, stop: Stop, solids: KnownSolids | None = None) ->
         if faults:
             continue
         found += [*_inside(body, build.settings.space), *_standing(body, build)]
-        for index, placed in enumerate(build.parts):
+        for index in np.flatnonzero(_may_enter(body, low, high)).tolist():
             if stop.cancelled.is_set():
                 return found
-            found += _penetration(body, placed, build.settings, holds=index in body.support.parts)
+            found += _penetration(body, build.parts[index], build.settings, holds=index in body.support.parts)
     return found
 
 
@@ -203,6 +205,14 @@ def _rest_on(points: Floats, parts: Sequence[PlacedPart], overlap: float) -> Boo
         above = inside(points + (0.0, 0.0, overlap + 2 * TOLERANCE), mesh.vertices, mesh.triangles)
         found |= below & ~above
     return found
+
+
+def _may_enter(body: JudgedBody, low: Floats, high: Floats) -> Bools:
+    """Tell the boxes of which parts a body meets; beams may meet any."""
+    mesh = body.support.mesh
+    if body.support.lattice is not None:
+        return np.ones(len(low), np.bool_)
+    return np.asarray(((mesh.bounds[0] <= high) & (mesh.bounds[1] >= low)).all(axis=1))
 
 
 def _penetration(

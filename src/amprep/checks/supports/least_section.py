@@ -10,7 +10,7 @@ as they are wide if that is less, up to their height below the part.
 """
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -22,7 +22,7 @@ from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.geometry.slicing.outlines import outlines_of
-from amprep.model.build import Build, BuildSettings, Lattice, SupportBody
+from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.control import Stop
 from amprep.model.supports.sizes import SupportSizes
 
@@ -55,6 +55,9 @@ _SLOPE = 0.3
 
 _SEGMENTS = 24
 """Sides of the polygons that stand for circles."""
+
+_KEPT = 16
+"""Number of parts whose solids are kept."""
 
 _SPECK = 1e-3
 """Area (mm2) that offsets of polygons leave by rounding."""
@@ -169,7 +172,7 @@ class _SectionJudge:
 
     def __init__(self, build: Build, solids: KnownSolids) -> None:
         self.settings, self.solids = build.settings, solids
-        self.parts = [as_manifold(placed.mesh.vertices, placed.mesh.triangles) for placed in build.parts]
+        self.parts = _PartSolids(build.parts)
         self.limits = _limits_of(build.settings)
         self.shapes = KnownShapes(*self.limits, self.limits.reach)
 
@@ -223,6 +226,26 @@ def _heights(body: SupportBody) -> Floats:
     return np.asarray(low + (high - low) * (np.arange(count) + 0.4937) / count)
 
 
+class _PartSolids:
+    """The solids of the parts of a build, each made when it is first needed; a few are kept."""
+
+    def __init__(self, parts: Sequence[PlacedPart]) -> None:
+        self.placed = parts
+        boxes = [placed.mesh.bounds for placed in parts]
+        self.low, self.high = (np.array([box[side] for box in boxes]).reshape(-1, 3) for side in (0, 1))
+        self.solid = lru_cache(maxsize=_KEPT)(self._made)
+
+    def near(self, low: Floats, high: Floats) -> list[int]:
+        """Return the parts whose boxes meet a box; of a box in plan, ``(2,)``, the height is not compared."""
+        axes = slice(len(low))
+        meets = (self.low[:, axes] <= high) & (self.high[:, axes] >= low)
+        return [int(part) for part in np.flatnonzero(meets.all(axis=1))]
+
+    def _made(self, part: int) -> "Manifold":
+        mesh = self.placed[part].mesh
+        return as_manifold(mesh.vertices, mesh.triangles)
+
+
 class _Section:
     """What is to be judged of a horizontal section of a support, and what is around it."""
 
@@ -233,7 +256,7 @@ class _Section:
         height: float,
         limits: _GrantedLimits,
         sizes: SupportSizes,
-        parts: "Sequence[Manifold]",
+        parts: "_PartSolids",
     ) -> None:
         self.region, self.around, self.height = region, around, height
         self.parts, self.sizes = parts, sizes
@@ -303,13 +326,10 @@ class _Section:
 
         low, high = _bounds(piece)
         found = CrossSection()
-        for number, part in enumerate(self.parts):
-            box = part.bounding_box()
-            margin = 2.0 * self.wall
-            if (low - margin <= np.array(box[3:5])).all() and (high + margin >= np.array(box[:2])).all():
-                if number not in self.part_sections:
-                    self.part_sections[number] = part.slice(self.height)
-                found += self.part_sections[number]
+        for part in self.parts.near(low - 2.0 * self.wall, high + 2.0 * self.wall):
+            if part not in self.part_sections:
+                self.part_sections[part] = self.parts.solid(part).slice(self.height)
+            found += self.part_sections[part]
         return found
 
     def _touches_part(self, piece: "CrossSection") -> bool:
@@ -334,8 +354,11 @@ class _Section:
         from manifold3d import Manifold
 
         height = self.sizes.tip_height_mm + (self.sizes.square_mm if self.sizes.neck_mm else 0.0) + _SLOPE
-        column = Manifold.cube((self.wall, self.wall, height)).translate(place.tolist())
-        return any(not (part ^ column).is_empty() for part in self.parts)
+        size = np.array([self.wall, self.wall, height])
+        column = Manifold.cube(size.tolist()).translate(place.tolist())
+        return any(
+            not (self.parts.solid(part) ^ column).is_empty() for part in self.parts.near(place, place + size)
+        )
 
 
 def _all_large(region: "CrossSection", wall: float, contact: float) -> bool:
