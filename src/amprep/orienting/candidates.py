@@ -14,7 +14,12 @@ from amprep.geometry.orientation.directions import (
     hull_directions,
     sphere_directions,
 )
-from amprep.geometry.orientation.quick_figures import QuickFigures, carried_fractions, quick_figures
+from amprep.geometry.orientation.quick_figures import (
+    QuickFigures,
+    carried_fractions,
+    quick_figures,
+    support_estimate,
+)
 from amprep.geometry.orientation.surface import TurnableSurface, turnable_surface
 from amprep.geometry.orientation.tipping import centre_of_mass, tipping_angles
 from amprep.geometry.overhangs.carried.points import Limits
@@ -102,17 +107,17 @@ class TurnablePart(NamedTuple):
         return self.surface.points if self.hull is None else self.hull.points
 
     def costs(self, directions: Floats, quick: QuickFigures | None = None) -> Floats:
-        """Return an estimate of the support volume (mm3) of directions, ``(k,)``; of their figures if these are known.
+        """Return the estimates of support of directions, ``(k,)``; of their figures if these are known.
 
-        It is the volume between the overhangs and the plate; below knife edges a wall of 1 mm; and below a part that
-        does not stand by itself a column up to its centre of mass, unless the lift has supports below it anyway.
+        Below a part that does not stand by itself is a column, unless the lift has supports below it anyway.
         """
         quick = self.figures(directions) if quick is None else quick
-        found = quick.shadow + EDGE_MM * quick.edge_shadow
+        area, volume = quick.plan + EDGE_MM * quick.edge_length, quick.shadow + EDGE_MM * quick.edge_shadow
         if self.lift <= self.limits.plate:
             low = (directions @ self.centre) - (self.outer_points @ directions.T).min(axis=0)
-            found = found + np.where(self.tipping(directions) < FIRM_DEG, HOLD_MM2 * low, 0.0)
-        return np.asarray(found)
+            held = np.where(self.tipping(directions) < FIRM_DEG, HOLD_MM2, 0.0)
+            area, volume = area + held, volume + held * low
+        return support_estimate(area, volume)
 
     def allows(self, directions: Floats) -> Bools:
         """Tell which directions ``(k, 3)`` the rules of the part allow."""
@@ -189,7 +194,7 @@ def turnable_part(part: Part, rules: SupportRules, lift: float, restricted: Orie
 
 
 class TriedDirections(NamedTuple):
-    """Directions ``(k, 3)`` that are allowed, with their quick figures and estimates ``(k,)`` of the support volume."""
+    """Directions ``(k, 3)`` that are allowed, with their quick figures and estimates ``(k,)`` of support."""
 
     directions: Floats
     figures: QuickFigures

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.geometry.orientation.quick_figures import support_estimate
 from amprep.geometry.orientation.tipping import centre_of_mass, tipping_angles
 from amprep.model.build import PlacedPart
 from amprep.model.mesh import Mesh
@@ -53,6 +54,9 @@ def measure_orientation(part: Part, rotation: Floats, rules: SupportRules, lift:
     below = float(np.hypot(along[:, 0], along[:, 1]) @ ends[:, :, 2].mean(axis=1))
     held = tipping >= FIRM_DEG or lift > rules.plate_mm
     hold = 0.0 if held else HOLD_MM2 * float(centre[2])
+    area = float(
+        -cross[:, 2].sum() / 2.0 + EDGE_MM * np.linalg.norm(along, axis=1).sum() + HOLD_MM2 * (not held)
+    )
     size = np.ptp(placed.mesh.vertices, axis=0)
     return OrientationFigures(
         height_mm=float(size[2]),
@@ -62,7 +66,7 @@ def measure_orientation(part: Part, rotation: Floats, rules: SupportRules, lift:
         edges_mm=float(np.linalg.norm(along, axis=1).sum()),
         tips=len(found.tips),
         hold_mm3=hold,
-        cost_mm3=shadow + EDGE_MM * below + hold,
+        estimate=float(support_estimate(np.array(area), np.array(shadow + EDGE_MM * below + hold))),
         contact_mm2=_contact(whole, lift + rules.plate_mm),
         tipping_deg=tipping,
     )

@@ -182,10 +182,23 @@ def _shortlist(part: TurnablePart, found: TriedDirections, settings: Orientation
     def allowed(row: int) -> bool:
         return fits is None or bool(fits(rotation_to(part, directions[row])[None])[0])
 
+    smallest = _smallest_box(part, directions, boxes)
     cheap = ranked(costs, quick.height).tolist()
-    chosen = apart(cheap, directions, max(most // 2, 1), DIRECTIONS_APART_DEG, allowed)
+    chosen = apart([smallest, *cheap], directions, max(most // 2, 2), DIRECTIONS_APART_DEG, allowed)
     others = (int(row) for place in zip(*orders, strict=True) for row in place)
     return apart([*chosen, *others], directions, most, DIRECTIONS_APART_DEG, allowed)
+
+
+def _smallest_box(part: TurnablePart, directions: Floats, bounds: Floats) -> int:
+    """Return the direction ``(k, 3)`` along which the smallest box stands; `bounds` are lower bounds on the volumes."""
+    best, row = np.inf, 0
+    for number in np.argsort(bounds, kind="stable").tolist():
+        if bounds[number] * (1.0 - 1e-12) >= best:
+            break
+        volume = smallest_box_about_z(part.outer_points @ upright_rotation(directions[number]).T)[0]
+        if volume < best * (1.0 - 1e-12):
+            best, row = volume, number
+    return row
 
 
 def _costs(proposals: list[OrientationProposal]) -> Floats:
@@ -203,7 +216,7 @@ def _support_costs(figures: list[OrientationFigures]) -> Floats:
 
     Then those come first that leave nothing unsupported, and those without planned supports last.
     """
-    estimates = np.array([each.cost_mm3 for each in figures])
+    estimates = np.array([each.estimate for each in figures])
     planned = np.array(
         [np.nan if each.support_mm3 is None else each.support_mm3 + each.hold_mm3 for each in figures]
     )

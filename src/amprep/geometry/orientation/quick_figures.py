@@ -14,6 +14,8 @@ _SAMPLE_MM = 2.0
 
 _MOST_ROWS = 6
 
+_MERGING = 0.6
+
 
 class QuickFigures(NamedTuple):
     """Figures of a part in ``k`` directions.
@@ -22,8 +24,8 @@ class QuickFigures(NamedTuple):
     ----------
     height
         ``(k,)`` mm, height of the part.
-    overhang
-        ``(k,)`` mm2, area of the faces that need support.
+    overhang, plan
+        ``(k,)`` mm2, area of the faces that need support, and their area in plan.
     shadow
         ``(k,)`` mm3, volume between these faces and the plate.
     edge_length, edge_shadow
@@ -32,9 +34,19 @@ class QuickFigures(NamedTuple):
 
     height: Floats
     overhang: Floats
+    plan: Floats
     shadow: Floats
     edge_length: Floats
     edge_shadow: Floats
+
+
+def support_estimate(area: Floats, volume: Floats) -> Floats:
+    """Return estimates of support from the area (mm2) in plan and the volume (mm3) of columns down to the plate.
+
+    Supports merge on their way down. So the estimate is the area times the mean height to the power of 0.6, with which
+    the volumes of planned supports of some 300 orientations of printer parts agree best.
+    """
+    return np.asarray(np.maximum(area, 0.0) ** (1.0 - _MERGING) * np.maximum(volume, 0.0) ** _MERGING)
 
 
 def carried_fractions(surface: TurnableSurface, limits: Limits) -> Floats:
@@ -108,7 +120,7 @@ def quick_figures(
     steep = np.full(len(surface.triangles), np.cos(angle))
     if enforced is not None:
         steep[enforced] = 1e-6
-    found = np.empty((len(directions), 5))
+    found = np.empty((len(directions), 6))
     columns.score_directions(
         surface.points,
         surface.triangles,
@@ -127,6 +139,7 @@ def quick_figures(
     return QuickFigures(
         found[:, columns.HEIGHT],
         found[:, columns.AREA],
+        found[:, columns.PLAN],
         found[:, columns.VOLUME],
         found[:, columns.EDGES],
         found[:, columns.UNDER_EDGES],

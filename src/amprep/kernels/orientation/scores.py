@@ -5,9 +5,9 @@ import numpy as np
 from amprep.arrays import Floats, Ints
 from amprep.kernels.helper import kernel
 
-HEIGHT, AREA, VOLUME, EDGES, UNDER_EDGES = range(5)
-"""Columns of the scores: height of the part (mm), area of the faces that need support (mm2) and the volume under them
-(mm3), length of the knife edges (mm) and the area under them (mm2)."""
+HEIGHT, AREA, PLAN, VOLUME, EDGES, UNDER_EDGES = range(6)
+"""Columns of the scores: height of the part (mm), area of the faces that need support, also in plan (mm2), and the
+volume under them (mm3), length of the knife edges (mm) and the area under them (mm2)."""
 
 
 @kernel
@@ -49,7 +49,7 @@ def score_directions(
     heights
         ``(n,)`` scratch.
     scores
-        ``(k, 5)`` out, by the columns named above.
+        ``(k, 6)`` out, by the columns named above.
     """
     lift, plate, flat, cosine = limits[0], limits[1], limits[2], limits[3]
     for k in range(len(directions)):
@@ -60,7 +60,7 @@ def score_directions(
             heights[n] = height
             low, high = min(low, height), max(high, height)
         floor = low - lift
-        area, volume = 0.0, 0.0
+        area, plan, volume = 0.0, 0.0, 0.0
         for m in range(len(triangles)):
             facing = -(normals[m, 0] * x + normals[m, 1] * y + normals[m, 2] * z)
             if facing <= steep[m]:
@@ -70,6 +70,7 @@ def score_directions(
                 continue
             share = open_share[m] * areas[m]
             area += share
+            plan += share * facing
             volume += share * facing * ((a + b + c) / 3.0 - floor)
         length, under = 0.0, 0.0
         for e in range(len(edges)):
@@ -94,5 +95,5 @@ def score_directions(
             length += size
             under += np.sqrt(max(size * size - (a - b) * (a - b), 0.0)) * ((a + b) / 2.0 - floor)
         scores[k, HEIGHT] = high - low
-        scores[k, AREA], scores[k, VOLUME] = area, volume
+        scores[k, AREA], scores[k, PLAN], scores[k, VOLUME] = area, plan, volume
         scores[k, EDGES], scores[k, UNDER_EDGES] = length, under

@@ -8,7 +8,7 @@ from amprep.arrays import Floats, frozen
 from amprep.validation import require, require_bounds
 
 EDGE_MM, HOLD_MM2, FIRM_DEG = 1.0, 25.0, 3.0
-"""In the estimate of the support volume: thickness of the wall below a knife edge; section of the column below a part
+"""In the estimate of support: thickness of the wall below a knife edge; section of the column below a part
 that tips over when it is tilted by less than an angle; and this angle."""
 
 
@@ -59,8 +59,9 @@ class OrientationFigures:
     hold_mm3
         Volume of what must hold a part that does not stand by itself on the plate: a column of 25 mm2 up to its centre
         of mass; else 0.
-    cost_mm3
-        Estimate of the support volume: the shadow volume, below knife edges a wall 1 mm thick, and `hold_mm3`.
+    estimate
+        Estimate of support, which compares orientations: columns below overhangs, walls 1 mm thick below knife edges,
+        and what must hold the part; their area in plan (mm2) times their mean height (mm) to the power of 0.6.
     contact_mm2
         Area of the faces on the plate, or at the lift above it.
     tipping_deg
@@ -78,7 +79,7 @@ class OrientationFigures:
     edges_mm: float
     tips: int
     hold_mm3: float
-    cost_mm3: float
+    estimate: float
     contact_mm2: float
     tipping_deg: float
     support_mm3: float | None = None

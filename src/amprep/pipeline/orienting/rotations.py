@@ -13,9 +13,8 @@ from amprep.pipeline.orienting.proposals import oriented
 from amprep.pipeline.reading import LoadedParts
 from amprep.pipeline.stages import Clock
 
-_MORE, _OF_PART = 1.25, 0.02
-"""Proposals are allowed whose estimate of support is at most so many times the least one, and this fraction of the
-volume of the part more."""
+_MORE, _LITTLE = 1.25, 10.0
+"""Proposals are allowed whose estimate of support is at most so many times the least one, and so much more."""
 
 
 def with_orientations(loaded: LoadedParts, clock: Clock, stop: Stop) -> tuple[LoadedParts, tuple[str, ...]]:
@@ -51,17 +50,17 @@ def with_orientations(loaded: LoadedParts, clock: Clock, stop: Stop) -> tuple[Lo
                 notes.append(f"{part.name} stays as drawn, because it has fixed positions")
                 continue
             found = oriented(part, job, rules, job.packing.effort, stop, progress)
-            allowed = worth_packing(part, found.proposals)
+            allowed = worth_packing(found.proposals)
             parts[index] = replace(part, orientations=Orientations("list", _turned(allowed)))
             notes.append(_note(part, found, allowed))
     return replace(loaded, parts=tuple(parts)), tuple(notes)
 
 
-def worth_packing(part: Part, proposals: tuple[OrientationProposal, ...]) -> list[OrientationProposal]:
+def worth_packing(proposals: tuple[OrientationProposal, ...]) -> list[OrientationProposal]:
     """Return the proposals with little support, those with the least first."""
-    ordered = sorted(proposals, key=lambda each: each.figures.cost_mm3)
-    most = _MORE * ordered[0].figures.cost_mm3 + _OF_PART * part.volume_mm3
-    return [each for each in ordered if each.figures.cost_mm3 <= most]
+    ordered = sorted(proposals, key=lambda each: each.figures.estimate)
+    most = _MORE * ordered[0].figures.estimate + _LITTLE
+    return [each for each in ordered if each.figures.estimate <= most]
 
 
 def _turned(proposals: list[OrientationProposal]) -> Floats:

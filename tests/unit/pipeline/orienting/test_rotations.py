@@ -61,11 +61,10 @@ def test_wrong_restrictions_are_refused(table, wrong):
         amprep.load(table, settings={"part": [{"name": "table", "rotations": "orient", **wrong}]})
 
 
-def test_only_proposals_with_little_support_are_packed(table):
+def test_only_proposals_with_little_support_are_packed():
     figures = OrientationFigures(1.0, (1.0, 1.0, 1.0), 0.0, 0.0, 0.0, 0, 0.0, 0.0, 1.0, 0.0)
     proposals = tuple(
-        OrientationProposal(np.eye(3), replace(figures, cost_mm3=cost)) for cost in (140.0, 100.0, 126.0)
+        OrientationProposal(np.eye(3), replace(figures, estimate=cost)) for cost in (140.0, 100.0, 134.0)
     )
-    part = replace(table, volume_mm3=100.0)
-    # at most 1.25 x 100 + 0.02 x 100
-    assert [each.figures.cost_mm3 for each in worth_packing(part, proposals)] == [100.0, 126.0]
+    # at most 1.25 x 100 + 10
+    assert [each.figures.estimate for each in worth_packing(proposals)] == [100.0, 134.0]
