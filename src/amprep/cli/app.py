@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 from amprep import __version__
 from amprep.cli import bench
-from amprep.cli.builds import diff, hook, replan, seal, verify
+from amprep.cli.builds import compare, diff, hook, replan, seal, verify
 from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
@@ -48,6 +48,7 @@ app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
 app.command("diff")(diff.diff)
+app.command("compare")(compare.compare)
 app.command("replan")(replan.replan)
 app.command("inspect")(inspection.inspect)
 app.command("orient")(orient.orient)

@@ -85,6 +85,19 @@ def page_text(title: str, body: str, model: dict[str, Any], geometry: str) -> st
     )
 
 
+def static_page(title: str, body: str) -> str:
+    """Return a page without scripts, whose pictures are in it; `title` is escaped, `body` is HTML."""
+    style = _resource("page.css")
+    policy = f"default-src 'none'; style-src '{_digest(style)}'; img-src data:; base-uri 'none'; form-action 'none'"
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>{style}</style>\n"
+        f"</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n"
+    )
+
+
 def _resource(name: str) -> str:
     return files("amprep.report").joinpath(name).read_text(encoding="utf-8")
 
