@@ -113,6 +113,7 @@ def shape_connectors(
     rules: ConnectorRules,
     spacing: TipSpacing,
     overlap: float,
+    on_solid: Bools,
     least: LeastSection | None = None,
 ) -> ShapedConnectors:
     """Intersect plain connectors with tips and perforate them; they still end in the true surface of the part.
@@ -134,6 +135,9 @@ def shape_connectors(
         Distance of tips in each column.
     overlap
         Depth (mm) to which connectors enter the part.
+    on_solid
+        ``(m,)`` whether a cell fills the whole square below each connector. On other cells a connector that does not
+        cover its square begins no deeper, because there could be nothing below it.
     least
         Least section of supports; None for none.
 
@@ -145,7 +149,8 @@ def shape_connectors(
     side, square = float(columns.grid[2]), columns.lo[:, 2]
     tip_height, lowest = 0.0, np.full(len(square), np.inf)
     pad = np.minimum(PAD, sink / 2.0)
-    floor = np.where(sink > 0.0, square - sink + pad, -np.inf)
+    floor = square - sink + pad
+    sunk = sink > 0.0
     tips = []
     for chosen, distance in spacing.classes():
         count, profile = _profile(rules, side, distance)
@@ -154,15 +159,17 @@ def shape_connectors(
         tip_height = profile.height
         narrow = None if least is None else least.diameter + _MARGIN
         sites = find_sites(contact, _columns_of(columns, chosen), count, profile.width, narrow)
+        covered = np.bincount(sites.column[sites.whole], minlength=int(chosen.sum())) == count * count
+        sunk[chosen] &= covered | on_solid[chosen]
         own = np.flatnonzero(chosen)[sites.column]
-        level = np.maximum(sites.lowest - profile.height, floor[own])
+        level = np.maximum(sites.lowest - profile.height, np.where(sunk, floor, -np.inf)[own])
         np.minimum.at(lowest, own, level)
-        base = np.where(sink > 0.0, np.minimum(base, lowest - pad), base)
+        base = np.where(sunk, np.minimum(base, lowest - pad), base)
         tips.append(make_tips(sites, profile, level, base[own], lowest[own], overlap))
     notch = union([])
     if tips:
         connectors ^= union(tips).translate(NUDGE)
-        low = (lowest < square) & (sink > 0.0)
+        low = (lowest < square) & sunk
         plan = columns.square[low], columns.lo[low, :2] - _WIDER, columns.hi[low, :2] + _WIDER
         notch = grid_prisms(*plan, (lowest - pad / 2.0)[low], square[low] + _PAST)
     if rules.perforation_mm:

@@ -192,6 +192,7 @@ def _subtract_and_shape(
         context.connector,
         spacing,
         context.overlap,
+        _stands_on_full_square(instances, context.layout)[red],
         context.least,
     )
 

@@ -11,6 +11,7 @@ from amprep.checks.supports.contacts import check_contacts
 from amprep.checks.supports.coverage import check_coverage
 from amprep.checks.supports.least_section import check_least_section
 from amprep.errors import JobError
+from amprep.geometry.connectors.columns import ConnectorColumns
 from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.supports.contact_area import contact_corners, measure_contact
@@ -22,6 +23,7 @@ from amprep.model.supports.sizes import SupportSizes
 from amprep.overhangs.unsupported import find_unsupported
 from amprep.supports.plan import PlanningRules, plan_supports
 from amprep.supports.solids.build import SolidRules, build_supports
+from amprep.supports.solids.tips import TipSpacing, shape_connectors
 
 SPACE = BuildVolume(np.array([60.0, 60.0, 60.0]))
 PITCH, OVERLAP = 2.0, 0.1
@@ -173,6 +175,37 @@ def test_the_judge_finds_a_red_square_without_contact():
 def test_teeth_and_points_fit_every_cell(cell, shape):
     for kind in ("necked teeth", "point") if cell != "hatch" else ("point",):
         assert judged(shape, supports(shape, KINDS[kind], cell)) == []
+
+
+@pytest.mark.parametrize("on_solid", [False, True])
+@pytest.mark.parametrize("covered", [0.6, 2.0])
+def test_tips_begin_inside_a_cell_only_if_something_is_below_them(covered, on_solid):
+    """A cell with openings may have none below a contact that covers a part of its square."""
+    columns = ConnectorColumns(
+        np.zeros((1, 3)),
+        np.array([[2.0, 2.0, 4.0]]),
+        np.zeros((1, 2), np.int64),
+        np.array([0.0, 0.0, 2.0]),
+        (1, 1),
+    )
+    a, b, c, d = ((x, y, 0.4) for x, y in ((0, 0), (covered, 0), (covered, covered), (0, covered)))
+    plain = Manifold.cube((covered, covered, 1.5)).translate((0.0, 0.0, -1.0))
+    shaped = shape_connectors(
+        plain,
+        np.array([[a, c, b], [a, d, c]], float),
+        columns,
+        np.array([-0.1]),
+        np.array([1.0]),
+        ConnectorRules("point"),
+        TipSpacing(0.0, np.zeros(1, np.bool_)),
+        OVERLAP,
+        np.array([on_solid]),
+        LEAST,
+    )
+    sunk = on_solid or covered == 2.0
+    assert shaped.notch.is_empty() != sunk
+    assert (shaped.connectors.bounding_box()[2] < -0.5) == sunk
+    assert shaped.connectors.bounding_box()[5] == pytest.approx(0.5, abs=1e-3)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
