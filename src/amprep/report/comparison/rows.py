@@ -36,12 +36,15 @@ class ComparedFigure(NamedTuple):
 
     @property
     def best(self) -> tuple[bool, ...]:
-        """Which runs have the best value; none where all are equal, or neither less nor more is better."""
-        known = [value for value in self.values if isinstance(value, int | float)]
+        """Which runs have the best value; none where all look equal, or neither less nor more is better."""
+        shown = [
+            round(value, self.digits) if isinstance(value, int | float) else None for value in self.values
+        ]
+        known = [value for value in shown if value is not None]
         if not self.better or not known or min(known) == max(known):
             return (False,) * len(self.values)
         best = min(known) if self.better == "less" else max(known)
-        return tuple(value == best for value in self.values)
+        return tuple(value == best for value in shown)
 
     def words(self) -> list[str]:
         """Return each value as text, with the difference to the first one in percent."""

@@ -56,6 +56,14 @@ def test_the_least_height_is_the_best_and_differences_are_to_the_first_run(tmp_p
     assert row(found, "Packer").words() == ["auto", "annealing"]
 
 
+def test_of_values_that_look_equal_none_is_the_best(tmp_path):
+    height = row(
+        figures_of(runs(report("auto", 40.01), report("x", 40.02), tmp_path=tmp_path)), "Height, all builds"
+    )
+    assert height.words() == ["40.0 mm", "40.0 mm"]
+    assert height.best == (False, False)
+
+
 def test_a_figure_that_one_build_lacks_is_unknown_and_one_that_all_lack_is_left_out(tmp_path):
     lacking = report()
     del lacking["builds"][0]["printing"]["hours"]
