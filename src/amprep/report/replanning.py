@@ -1,6 +1,7 @@
 """What was planned again in an edited build, in words and as JSON."""
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -149,7 +150,7 @@ def summary(record: ReplanRecord, folder: Path = Path()) -> "RenderableType":
     blocks = [Text(f"{record.build_id}: {counts_in_words(record)}"), Text(record.source, style="dim")]
     lines = [(_part_words(each), "") for each in record.parts if each.change != "none" or each.reason]
     lines += [(f"{label}: deleted", "") for label in record.deleted]
-    lines += [(f"! {each.label}: unsupported, {each.reason}", "yellow") for each in record.unsupported]
+    lines += [(f"! {words}", "yellow") for words in _unsupported_words(record)]
     lines += [(f"! {each}", "red") for each in record.violations]
     shown = lines[:_MOST_LINES]
     if len(lines) > len(shown):
@@ -159,6 +160,16 @@ def summary(record: ReplanRecord, folder: Path = Path()) -> "RenderableType":
     files = [record.file, record.report_file]
     blocks += [Text(printable(f"wrote {folder / name}"), style="dim") for name in files if name]
     return Group(*blocks)
+
+
+def _unsupported_words(record: ReplanRecord) -> Iterator[str]:
+    """Yield for each part how many of its overhangs have no support, and why."""
+    for number, part in enumerate(record.parts):
+        own = [each for each in record.unsupported if each.part == number]
+        if own:
+            reasons = ", ".join(sorted({each.reason for each in own}))
+            count = counted(len({each.label for each in own}), "unsupported overhang")
+            yield f"{part.label}: {count} ({reasons})"
 
 
 def _part_words(part: ReplannedPart) -> str:

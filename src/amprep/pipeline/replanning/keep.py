@@ -13,7 +13,7 @@ from amprep.checks.supports.territory import check_territory
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
 from amprep.model import Build, BuildSettings, Stop, SupportBody, Unsupported
-from amprep.model.supports import EXCEPTED
+from amprep.model.supports import CAPACITY, ENCLOSED, OUT_OF_TIME, TERRITORY
 from amprep.pipeline.replanning.records import EditedBuild, EditedPart
 from amprep.pipeline.verifying.nearby import are_near, boxes_in_plan, distance_that_matters, nearby
 
@@ -21,6 +21,10 @@ from amprep.pipeline.verifying.nearby import are_near, boxes_in_plan, distance_t
 # have changed for them is what is near. So the judges look at those supports that moved, or near which something moved,
 # came or went, at their new places. Overhangs that are listed may have a way to the plate now, so their parts are
 # planned again if something near them changed.
+
+
+_REASONS_OF_OTHERS = (ENCLOSED, TERRITORY, CAPACITY, OUT_OF_TIME)
+"""Reasons that may no longer hold when other parts move; the others follow from the part itself."""
 
 
 class Kept(NamedTuple):
@@ -86,7 +90,7 @@ def _own_reason(
 
 
 def _may_change(region: Unsupported) -> bool:
-    return region.reason != EXCEPTED and not region.minor
+    return region.reason in _REASONS_OF_OTHERS and not region.minor
 
 
 def _drop_shared(

@@ -1,18 +1,23 @@
 """An edited build is planned again: what still holds is kept, the rest is planned, and all promises hold."""
 
+import io
 import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 from tests.shared.edited import edit, shift, turn
 from tests.shared.solids import mesh_of
 from tests.shared.supported import box
 
 import amprep
 from amprep.errors import InputError
+from amprep.model import Unsupported
+from amprep.model.supports import ENCLOSED, NO_FREE_VOXEL_BELOW
 from amprep.pipeline.replanning.course import new_name
+from amprep.report.replanning import ReplannedPart, ReplanRecord, summary
 from amprep.stl import write_stl
 from amprep.threemf import read_build
 
@@ -206,6 +211,34 @@ def test_the_report_says_what_happened(replanned, tmp_path):
     report = json.loads((tmp_path / record.report_file).read_text())
     assert report["parts"][0]["supports"] == "taken along"
     assert (report["file"], report["sha256"]) == (record.file, record.sha256)
+
+
+def test_the_closing_list_names_what_was_planned_again_and_each_part_without_support():
+    again = ReplannedPart("tee", "turned", 3.0, 30.0, "planned again", "turned")
+    kept = ReplannedPart("bar", "none", 0.0, 0.0, "kept")
+    listed = [
+        Unsupported(1, f"overhang {number} of bar", "face", ENCLOSED, 1.0, np.zeros((1, 3)), 1.0)
+        for number in (1, 2)
+    ]
+    record = ReplanRecord("a.3mf", "by a.3mf", "a.replanned", (again, kept), unsupported=tuple(listed))
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(summary(record))
+    lines = console.export_text()
+    assert "tee: turned by 30.00 degrees; supports planned again (turned)" in lines
+    assert f"bar: 2 unsupported overhangs ({ENCLOSED})" in lines
+    assert "1 kept, 1 planned again" in lines
+    assert record.faults == 2
+
+
+def test_an_enclosed_overhang_is_planned_again_when_something_near_it_went(plate, tmp_path):
+    build = read_build(plate)
+    for reason, supports in ((ENCLOSED, "planned again"), (NO_FREE_VOXEL_BELOW, "kept")):
+        region = Unsupported(
+            1, "overhang 1 of tee-2", "face", reason, 1.0, np.array([[40.0, 10.0, 9.0]]), 1.0
+        )
+        file = amprep.write(replace(build, unsupported=(region,)), tmp_path / f"{supports}.3mf")
+        record = amprep.replan(edit(file, tmp_path / "edited.3mf", {0: shift(y=120.0)}), output=tmp_path)
+        assert supports_of(record)["tee-2"] == ("none", supports)
 
 
 def test_new_names_count():
