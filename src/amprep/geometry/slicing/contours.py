@@ -132,7 +132,8 @@ def _pair_nonmanifold(points: Floats, triangles: Int64s, order: Int64s, twin: In
     """Pair the half-edges of edges at which more than two triangles meet, in place.
 
     The triangles of a pair follow each other around the edge, with the solid between: from one in which the edge leads
-    from its higher vertex to its lower one to one in which it leads back.
+    from its higher vertex to its lower one to one in which it leads back. Where solids overlap there, or foils have no
+    thickness, pairs enclose others: those that are paired are left out, until none is left.
     """
     nonmanifold = order[twin[order] == -2]
     triangle, corner = np.divmod(nonmanifold, 3)
@@ -141,12 +142,24 @@ def _pair_nonmanifold(points: Floats, triangles: Int64s, order: Int64s, twin: In
     edge = np.cumsum(np.append(0, (np.diff(low) != 0) | (np.diff(high) != 0)))
     turned = np.lexsort((_angles(points[apex], points[low], points[high]), edge))
     nonmanifold, edge, is_back = nonmanifold[turned], edge[turned], (start > end)[turned]
-    begins = np.searchsorted(edge, np.arange(edge[-1] + 2))
+    while len(edge):
+        following = _following(edge)
+        chosen = np.flatnonzero(is_back & ~is_back[following] & (following != np.arange(len(edge))))
+        if not len(chosen):
+            break
+        one, other = nonmanifold[chosen], nonmanifold[following[chosen]]
+        twin[one], twin[other] = other, one
+        left = np.ones(len(edge), np.bool_)
+        left[chosen] = left[following[chosen]] = False
+        nonmanifold, edge, is_back = nonmanifold[left], edge[left], is_back[left]
+
+
+def _following(edge: Int64s) -> Int64s:
+    """Return the row after each one of the same edge, ``(k,)``; after the last comes the first. Rows are in order."""
+    begins = np.flatnonzero(np.append(True, np.diff(edge) != 0))
     following = np.arange(1, len(edge) + 1)
-    following[begins[1:] - 1] = begins[:-1]
-    chosen = np.flatnonzero(is_back & ~is_back[following])
-    one, other = nonmanifold[chosen], nonmanifold[following[chosen]]
-    twin[one], twin[other] = other, one
+    following[np.append(begins[1:], len(edge)) - 1] = begins
+    return following
 
 
 def _angles(points: Floats, low: Floats, high: Floats) -> Floats:

@@ -96,3 +96,18 @@ def test_edges_of_no_length_at_which_many_triangles_meet_are_no_obstacle():
     collapsed = np.concatenate([triangles, [[0, 0, 1], [0, 0, 2], [0, 0, 3]]])
     contours = SlicedMesh(vertices, collapsed).contours(np.array([1.0]))
     assert contours.area.max() == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("turn", [0, 20, 75])
+@pytest.mark.parametrize("sizes", [(1.0, 0.5), (1.0, 0.5, 0.25), (0.5, 1.0, 2.0, 3.0)])
+def test_overlapping_bodies_with_a_common_edge_have_closed_contours(sizes, turn):
+    bodies = [
+        arrays(box((size, size, 9), (0, 0, 0)).rotate((0, 0, turn * k))) for k, size in enumerate(sizes)
+    ]
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in bodies)])
+    vertices = np.concatenate([vertices for vertices, _ in bodies])
+    triangles = np.concatenate([each + start for (_, each), start in zip(bodies, starts, strict=False)])
+    sliced = SlicedMesh(vertices, triangles)
+    assert (sliced.linked.twin >= 0).all()
+    contours = sliced.contours(np.array([2.0, 5.0]))
+    assert contours.area.sum() == pytest.approx(2.0 * sum(size**2 for size in sizes))
