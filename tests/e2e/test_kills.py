@@ -78,13 +78,13 @@ def test_a_signal_leaves_all_files_or_none_and_the_code_tells_which(tmp_path, nu
 @pytest.mark.parametrize("step", STEPS)
 def test_after_sigkill_no_file_is_half_and_the_next_run_leaves_a_clean_folder(tmp_path, step):
     assert run(tmp_path, signal.SIGKILL, step).returncode == -signal.SIGKILL
-    assert {path.read_text() for path in tmp_path.glob("job.*")} <= {"new"}
+    assert {path.read_text(encoding="utf-8") for path in tmp_path.glob("job.*")} <= {"new"}
     assert len(list(tmp_path.glob(".amprep-*"))) == 1
     with OutputFolder(tmp_path, "job") as outputs:
         outputs.path("a").write_text("newer")
         outputs.publish()
     assert list(tmp_path.glob(".*")) == []
-    assert (tmp_path / "job.a").read_text() == "newer"
+    assert (tmp_path / "job.a").read_text(encoding="utf-8") == "newer"
 
 
 def test_two_runs_into_one_folder_do_not_mix_their_files(tmp_path):
@@ -98,5 +98,7 @@ def test_two_runs_into_one_folder_do_not_mix_their_files(tmp_path):
     )
     runs = [subprocess.Popen([sys.executable, "-c", code, str(tmp_path), text]) for text in ("one", "two")]
     assert [each.wait() for each in runs] == [0, 0]
-    assert (tmp_path / "job.a").read_text() == (tmp_path / "job.b").read_text()
+    assert (tmp_path / "job.a").read_text(encoding="utf-8") == (tmp_path / "job.b").read_text(
+        encoding="utf-8"
+    )
     assert sorted(path.name for path in tmp_path.iterdir()) == ["job.a", "job.b"]

@@ -37,9 +37,9 @@ def test_locked_parts_are_named_and_are_a_fault_only_where_forbidden(amprep, job
     assert allowed.code == 0
     printed = " ".join(allowed.out.split()) + " ".join(allowed.err.split())
     assert "hook and ring are locked into each other" in printed
-    (build,) = json.loads((tmp_path / "out" / "job.report.json").read_text())["builds"]
+    (build,) = json.loads((tmp_path / "out" / "job.report.json").read_text(encoding="utf-8"))["builds"]
     assert build["removal_order"]["locked"] == [["hook", "ring"]]
-    page = (tmp_path / "out" / "job.report.html").read_text()
+    page = (tmp_path / "out" / "job.report.html").read_text(encoding="utf-8")
     assert "hook and ring are locked into each other" in page
     assert "locked with ring" in page
     forbidden = amprep("run", job, "--dry-run", "-o", tmp_path, "--set", "packing.interlocking=forbid")

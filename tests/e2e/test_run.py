@@ -47,7 +47,7 @@ def test_the_demo_job_writes_build_files_reports_and_pictures_only(demo):
 
 
 def test_the_report_contains_the_figures_of_the_demo_job(demo):
-    report = json.loads((demo / "job.report.json").read_text())
+    report = json.loads((demo / "job.report.json").read_text(encoding="utf-8"))
     assert {"builds", "unplaced", "stages", "seed", "status", "stop_reason", "bound"} <= set(report)
     (build,) = report["builds"]
     assert {"file", "parts", "density", "height_mm", "supports"} <= set(build)

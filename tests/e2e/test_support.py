@@ -80,7 +80,9 @@ def test_a_mesh_lies_where_its_own_coordinates_say_or_in_the_middle(amprep, fixt
     options = ("--center", "--cell", "prism", "--json")
     outcome = amprep("support", fixtures / "table.stl", "-o", tmp_path, *options)
     assert outcome.code == 0
-    (part,) = json.loads((tmp_path / "table.supported.report.json").read_text())["builds"][0]["parts"]
+    (part,) = json.loads((tmp_path / "table.supported.report.json").read_text(encoding="utf-8"))["builds"][0][
+        "parts"
+    ]
     assert [low + high for low, high in zip(part["low_mm"][:2], part["high_mm"][:2], strict=True)] == [
         250,
         250,

@@ -74,5 +74,5 @@ def test_links_and_folders_of_others_stay(tmp_path):
     (tmp_path / f"{PREFIX}999999999-1-abc").symlink_to(elsewhere)
     (tmp_path / f"{PREFIX}notes").mkdir()
     remove_abandoned(tmp_path)
-    assert (elsewhere / "mine.txt").read_text() == "mine"
+    assert (elsewhere / "mine.txt").read_text(encoding="utf-8") == "mine"
     assert (tmp_path / f"{PREFIX}notes").is_dir()

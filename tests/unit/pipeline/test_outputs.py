@@ -41,8 +41,8 @@ def test_an_older_file_of_the_same_name_is_replaced_and_others_stay(tmp_path):
     with OutputFolder(tmp_path, "job") as outputs:
         outputs.path("report.json").write_text("new")
         outputs.publish()
-    assert (tmp_path / "job.report.json").read_text() == "new"
-    assert (tmp_path / "mine.txt").read_text() == "mine"
+    assert (tmp_path / "job.report.json").read_text(encoding="utf-8") == "new"
+    assert (tmp_path / "mine.txt").read_text(encoding="utf-8") == "mine"
 
 
 def test_builds_are_numbered_unless_there_is_only_one(tmp_path):
@@ -72,7 +72,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path):
 
 
 def contents(folder):
-    return {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
+    return {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir() if path.is_file()}
 
 
 def write_two(folder, before_publishing=lambda: None):
@@ -134,7 +134,7 @@ def test_a_link_with_the_name_of_a_file_is_replaced_and_its_target_stays(tmp_pat
     (folder / "job.a").symlink_to(secret)
     (folder / "job.b").symlink_to(tmp_path)
     write_two(folder)
-    assert secret.read_text() == "old"
+    assert secret.read_text(encoding="utf-8") == "old"
     assert not (folder / "job.a").is_symlink()
     assert contents(folder) == {"job.a": "new", "job.b": "new"}
 

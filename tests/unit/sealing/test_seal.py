@@ -57,10 +57,10 @@ def test_a_file_that_was_changed_and_sealed_again_without_the_key_is_found(build
     assert check_seal(build, public) == check_seal(build, private)
     assert check_seal(build, public).fault == ""
     build.write_bytes(b"other")
-    code = json.loads(seal_path(build).read_text())["code"]
+    code = json.loads(seal_path(build).read_text(encoding="utf-8"))["code"]
     seal_file(build, None)
     assert "sealed with sha256, expected ed25519" in check_seal(build, public).fault
-    record = json.loads(seal_path(build).read_text()) | {"method": "ed25519", "code": code}
+    record = json.loads(seal_path(build).read_text(encoding="utf-8")) | {"method": "ed25519", "code": code}
     seal_path(build).write_text(json.dumps(record))
     assert "another key" in check_seal(build, public).fault
 
@@ -118,5 +118,7 @@ def test_a_damaged_seal_is_refused_in_one_line(build, text):
 def test_a_code_that_is_no_number_is_a_fault(build, tmp_path):
     key = secret(tmp_path)
     path, _ = seal_file(build, key)
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"code": "no hexadecimal digits"}))
+    path.write_text(
+        json.dumps(json.loads(path.read_text(encoding="utf-8")) | {"code": "no hexadecimal digits"})
+    )
     assert "damaged" in check_seal(build, key).fault

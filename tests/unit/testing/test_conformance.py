@@ -39,10 +39,12 @@ def test_a_new_plugin_says_where_it_is_found_and_how_it_is_chosen(tmp_path, kind
     import tomllib
 
     folder = make_plugin("amprep-fresh", kind, tmp_path)
-    project = tomllib.loads((folder / "pyproject.toml").read_text())
+    project = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
     assert project["project"]["entry-points"]["amprep"] == {"fresh": "amprep_fresh"}
-    assert '"fresh"' in (folder / "README.md").read_text()
-    assert not [path for path in folder.rglob("*") if path.is_file() and "${" in path.read_text()]
+    assert '"fresh"' in (folder / "README.md").read_text(encoding="utf-8")
+    assert not [
+        path for path in folder.rglob("*") if path.is_file() and "${" in path.read_text(encoding="utf-8")
+    ]
 
 
 @pytest.mark.parametrize("name", ["", "Shelves", "a b", "../x", "-x", "x-", "a--b", "1x", "x" * 61])

@@ -208,7 +208,7 @@ def test_a_job_gives_parts_and_settings_when_nothing_else_is_left(made, plate, t
 
 def test_the_report_says_what_happened(replanned, tmp_path):
     record, _ = replanned({0: shift(y=120.0)})
-    report = json.loads((tmp_path / record.report_file).read_text())
+    report = json.loads((tmp_path / record.report_file).read_text(encoding="utf-8"))
     assert report["parts"][0]["supports"] == "taken along"
     assert (report["file"], report["sha256"]) == (record.file, record.sha256)
 

@@ -141,5 +141,5 @@ def test_a_build_in_memory_has_no_order(made):
 def test_the_report_states_the_digest_of_the_file(made):
     import hashlib
 
-    (entry,) = json.loads((made / "out" / "job.report.json").read_text())["builds"]
+    (entry,) = json.loads((made / "out" / "job.report.json").read_text(encoding="utf-8"))["builds"]
     assert entry["sha256"] == hashlib.sha256(build_file(made).read_bytes()).hexdigest()

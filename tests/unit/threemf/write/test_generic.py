@@ -291,7 +291,7 @@ def test_a_file_appears_only_when_it_is_complete(tmp_path):
         temporary.write_text("half")
         assert not path.exists()
         temporary.write_text("whole")
-    assert path.read_text() == "whole"
+    assert path.read_text(encoding="utf-8") == "whole"
     assert list(tmp_path.iterdir()) == [path]
 
 

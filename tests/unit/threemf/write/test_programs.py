@@ -50,7 +50,7 @@ def slice_with_prusa_slicer(path):
         check=False,
     )
     assert run.returncode == 0, run.stdout + run.stderr
-    return gcode.read_text().splitlines()
+    return gcode.read_text(encoding="utf-8").splitlines()
 
 
 def extents(gcode):
