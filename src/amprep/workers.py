@@ -5,6 +5,7 @@ of the functions that have tasks to share out; `allowed` sets it for all that is
 """
 
 import gc
+import math
 import os
 import pickle
 import select
@@ -15,10 +16,10 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from amprep import interruption
-from amprep.errors import AmprepError
 
 Result = TypeVar("Result")
 
@@ -32,22 +33,29 @@ _HEAD = struct.Struct("=iq")
 _LARGEST_QUEUE = 8_192
 """Largest number of tasks whose numbers fit into a pipe."""
 
+_MOST_WORKERS = 256
+"""Largest number of processes."""
+
+_QUOTA = Path("/sys/fs/cgroup/cpu.max")
+"""Where a container states how much processor time it may use in a period."""
+
 _ALLOWED: ContextVar[int] = ContextVar("workers", default=1)
 
 # Strategy. The process forks, so that tasks find all they need in memory, compiled kernels included: nothing is sent to
 # a worker. The smallest task is done before, which loads the kernels once. The numbers of the others are in one pipe,
 # the largest tasks first, from which each worker takes the next number when it is free. Each worker sends its results
-# through a pipe of its own. A task that fails is done again in this process, so that its error is the same as with one
-# process. Workers ignore signals; they end when this process ends.
-
-
-class WorkerLost(AmprepError):
-    """A worker process ended before its work was done."""
+# through a pipe of its own. Tasks that fail, and those of a worker that was killed, are done in this process at the
+# end, in their order, so that an error is the same as with one process. Workers ignore signals; they end when this
+# process ends.
 
 
 def available() -> int:
-    """Return the number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Return the number of cores that this process may use, by its affinity and the quota of its container."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    with suppress(OSError, ValueError, ZeroDivisionError):
+        quota, period = _QUOTA.read_text(encoding="ascii").split()
+        cores = min(cores, max(1, math.ceil(int(quota) / int(period))))
+    return cores
 
 
 @contextmanager
@@ -82,102 +90,122 @@ def share_out(
 
     Raises
     ------
-    WorkerLost
-        When a worker ends unexpectedly, for example because memory ran out.
     Exception
         What a task raises.
     """
-    workers = min(_ALLOWED.get(), len(work) - 1)
+    workers = min(_ALLOWED.get(), len(work) - 1, _MOST_WORKERS)
     too_small = sum(work) - max(work, default=0.0) < _WORTH_IT
-    if workers < 2 or too_small or len(work) > _LARGEST_QUEUE or sys.platform != "linux":
-        return _one_by_one(task, len(work), is_cancelled, done)
-    order = sorted(range(len(work)), key=lambda number: (-work[number], number))
-    results: dict[int, Result] = {order[-1]: task(order[-1])}
-    done(1)
-    with _pool(task, order[:-1], workers) as pool:
-        for number, found in pool.results(is_cancelled):
-            results[number] = task(number) if found is None else found.value
-            done(len(results))
-    first_missing = next((number for number in range(len(work)) if number not in results), len(work))
+    numbers = range(len(work))
+    results: dict[int, Result] = {}
+    if (
+        workers > 1
+        and not too_small
+        and len(work) <= _LARGEST_QUEUE
+        and sys.platform == "linux"
+        and not is_cancelled()
+    ):
+        order = sorted(numbers, key=lambda number: (-work[number], number))
+        with suppress(Exception):  # it is done again, in its order
+            results[order[-1]] = task(order[-1])
+        with _pool(task, order[:-1], workers) as pool:
+            for number, found in pool.results(is_cancelled):
+                results[number] = found
+                done(len(results))
+    _do_missing(task, numbers, results, is_cancelled, done)
+    first_missing = next((number for number in numbers if number not in results), len(work))
     return [results[number] for number in range(first_missing)]
 
 
-def _one_by_one(
-    task: Callable[[int], Result], count: int, is_cancelled: Callable[[], bool], done: Callable[[int], None]
-) -> list[Result]:
-    results: list[Result] = []
-    while len(results) < count and not is_cancelled():
-        results.append(task(len(results)))
+def _do_missing(
+    task: Callable[[int], Result],
+    numbers: Sequence[int],
+    results: dict[int, Result],
+    is_cancelled: Callable[[], bool],
+    done: Callable[[int], None],
+) -> None:
+    """Do the tasks without a result, in this process and in their order."""
+    for number in numbers:
+        if number in results:
+            continue
+        if is_cancelled():
+            return
+        results[number] = task(number)
         done(len(results))
-    return results
-
-
-class _TaskResult(NamedTuple):
-    """The result of a task."""
-
-    value: Any
 
 
 class _Workers(NamedTuple):
-    """Worker processes: their numbers, and the pipe from each."""
+    """Worker processes: their numbers, by the pipes from them, and the pipes of those that are finished."""
 
     processes: dict[int, int]
+    finished: set[int]
 
-    def results(self, is_cancelled: Callable[[], bool]) -> Iterator[tuple[int, _TaskResult | None]]:
-        """Yield the number and the result of each task when it is done; None for a task that failed."""
-        waiting = set(self.processes)
+    def results(self, is_cancelled: Callable[[], bool]) -> Iterator[tuple[int, Any]]:
+        """Yield the number and the result of each task when it is done; nothing for tasks that failed or were lost."""
+        waiting, poll = set(self.processes), select.poll()
+        for pipe in waiting:
+            poll.register(pipe, select.POLLIN)
         while waiting and not is_cancelled():
-            for pipe in select.select(list(waiting), [], [], _POLL_S)[0]:
-                number, size = _HEAD.unpack(_read(pipe, _HEAD.size))
-                if number < 0:
+            for pipe, _ in poll.poll(1000.0 * _POLL_S):
+                head = _read(pipe, _HEAD.size)
+                number, size = _HEAD.unpack(head) if head else (-1, 0)
+                found = _read(pipe, size) if size > 0 else b""
+                if size > 0 and found:
+                    yield number, pickle.loads(found)  # noqa: S301 - our own
+                if number < 0 or (size > 0 and not found):
                     waiting.remove(pipe)
-                else:
-                    yield number, None if size < 0 else _TaskResult(pickle.loads(_read(pipe, size)))  # noqa: S301 - our own
+                    poll.unregister(pipe)
+                if head and number < 0:
+                    self.finished.add(pipe)
 
     def end(self) -> None:
-        """End all workers, whatever they do."""
+        """End all workers, whatever they do; other code of the program may have waited for them."""
         for pipe, process in self.processes.items():
             os.close(pipe)
-            with suppress(ProcessLookupError):
-                os.kill(process, signal.SIGKILL)
-            os.waitpid(process, 0)
+            if pipe not in self.finished:
+                with suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+            with suppress(ChildProcessError):
+                os.waitpid(process, 0)
 
 
 @contextmanager
 def _pool(task: Callable[[int], Any], numbers: Sequence[int], workers: int) -> Iterator[_Workers]:
-    """Fork workers for the tasks of some numbers, and end them after the block."""
-    queue, fill = os.pipe()
-    os.write(fill, struct.pack(f"={len(numbers)}i", *numbers))
-    os.close(fill)
-    pool = _Workers({})
+    """Fork workers for the tasks of some numbers, as many as the system allows, and end them after the block."""
+    pool, queue = _Workers({}, set()), -1
     try:
-        for _ in range(workers):
-            pipe, process = _fork(task, queue)
-            pool.processes[pipe] = process
+        with suppress(OSError):  # too many processes or open files: those that there are do the work
+            queue, fill = os.pipe()
+            os.write(fill, struct.pack(f"={len(numbers)}i", *numbers))
+            os.close(fill)
+            for _ in range(workers):
+                _fork(task, queue, pool.processes)
         yield pool
     finally:
-        os.close(queue)
+        if queue >= 0:
+            os.close(queue)
         pool.end()
 
 
-def _fork(task: Callable[[int], Any], queue: int) -> tuple[int, int]:
-    """Start a worker; return the pipe with its results, and its process."""
+def _fork(task: Callable[[int], Any], queue: int, processes: dict[int, int]) -> None:
+    """Start a worker, and note its process by the pipe with its results."""
     results, answers = os.pipe()
     parent = os.getpid()
-    # a signal must not run the handlers of this process in the worker
+    # a signal must not run the handlers of this process in the worker, nor come before the worker is noted
     before = signal.pthread_sigmask(signal.SIG_BLOCK, interruption.SIGNALS)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", DeprecationWarning
-            )  # the thread that draws bars holds no lock here
+            # the threads that draw bars, and those of compiled libraries, hold no lock that a task needs
+            warnings.simplefilter("ignore", DeprecationWarning)
             process = os.fork()
         if not process:
             _work(task, queue, answers, parent)
+        processes[results] = process
+    except OSError:
+        os.close(results)
+        raise
     finally:
+        os.close(answers)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    os.close(answers)
-    return results, process
 
 
 def _work(task: Callable[[int], Any], queue: int, answers: int, parent: int) -> None:
@@ -199,7 +227,7 @@ def _answer(task: Callable[[int], Any], number: int) -> tuple[bytes, bytes]:
     """Return the head and the result of a task."""
     try:
         found = pickle.dumps(task(number), protocol=5)
-    except BaseException:  # noqa: BLE001 - whatever it is, it comes again in the other process
+    except BaseException:  # noqa: BLE001 - whatever it is, it comes again in the process that forked
         return _HEAD.pack(number, -1), b""
     return _HEAD.pack(number, len(found)), found
 
@@ -212,13 +240,12 @@ def _write(pipe: int, *pieces: bytes) -> None:
 
 
 def _read(pipe: int, size: int) -> bytes:
+    """Return so many bytes; none if the worker ended before."""
     pieces, missing = [], size
     while missing:
         piece = os.read(pipe, min(missing, 1 << 20))
         if not piece:
-            raise WorkerLost(
-                "a worker process ended unexpectedly, perhaps because memory ran out; try --workers 1"
-            )
+            return b""
         pieces.append(piece)
         missing -= len(piece)
     return b"".join(pieces)

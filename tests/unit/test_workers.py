@@ -1,12 +1,13 @@
 import os
 import signal
 import time
+from pathlib import Path
 
 import pytest
 
 from amprep import workers
 from amprep.errors import JobError
-from amprep.workers import WorkerLost, allowed, share_out
+from amprep.workers import allowed, share_out
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="workers are forked")
 
@@ -57,16 +58,55 @@ def test_a_result_that_cannot_be_sent_is_made_in_this_process() -> None:
     assert [each() for each in found] == list(range(6))
 
 
-def test_a_worker_that_dies_is_an_error_in_one_line() -> None:
+@pytest.mark.parametrize("dying", [{3}, set(range(6))])
+def test_the_tasks_of_workers_that_die_are_done_in_this_process(dying: set[int]) -> None:
     me = os.getpid()
 
     def dies(number: int) -> int:
-        if os.getpid() != me:
+        if os.getpid() != me and number in dying:
             os.kill(os.getpid(), signal.SIGKILL)
         return number
 
-    with allowed(2), pytest.raises(WorkerLost, match="ended unexpectedly"):
-        share_out(dies, LARGE)
+    with allowed(2):
+        assert share_out(dies, LARGE) == list(range(6))
+
+
+def test_of_several_errors_the_one_of_the_first_task_is_raised() -> None:
+    def fails(number: int) -> int:
+        time.sleep(0.05 if number == 1 else 0.0)
+        raise JobError(f"task {number}")
+
+    for count in (1, 3):
+        with allowed(count), pytest.raises(JobError, match="task 0"):
+            share_out(fails, LARGE)
+
+
+def test_without_further_processes_this_one_does_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused() -> int:
+        raise BlockingIOError("no more processes")
+
+    monkeypatch.setattr(os, "fork", refused)
+    before = len(list(Path("/proc/self/fd").iterdir()))
+    with allowed(4):
+        assert [value for value, _ in share_out(process_of, LARGE)] == [0, 1, 4, 9, 16, 25]
+    assert len(list(Path("/proc/self/fd").iterdir())) == before
+
+
+def test_programs_that_ignore_the_end_of_their_children_get_all_results() -> None:
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with allowed(2):
+            assert len(share_out(process_of, LARGE)) == 6
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+
+
+@pytest.mark.parametrize(("text", "most"), [("150000 100000\n", 2), ("max 100000\n", 10_000), ("", 10_000)])
+def test_the_quota_of_a_container_limits_the_cores(text, most, tmp_path, monkeypatch) -> None:
+    (tmp_path / "cpu.max").write_text(text, encoding="ascii")
+    monkeypatch.setattr(workers, "_QUOTA", tmp_path / "cpu.max")
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(10_000)))
+    assert workers.available() == most
 
 
 def test_a_signal_does_not_run_the_handlers_of_this_process_in_workers() -> None:

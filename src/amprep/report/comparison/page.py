@@ -6,7 +6,7 @@ from pathlib import Path
 
 from amprep.files import replacing
 from amprep.report.comparison.read import ComparedRun
-from amprep.report.comparison.rows import figures_of, findings_in_some
+from amprep.report.comparison.rows import figures_of, findings_in_some, must_fix_anything
 from amprep.report.page.cells import Cell, table
 from amprep.report.page.html import static_page
 
@@ -19,8 +19,9 @@ MOST_FINDINGS = 500
 
 def write_comparison(runs: Sequence[ComparedRun], path: Path) -> None:
     """Write the page; it appears complete, or not at all."""
+    text = comparison_text(runs).encode("utf-8", "replace")
     with replacing(path) as temporary:
-        temporary.write_bytes(comparison_text(runs).encode("utf-8", "replace"))
+        temporary.write_bytes(text)
 
 
 def comparison_text(runs: Sequence[ComparedRun]) -> str:
@@ -61,11 +62,16 @@ def _picture(run: ComparedRun, number: int) -> tuple[str, str]:
 def _findings(runs: Sequence[ComparedRun], names: Sequence[str]) -> str:
     found = findings_in_some(runs)
     if not found:
-        return "<h2>Findings</h2>\n<p>What must be fixed is the same in all runs.</p>\n"
+        words = (
+            "What must be fixed is the same in all runs."
+            if must_fix_anything(runs)
+            else "Nothing must be fixed."
+        )
+        return f"<h2>Findings</h2>\n<p>{words}</p>\n"
     rows = [
-        [each.part, each.message, *("must fix" if has else "-" for has in each.runs)]
+        [each.part, each.message, *(str(count) if count else "-" for count in each.runs)]
         for each in found[:MOST_FINDINGS]
     ]
     left = len(found) - len(rows)
     note = f'<p class="empty">{left} more are in the JSON reports.</p>\n' if left else ""
-    return f"<h2>Must be fixed in some runs only</h2>\n{table(('Part', 'Finding', *names), rows)}{note}"
+    return f"<h2>Must be fixed more often in some runs</h2>\n{table(('Part', 'Finding', *names), rows)}{note}"

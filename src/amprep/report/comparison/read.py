@@ -2,6 +2,7 @@
 
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,16 +47,11 @@ class ComparedRun:
 
     def picture(self, build: Mapping[str, Any]) -> str:
         """Return the picture of a build in base64; empty if it is missing, too large, or no PNG in the folder."""
-        name = str(build.get("picture") or "")
-        path = self.folder / name
-        if (
-            not name
-            or Path(name).name != name
-            or not path.is_file()
-            or path.stat().st_size > _LARGEST_PICTURE
-        ):
-            return ""
-        contents = path.read_bytes()
+        name, contents = str(build.get("picture") or ""), b""
+        with suppress(OSError, ValueError):
+            path = self.folder / name
+            if Path(name).name == name and path.is_file() and path.stat().st_size <= _LARGEST_PICTURE:
+                contents = path.read_bytes()
         return b64encode(contents).decode("ascii") if contents.startswith(_PNG) else ""
 
 
@@ -84,7 +80,17 @@ def _read(path: Path) -> Mapping[str, Any]:
         raise InputError(
             f"{path}: its format is {report.get('format')}, expected {_FORMAT}; run the job again"
         )
-    return report
+    cleaned: Mapping[str, Any] = _without_controls(report)
+    return cleaned
+
+
+def _without_controls(value: Any) -> Any:
+    """Return a value of JSON whose texts have no character that a terminal would obey, or cannot show."""
+    if isinstance(value, str):
+        return "".join(each if each.isprintable() else " " for each in value)
+    if isinstance(value, dict):
+        return {key: _without_controls(each) for key, each in value.items()}
+    return [_without_controls(each) for each in value] if isinstance(value, list) else value
 
 
 def _names(paths: Sequence[Path], reports: Sequence[Mapping[str, Any]]) -> list[str]:

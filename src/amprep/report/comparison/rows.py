@@ -1,6 +1,9 @@
 """The figures of runs side by side, and the findings that not all of them have."""
 
+import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, Literal, NamedTuple
 
 from amprep.report.comparison.read import ComparedRun
@@ -60,11 +63,11 @@ class ComparedFigure(NamedTuple):
 
 
 class ComparedFinding(NamedTuple):
-    """What must be fixed in some runs and not in all: the part and the message, and which runs have it."""
+    """What must be fixed not equally often in all runs: the part and the message, and how often each run has it."""
 
     part: str
     message: str
-    runs: tuple[bool, ...]
+    runs: tuple[int, ...]
 
 
 def figures_of(runs: Sequence[ComparedRun]) -> list[ComparedFigure]:
@@ -77,17 +80,22 @@ def figures_of(runs: Sequence[ComparedRun]) -> list[ComparedFigure]:
 
 
 def findings_in_some(runs: Sequence[ComparedRun]) -> list[ComparedFinding]:
-    """Return what must be fixed in some of the runs only."""
+    """Return what must be fixed more often in some of the runs than in others."""
     found = [_urgent(run.report) for run in runs]
-    everywhere = found[0].intersection(*found[1:])
-    some = found[0].union(*found[1:]) - everywhere
-    return [ComparedFinding(*each, tuple(each in own for own in found)) for each in sorted(some)]
+    every = sorted(set().union(*found))
+    counts = [(each, tuple(own[each] for own in found)) for each in every]
+    return [ComparedFinding(*each, numbers) for each, numbers in counts if len(set(numbers)) > 1]
 
 
-def _urgent(report: Mapping[str, Any]) -> set[tuple[str, str]]:
-    """Return the part and the message of all that must be fixed."""
+def must_fix_anything(runs: Sequence[ComparedRun]) -> bool:
+    """Tell whether something must be fixed in one of the runs."""
+    return any(_urgent(run.report) for run in runs)
+
+
+def _urgent(report: Mapping[str, Any]) -> Counter[tuple[str, str]]:
+    """Return how often each part and message is among what must be fixed."""
     urgent = [each for each in _entries(report, "findings") if each.get("triage") == "must fix"]
-    return {(str(each.get("part")), str(each.get("message"))) for each in urgent}
+    return Counter((str(each.get("part")), str(each.get("message"))) for each in urgent)
 
 
 def _entries(report: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
@@ -96,8 +104,11 @@ def _entries(report: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
 
 
 def _number(value: object) -> float | None:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return float(value) if is_number else None  # type: ignore[arg-type]
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return None
+    with suppress(OverflowError):
+        return float(value) if math.isfinite(float(value)) else None
+    return None
 
 
 def _at(entry: Mapping[str, Any], keys: str) -> object:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from amprep.report.comparison.read import ComparedRun
-from amprep.report.comparison.rows import figures_of, findings_in_some
+from amprep.report.comparison.rows import ComparedFinding, figures_of, findings_in_some
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -14,7 +14,7 @@ MOST_FINDINGS = 8
 
 
 def summary(runs: Sequence[ComparedRun]) -> "RenderableType":
-    """Return the table of figures, the best of each row in bold, and what must be fixed in some runs only."""
+    """Return the table of figures, the best of each row in bold, and what must be fixed more often in some runs."""
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
@@ -26,16 +26,16 @@ def summary(runs: Sequence[ComparedRun]) -> "RenderableType":
         cells = zip(figure.words(), figure.best, strict=True)
         listed.add_row(figure.title, *(Text(words, "bold" if best else "") for words, best in cells))
     found = findings_in_some(runs)
-    lines = [
-        Text(
-            f"must fix in {', '.join(run.name for run, has in zip(runs, each.runs, strict=True) if has)} only: "
-            f"{each.part}: {each.message}"
-        )
-        for each in found[:MOST_FINDINGS]
-    ]
+    lines = [Text(_words(each, runs)) for each in found[:MOST_FINDINGS]]
     if len(found) > MOST_FINDINGS:
         lines.append(Text(f"... and {len(found) - MOST_FINDINGS} more"))
     return Group(listed, *lines)
+
+
+def _words(finding: ComparedFinding, runs: Sequence[ComparedRun]) -> str:
+    counts = zip(runs, finding.runs, strict=True)
+    names = ", ".join(run.name for run, count in counts if count == max(finding.runs))
+    return f"must fix more often in {names}: {finding.part}: {finding.message}"
 
 
 def to_json(runs: Sequence[ComparedRun]) -> dict[str, Any]:

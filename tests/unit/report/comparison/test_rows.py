@@ -89,7 +89,7 @@ def test_only_what_must_be_fixed_in_some_runs_is_listed(tmp_path):
     (found,) = findings_in_some(
         runs(report(findings=[both, one]), report("x", findings=[both]), tmp_path=tmp_path)
     )
-    assert found == ("b", "bridge", (True, False))
+    assert found == ("b", "bridge", (1, 0))
 
 
 def test_the_page_escapes_names_and_holds_pictures_of_the_folder_only(tmp_path):
@@ -104,6 +104,31 @@ def test_the_page_escapes_names_and_holds_pictures_of_the_folder_only(tmp_path):
     assert "<script" not in text
     assert text.count("data:image/png") == 1
     assert ComparedRun("x", tmp_path, second).picture(second["builds"][0]) == ""
+
+
+def test_findings_are_counted_and_a_page_without_any_says_so(tmp_path):
+    unplaced = ("a", "no room left")
+    found = runs(report(findings=[unplaced] * 5), report("x", findings=[unplaced]), tmp_path=tmp_path)
+    assert findings_in_some(found) == [("a", "no room left", (5, 1))]
+    assert "the same in all runs" not in comparison_text(found)
+
+
+def test_nothing_to_fix_is_said(tmp_path):
+    assert "Nothing must be fixed." in comparison_text(runs(report(), report("x"), tmp_path=tmp_path))
+
+
+@pytest.mark.parametrize("height", [10**400, float("nan"), True, "40"])
+def test_numbers_that_are_none_are_unknown(height, tmp_path):
+    (run, _) = runs(report(height=height), report("x"), tmp_path=tmp_path)
+    assert "Height, all builds" not in {each.title for each in figures_of([run])}
+
+
+def test_texts_cannot_command_the_terminal_and_long_names_are_no_picture(tmp_path):
+    first = report("\x1b[2Jred \ud800")
+    first["builds"][0]["picture"] = "a" * 5000
+    found = runs(first, report("x"), tmp_path=tmp_path)
+    assert found[0].name == " [2Jred  "
+    assert comparison_text(found)
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"builds": []}', json.dumps(report(format=1)), "nan"])
