@@ -32,7 +32,7 @@ def write_orientations(
         for number, part in enumerate(record.parts):
             progress(number / (len(record.parts) + 1), part.name)
             shown.append(list(_shown(part, job)))
-            suffix = f"{safe_name(part.name)}.png" if len(record.parts) > 1 else "png"
+            suffix = f"{number + 1}.{safe_name(part.name)}.png" if len(record.parts) > 1 else "png"
             path = outputs.path(suffix)
             draw_orientations(shown[-1], path)
             pictures.append(path.read_bytes())

@@ -114,15 +114,17 @@ def recognise(bodies: Sequence[PrintedBody], original: Build, *, places_known: b
     added = [
         _added(own.all[number], labels, original)
         for number, free in enumerate(own.free)
-        if free and not _is_support(own.all[number])
+        if free and not _is_support(own.all[number], original)
     ]
     kept = {each.was for each in found if each.change != "copied"}
     deleted = [each.label for index, each in enumerate(original.parts) if index not in kept]
     return EditedBuild((*found, *added), supports, sources, tuple(deleted) if places_known else ())
 
 
-def _is_support(body: PrintedBody) -> bool:
-    return body.kind in _SUPPORT_KINDS or body.name.startswith(_NAMES_OF_SUPPORTS)
+def _is_support(body: PrintedBody, original: Build) -> bool:
+    """Tell whether a body that is no known part was a support: by its kind, or as what is named after a part."""
+    named = tuple(f"{kind}{each.label}" for kind in _NAMES_OF_SUPPORTS for each in original.parts)
+    return body.kind in _SUPPORT_KINDS or body.name.startswith(named)
 
 
 def _recognised(own: _Bodies, original: Build, places_known: bool) -> list[EditedPart]:
@@ -131,7 +133,8 @@ def _recognised(own: _Bodies, original: Build, places_known: bool) -> list[Edite
     for part in dict.fromkeys(each.part for each in original.parts):
         shape = _BodyCorners(part.mesh)
         for number in own.like(shape):
-            if not _is_support(own.all[number]) and (matrix := own.motion_of(number, shape)) is not None:
+            is_support = own.all[number].kind in _SUPPORT_KINDS
+            if not is_support and (matrix := own.motion_of(number, shape)) is not None:
                 matches += [
                     (_badness(own.all[number], each, matrix), number, index, matrix)
                     for index, each in enumerate(original.parts)
@@ -291,7 +294,7 @@ def _added(body: PrintedBody, taken: set[str], original: Build) -> EditedPart:
     Raises
     ------
     InputError
-        If it has the name of a part of the original build: it is that part, changed.
+        If it has the name of a part of the original build: it is that part, changed; or no triangles.
     """
     names = {name for each in original.parts for name in (each.label, each.part.name)}
     if body.name in names:
@@ -299,6 +302,8 @@ def _added(body: PrintedBody, taken: set[str], original: Build) -> EditedPart:
             f"{body.name} has another shape than the build recorded: it was scaled, mirrored, cut or repaired; "
             "run the job again with the new shape, or give the part another name"
         )
+    if not len(body.mesh.triangles):
+        raise InputError(f"{body.name} has no triangles, so it is no part; delete it in the file")
     low = body.mesh.bounds[0]
     matrix = np.eye(4)
     matrix[:3, 3] = low

@@ -244,3 +244,13 @@ def test_an_enclosed_overhang_is_planned_again_when_something_near_it_went(plate
 def test_new_names_count():
     names = [new_name(Path(each)) for each in ("a.build-1.3mf", "a.replanned.3mf", "a.replanned-2.3mf")]
     assert names == ["a.build-1.replanned", "a.replanned-2", "a.replanned-3"]
+
+
+def test_a_part_that_is_named_like_a_support_is_a_part(tmp_path):
+    write_stl(mesh_of(box((12, 6, 5), (0, 0, 0))), tmp_path / "walls of garage.stl")
+    settings = {"printer": "EOS M290", "supports.enabled": False, "packing.strategy": "extreme-points"}
+    amprep.run(tmp_path / "walls of garage.stl", output=tmp_path, settings=settings)
+    (file,) = tmp_path.glob("*.3mf")
+    record = amprep.replan(file, output=tmp_path / "out")
+    assert [(part.label, part.change) for part in record.parts] == [("walls of garage", "none")]
+    assert record.deleted == ()
