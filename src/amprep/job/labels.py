@@ -152,10 +152,19 @@ def _label(row: Mapping[str, str | None], number: int, where: str) -> LabelSetti
         raise JobError(f"{where}: {error}") from error
 
 
+PLACEHOLDERS = ("{part}", "{copy}", "{copies}")
+"""What stands in a text for the name of its part, the number of the copy and their count."""
+
+
 def _check_text(text: str, where: str) -> None:
     if len(text) > _LONGEST_TEXT:
         raise JobError(f"{where}: text must have at most {_LONGEST_TEXT} characters, got {len(text)}")
-    unknown = unknown_in(text.replace("{", "").replace("}", ""))
+    plain = text
+    for placeholder in PLACEHOLDERS:
+        plain = plain.replace(placeholder, "")
+    if "{" in plain or "}" in plain:
+        raise JobError(f"{where}: unknown placeholder in {text!r}; known are {', '.join(PLACEHOLDERS)}")
+    unknown = unknown_in(plain)
     if unknown:
         raise JobError(f"{where}: the font has no {unknown!r}; it has letters, digits and - _ / . : + #")
 

@@ -38,6 +38,7 @@ def test_semicolons_of_spreadsheets_are_read(tmp_path):
         ("part,txt\nb,A\n", r"unknown column 'txt' \(did you mean 'text'\?\)"),
         ("part,text\nb,\n", "row 2: part and text must not be empty"),
         ("part,text\nb,A?\n", "row 2: the font has no '\\?'"),
+        ("part,text\nb,SN-{number}\n", "row 2: unknown placeholder in 'SN-{number}'"),
         (f"part,text\nb,{'A' * 41}\n", "at most 40 characters, got 41"),
         ("part,text,copy\nb,A,0\n", "copy must be at least 1, got 0"),
         ("part,text,copy\nb,A,x\n", "copy: expected a whole number, got 'x'"),
