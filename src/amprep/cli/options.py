@@ -75,6 +75,21 @@ def supervise_plugins(
 job_option = partial(typer.Option, rich_help_panel=_JOB)
 output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
 
+DryRun = Annotated[bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")]
+Quiet = Annotated[bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")]
+ProgressForm = Annotated[
+    Literal["bars", "lines"],
+    output_option(
+        "--progress",
+        metavar="FORM",
+        help="Show progress as bars, or for programs as lines of JSON on standard error.",
+    ),
+]
+LogFile = Annotated[
+    Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
+]
+Debug = Annotated[bool, output_option("--debug", help="Show the traceback of an error.")]
+
 
 @dataclass(frozen=True, kw_only=True)
 class ReadingOptions:
@@ -146,30 +161,17 @@ class JobOptions(ReadingOptions):
         output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
     ] = None
     stl: Annotated[bool, output_option("--stl", help="Write STL files as well.")] = False
-    dry_run: Annotated[
-        bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")
-    ] = False
+    dry_run: DryRun = False
     as_json: Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")] = (
         False
     )
-    quiet: Annotated[
-        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
-    ] = False
-    progress: Annotated[
-        Literal["bars", "lines"],
-        output_option(
-            "--progress",
-            metavar="FORM",
-            help="Show progress as bars, or for programs as lines of JSON on standard error.",
-        ),
-    ] = "bars"
+    quiet: Quiet = False
+    progress: ProgressForm = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
     workers: Workers = None
-    log: Annotated[
-        Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
-    ] = None
-    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
+    log: LogFile = None
+    debug: Debug = False
 
     @property
     def changes(self) -> dict[str, Any]:

@@ -2,13 +2,26 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from amprep import workers
 from amprep.cli.jobs.reporting import finish
 from amprep.cli.log import logging_to
-from amprep.cli.options import NoPlugins, Plugins, output_option, supervise_plugins, with_options
+from amprep.cli.options import (
+    Debug,
+    DryRun,
+    LogFile,
+    NoPlugins,
+    Plugins,
+    ProgressForm,
+    Quiet,
+    Workers,
+    output_option,
+    supervise_plugins,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from amprep.report.replanning import ReplanRecord
@@ -44,29 +57,17 @@ class ReplanningOptions:
     output: Annotated[
         Path | None, output_option("-o", "--output", help="Output folder; default: the folder of the file.")
     ] = None
-    dry_run: Annotated[
-        bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")
-    ] = False
+    dry_run: DryRun = False
     as_json: Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")] = (
         False
     )
-    quiet: Annotated[
-        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
-    ] = False
-    progress: Annotated[
-        Literal["bars", "lines"],
-        output_option(
-            "--progress",
-            metavar="FORM",
-            help="Show progress as bars, or for programs as lines of JSON on standard error.",
-        ),
-    ] = "bars"
+    quiet: Quiet = False
+    progress: ProgressForm = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
-    log: Annotated[
-        Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
-    ] = None
-    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
+    workers: Workers = None
+    log: LogFile = None
+    debug: Debug = False
 
 
 @with_options(ReplanningOptions)
@@ -125,14 +126,15 @@ def _replanned(build: Path, folder: Path, options: ReplanningOptions) -> "Replan
             from amprep import api
 
             host = Host.load(modules=options.plugins or [], plugins_enabled=not options.no_plugins)
-        return api.replan(
-            build,
-            output=folder,
-            job=options.job,
-            report=options.report,
-            dry_run=options.dry_run,
-            verify_all=options.verify_all,
-            time_limit_s=options.time_limit,
-            plugins=host,
-            watcher=bars,
-        )
+        with workers.allowed(options.workers or workers.available()):
+            return api.replan(
+                build,
+                output=folder,
+                job=options.job,
+                report=options.report,
+                dry_run=options.dry_run,
+                verify_all=options.verify_all,
+                time_limit_s=options.time_limit,
+                plugins=host,
+                watcher=bars,
+            )

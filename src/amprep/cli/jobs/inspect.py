@@ -8,8 +8,10 @@ import typer
 
 from amprep.cli.jobs.reporting import finish
 from amprep.cli.options import (
+    Debug,
     NoPlugins,
     Plugins,
+    Quiet,
     ReadingOptions,
     job_option,
     output_option,
@@ -51,12 +53,10 @@ class InspectionOptions(ReadingOptions):
         output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
     ] = None
     as_json: Annotated[bool, output_option("--json", help="Print the result as JSON.")] = False
-    quiet: Annotated[
-        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
-    ] = False
+    quiet: Quiet = False
     plugins: Plugins = None
     no_plugins: NoPlugins = False
-    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
+    debug: Debug = False
 
 
 @with_options(InspectionOptions)

@@ -9,8 +9,12 @@ import typer
 from amprep.cli import completion
 from amprep.cli.jobs.reporting import call_api, finish
 from amprep.cli.options import (
+    Debug,
+    LogFile,
     NoPlugins,
     Plugins,
+    ProgressForm,
+    Quiet,
     ReadingOptions,
     Workers,
     job_option,
@@ -63,24 +67,13 @@ class OrientationOptions(ReadingOptions):
         output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
     ] = None
     as_json: Annotated[bool, output_option("--json", help="Print the result as JSON.")] = False
-    quiet: Annotated[
-        bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")
-    ] = False
-    progress: Annotated[
-        Literal["bars", "lines"],
-        output_option(
-            "--progress",
-            metavar="FORM",
-            help="Show progress as bars, or for programs as lines of JSON on standard error.",
-        ),
-    ] = "bars"
+    quiet: Quiet = False
+    progress: ProgressForm = "bars"
     plugins: Plugins = None
     no_plugins: NoPlugins = False
     workers: Workers = None
-    log: Annotated[
-        Path | None, output_option("--log", metavar="FILE", help="Write what is done, and when, to a file.")
-    ] = None
-    debug: Annotated[bool, output_option("--debug", help="Show the traceback of an error.")] = False
+    log: LogFile = None
+    debug: Debug = False
 
     @property
     def changes(self) -> dict[str, Any]:

@@ -61,18 +61,14 @@ def carried_fractions(surface: TurnableSurface, limits: Limits) -> Floats:
     limits
         Overhang angle and limits.
     """
-    from amprep.kernels.orientation.carried import measure_carried
+    from amprep.kernels.orientation.carried import WalkedSurface, measure_carried
 
     angle = np.radians(limits.angle_deg)
     rows = np.clip(np.ceil(np.sqrt(surface.areas) / _SAMPLE_MM), 1, _MOST_ROWS)
     samples = np.where(surface.areas > 0.0, rows, 0).astype(np.int64)
     carried = np.empty(len(surface.triangles))
     measure_carried(
-        surface.points,
-        surface.triangles,
-        surface.normals,
-        surface.beyond,
-        surface.straight,
+        WalkedSurface(surface.points, surface.triangles, surface.normals, surface.beyond, surface.straight),
         samples,
         np.array(
             [
@@ -121,16 +117,17 @@ def quick_figures(
     if enforced is not None:
         steep[enforced] = 1e-6
     found = np.empty((len(directions), 6))
-    columns.score_directions(
+    faces = columns.ScoredFaces(
         surface.points,
         surface.triangles,
         surface.normals,
         surface.areas,
         np.ones(len(surface.triangles)) if carried is None else 1.0 - carried,
         steep,
-        surface.edges,
-        surface.rays,
-        surface.beside,
+    )
+    columns.score_directions(
+        faces,
+        columns.ScoredEdges(surface.edges, surface.rays, surface.beside),
         np.ascontiguousarray(directions),
         np.array([lift, limits.plate, np.sin(angle), np.cos(angle)]),
         np.empty(len(surface.points)),

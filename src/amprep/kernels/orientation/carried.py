@@ -1,5 +1,7 @@
 """Measure which fraction of each triangle the part itself carries when the triangle points straight down."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from amprep.arrays import Floats, Ints
@@ -27,11 +29,12 @@ def _along(points, point, axis):
 
 
 @inlined
-def _walk(points, triangles, normals, beyond, straight, down, across, onward, face, start, steep, most):
+def _walk(surface, down, across, onward, face, start, steep, most):
     """Return length, whether it ends at an anchor, and the greatest depth against the start and at the end.
 
     The line leads in the direction `onward`, perpendicular to `across`; both are level where `down` points down.
     """
+    points, triangles, normals, beyond = surface.points, surface.triangles, surface.normals, surface.beyond
     x0 = start[0] * onward[0] + start[1] * onward[1] + start[2] * onward[2]
     y0 = start[0] * across[0] + start[1] * across[1] + start[2] * across[2]
     z0 = start[0] * down[0] + start[1] * down[1] + start[2] * down[2]
@@ -68,7 +71,7 @@ def _walk(points, triangles, normals, beyond, straight, down, across, onward, fa
         if facing <= steep:
             return (
                 length,
-                _is_anchor(points, triangles, straight, at, side, face_beyond, came, down, facing),
+                _is_anchor(points, triangles, surface.straight, at, side, face_beyond, came, down, facing),
                 rise,
                 end,
             )
@@ -90,20 +93,10 @@ def _is_anchor(points, triangles, straight, at, side, other, came, down, facing)
     return (depth > 1e-9 and (solid or facing > 1e-6)) or (solid and facing < -1e-6)
 
 
-@kernel
-def measure_carried(
-    points: Floats,
-    triangles: Ints,
-    normals: Floats,
-    beyond: Ints,
-    straight: Ints,
-    samples: Ints,
-    limits: Floats,
-    carried: Floats,
-) -> None:
-    """Measure the carried fraction of each triangle.
+class WalkedSurface(NamedTuple):
+    """The triangles of a part, with what is beyond their sides.
 
-    Parameters
+    Attributes
     ----------
     points, triangles, normals
         ``(n, 3)`` mm, ``(m, 3)`` and ``(m, 3)``, unit vectors out of the solid.
@@ -112,6 +105,23 @@ def measure_carried(
         side there; `NO_FACE` at open edges and where more than two faces meet.
     straight
         ``(m, 3)`` 1 where the solid has an angle of at least 180 degrees at the side.
+    """
+
+    points: Floats
+    triangles: Ints
+    normals: Floats
+    beyond: Ints
+    straight: Ints
+
+
+@kernel
+def measure_carried(surface: WalkedSurface, samples: Ints, limits: Floats, carried: Floats) -> None:
+    """Measure the carried fraction of each triangle.
+
+    Parameters
+    ----------
+    surface
+        The part.
     samples
         ``(m,)`` number of rows into which each triangle is divided for its sample points; 0 leaves the triangle out.
     limits
@@ -120,6 +130,7 @@ def measure_carried(
     carried
         ``(m,)`` out: fraction of the sample points that the part carries.
     """
+    points, triangles, normals = surface.points, surface.triangles, surface.normals
     steep, ledge, bridge, arch, least_rise = limits[0], limits[1], limits[2], limits[3], limits[4]
     longest = max(ledge, bridge, arch)
     for face in range(len(triangles)):
@@ -156,33 +167,11 @@ def measure_carried(
                     onward = (co * ux + si * vx, co * uy + si * vy, co * uz + si * vz)
                     across = (co * vx - si * ux, co * vy - si * uy, co * vz - si * uz)
                     one, held_one, rise_one, end_one = _walk(
-                        points,
-                        triangles,
-                        normals,
-                        beyond,
-                        straight,
-                        down,
-                        across,
-                        onward,
-                        face,
-                        start,
-                        steep,
-                        longest,
+                        surface, down, across, onward, face, start, steep, longest
                     )
                     back = (-onward[0], -onward[1], -onward[2])
                     two, held_two, rise_two, end_two = _walk(
-                        points,
-                        triangles,
-                        normals,
-                        beyond,
-                        straight,
-                        down,
-                        across,
-                        back,
-                        face,
-                        start,
-                        steep,
-                        longest,
+                        surface, down, across, back, face, start, steep, longest
                     )
                     if (held_one and one <= ledge) or (held_two and two <= ledge):
                         held += 1

@@ -1,5 +1,7 @@
 """Sum up what the overhangs of a part cost in many directions."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from amprep.arrays import Floats, Ints
@@ -10,25 +12,10 @@ HEIGHT, AREA, PLAN, VOLUME, EDGES, UNDER_EDGES = range(6)
 volume under them (mm3), length of the knife edges (mm) and the area under them (mm2)."""
 
 
-@kernel
-def score_directions(
-    points: Floats,
-    triangles: Ints,
-    normals: Floats,
-    areas: Floats,
-    open_share: Floats,
-    steep: Floats,
-    edges: Ints,
-    rays: Floats,
-    beside: Ints,
-    directions: Floats,
-    limits: Floats,
-    heights: Floats,
-    scores: Floats,
-) -> None:
-    """Sum up the overhangs in each direction.
+class ScoredFaces(NamedTuple):
+    """The faces of a part.
 
-    Parameters
+    Attributes
     ----------
     points, triangles
         ``(n, 3)`` mm, ``(m, 3)``.
@@ -38,9 +25,49 @@ def score_directions(
         ``(m,)`` fraction of each triangle that the part does not carry where the triangle is an overhang.
     steep
         ``(m,)`` cosine of the angle to the plate from which each triangle is no overhang.
-    edges, rays, beside
-        ``(e, 2)`` ends of the edges that may be knife edges; ``(e, 2, 3)`` unit vectors in their two faces, away from
-        the edge; ``(e, 2)`` these faces.
+    """
+
+    points: Floats
+    triangles: Ints
+    normals: Floats
+    areas: Floats
+    open_share: Floats
+    steep: Floats
+
+
+class ScoredEdges(NamedTuple):
+    """The edges of a part that may be knife edges.
+
+    Attributes
+    ----------
+    ends
+        ``(e, 2)`` points.
+    rays
+        ``(e, 2, 3)`` unit vectors in the two faces of each, away from the edge.
+    beside
+        ``(e, 2)`` these faces.
+    """
+
+    ends: Ints
+    rays: Floats
+    beside: Ints
+
+
+@kernel
+def score_directions(
+    faces: ScoredFaces,
+    knives: ScoredEdges,
+    directions: Floats,
+    limits: Floats,
+    heights: Floats,
+    scores: Floats,
+) -> None:
+    """Sum up the overhangs in each direction.
+
+    Parameters
+    ----------
+    faces, knives
+        The part.
     directions
         ``(k, 3)`` unit vectors that point up.
     limits
@@ -51,6 +78,8 @@ def score_directions(
     scores
         ``(k, 6)`` out, by the columns named above.
     """
+    points, triangles, normals, areas = faces.points, faces.triangles, faces.normals, faces.areas
+    edges, rays, beside = knives.ends, knives.rays, knives.beside
     lift, plate, flat, cosine = limits[0], limits[1], limits[2], limits[3]
     for k in range(len(directions)):
         x, y, z = directions[k, 0], directions[k, 1], directions[k, 2]
@@ -63,12 +92,12 @@ def score_directions(
         area, plan, volume = 0.0, 0.0, 0.0
         for m in range(len(triangles)):
             facing = -(normals[m, 0] * x + normals[m, 1] * y + normals[m, 2] * z)
-            if facing <= steep[m]:
+            if facing <= faces.steep[m]:
                 continue
             a, b, c = heights[triangles[m, 0]], heights[triangles[m, 1]], heights[triangles[m, 2]]
             if max(a, b, c) - floor <= plate:
                 continue
-            share = open_share[m] * areas[m]
+            share = faces.open_share[m] * areas[m]
             area += share
             plan += share * facing
             volume += share * facing * ((a + b + c) / 3.0 - floor)
