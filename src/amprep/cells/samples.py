@@ -1,10 +1,12 @@
 """Sample requests on which a cell is measured and checked: a column, and a block."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from amprep.model import DIRECTIONS, CellRequest, Grid, Role, SupportEdges
+from amprep.model.supports.rules import SectionRules
 
 LAYERS = 6
 """Layers of a column and of a block: enough for cells that change every second or third layer."""
@@ -25,6 +27,20 @@ def single_column(pitch: float, step: float, direction: int) -> CellRequest:
     side = LAYERS + 4
     grid = Grid(np.zeros(3), pitch, step, (LAYERS + 2, 2 * side, 2 * side))
     return _request(grid, plane, side - dy * plane, side - dx * plane, direction, Role.TRUNK)
+
+
+def column_for(pitch: float, step: float, rules: SectionRules) -> CellRequest:
+    """Return an upright column for a cell as meshes, with the rules by which cells choose default sizes.
+
+    Parameters
+    ----------
+    pitch, step
+        Width and height (mm) of a voxel.
+    rules
+        The least wall and the leg ratio.
+    """
+    column = single_column(pitch, step, 0)
+    return replace(column, beams=False, least_wall=rules.least_wall_mm, leg_ratio=rules.leg_ratio)
 
 
 def block(

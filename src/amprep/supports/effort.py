@@ -8,7 +8,7 @@ import numpy as np
 
 from amprep.arrays import Bools
 from amprep.cells.answers import Emit
-from amprep.cells.samples import single_column
+from amprep.cells.samples import column_for
 from amprep.errors import JobError
 from amprep.model.control import Stop
 from amprep.model.supports import OUT_OF_TIME
@@ -69,8 +69,7 @@ def effort_of(emit: Emit, pitch: float, step: float, rules: SectionRules) -> Eff
     rules
         The least wall, and the leg ratio, by which cells choose default sizes.
     """
-    column = single_column(pitch, step, 0)
-    request = replace(column, beams=False, least_wall=rules.least_wall_mm, leg_ratio=rules.leg_ratio)
+    request = column_for(pitch, step, rules)
     cells = emit(request)
     count = sum(len(cells.templates[each].mesh.triangles) for each in cells.template.tolist())
     triangles = max(count / len(request.edges) - _CUBE, 1.0)

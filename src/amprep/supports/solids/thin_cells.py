@@ -2,11 +2,10 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from amprep.cells.answers import Emit
-from amprep.cells.samples import LAYERS, single_column
+from amprep.cells.samples import LAYERS, column_for
 from amprep.errors import JobError
 from amprep.geometry.meshes.manifold import accepted, as_manifold
 from amprep.model import Cells
@@ -89,8 +88,7 @@ def has_thin_walls(emit: Emit, pitch: float, step: float, rules: SectionRules) -
     rules
         The least wall, and the leg ratio, by which cells choose default sizes.
     """
-    column = single_column(pitch, step, 0)
-    request = replace(column, beams=False, least_wall=rules.least_wall_mm, leg_ratio=rules.leg_ratio)
+    request = column_for(pitch, step, rules)
     cells = emit(request)
     low = float(request.edges.plane.min() - 1) * step
     heights = [low + (layer + place) * step for layer in range(1, LAYERS) for place in _PLACES]
