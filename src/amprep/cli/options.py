@@ -75,7 +75,33 @@ def supervise_plugins(
 job_option = partial(typer.Option, rich_help_panel=_JOB)
 output_option = partial(typer.Option, rich_help_panel=_OUTPUT)
 
+Printer = Annotated[
+    str | None,
+    job_option(
+        "--printer",
+        help="Printer by name or profile file; see 'amprep printers list'.",
+        autocompletion=completion.printers,
+    ),
+]
+Material = Annotated[
+    str | None,
+    job_option(
+        "--material",
+        help="Material by name or profile file; see 'amprep materials list'.",
+        autocompletion=completion.materials,
+    ),
+]
+Sets = Annotated[
+    list[str] | None,
+    job_option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
+    ),
+]
 DryRun = Annotated[bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")]
+ResultAsJson = Annotated[bool, output_option("--json", help="Print the result as JSON.")]
+ReportAsJson = Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")]
 Quiet = Annotated[bool, output_option("--quiet", "-q", help="Print errors only: no progress and no table.")]
 ProgressForm = Annotated[
     Literal["bars", "lines"],
@@ -141,14 +167,7 @@ class JobOptions(ReadingOptions):
             help="Program that will open the build jobs: generic, prusaslicer or cura.",
         ),
     ] = None
-    sets: Annotated[
-        list[str] | None,
-        job_option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
-        ),
-    ] = None
+    sets: Sets = None
     name: Annotated[
         str | None,
         output_option(
@@ -162,9 +181,7 @@ class JobOptions(ReadingOptions):
     ] = None
     stl: Annotated[bool, output_option("--stl", help="Write STL files as well.")] = False
     dry_run: DryRun = False
-    as_json: Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")] = (
-        False
-    )
+    as_json: ReportAsJson = False
     quiet: Quiet = False
     progress: ProgressForm = "bars"
     plugins: Plugins = None
@@ -189,22 +206,8 @@ class JobOptions(ReadingOptions):
 class BuildOptions(JobOptions):
     """Options of the commands that make build jobs: `run` and `support`."""
 
-    printer: Annotated[
-        str | None,
-        job_option(
-            "--printer",
-            help="Printer by name or profile file; see 'amprep printers list'.",
-            autocompletion=completion.printers,
-        ),
-    ] = None
-    material: Annotated[
-        str | None,
-        job_option(
-            "--material",
-            help="Material by name or profile file; see 'amprep materials list'.",
-            autocompletion=completion.materials,
-        ),
-    ] = None
+    printer: Printer = None
+    material: Material = None
     labels: Annotated[
         str | None,
         job_option(

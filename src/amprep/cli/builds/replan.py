@@ -17,6 +17,7 @@ from amprep.cli.options import (
     Plugins,
     ProgressForm,
     Quiet,
+    ReportAsJson,
     Workers,
     output_option,
     supervise_plugins,
@@ -58,9 +59,7 @@ class ReplanningOptions:
         Path | None, output_option("-o", "--output", help="Output folder; default: the folder of the file.")
     ] = None
     dry_run: DryRun = False
-    as_json: Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")] = (
-        False
-    )
+    as_json: ReportAsJson = False
     quiet: Quiet = False
     progress: ProgressForm = "bars"
     plugins: Plugins = None

@@ -11,8 +11,11 @@ from amprep.cli.options import (
     Debug,
     NoPlugins,
     Plugins,
+    Printer,
     Quiet,
     ReadingOptions,
+    ResultAsJson,
+    Sets,
     job_option,
     output_option,
     supervise_plugins,
@@ -27,18 +30,8 @@ if TYPE_CHECKING:
 class InspectionOptions(ReadingOptions):
     """Options of the command that do not choose what is inspected."""
 
-    printer: Annotated[
-        str | None,
-        job_option("--printer", help="Printer by name or profile file; see 'amprep printers list'."),
-    ] = None
-    sets: Annotated[
-        list[str] | None,
-        job_option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a key of the job file, for example supports.overhang_angle_deg=40; repeatable.",
-        ),
-    ] = None
+    printer: Printer = None
+    sets: Sets = None
     time_limit: Annotated[
         float | None,
         job_option(
@@ -52,7 +45,7 @@ class InspectionOptions(ReadingOptions):
         Path | None,
         output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
     ] = None
-    as_json: Annotated[bool, output_option("--json", help="Print the result as JSON.")] = False
+    as_json: ResultAsJson = False
     quiet: Quiet = False
     plugins: Plugins = None
     no_plugins: NoPlugins = False

@@ -6,16 +6,19 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from amprep.cli import completion
 from amprep.cli.jobs.reporting import call_api, finish
 from amprep.cli.options import (
     Debug,
     LogFile,
+    Material,
     NoPlugins,
     Plugins,
+    Printer,
     ProgressForm,
     Quiet,
     ReadingOptions,
+    ResultAsJson,
+    Sets,
     Workers,
     job_option,
     output_option,
@@ -29,30 +32,9 @@ _FACES = "a colour (#RRGGBB), a marked region, or a direction as drawn (+x, -z);
 class OrientationOptions(ReadingOptions):
     """Options of the command that do not restrict the orientation."""
 
-    printer: Annotated[
-        str | None,
-        job_option(
-            "--printer",
-            help="Printer by name or profile file; see 'amprep printers list'.",
-            autocompletion=completion.printers,
-        ),
-    ] = None
-    material: Annotated[
-        str | None,
-        job_option(
-            "--material",
-            help="Material by name or profile file; see 'amprep materials list'.",
-            autocompletion=completion.materials,
-        ),
-    ] = None
-    sets: Annotated[
-        list[str] | None,
-        job_option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
-        ),
-    ] = None
+    printer: Printer = None
+    material: Material = None
+    sets: Sets = None
     time_limit: Annotated[
         float | None,
         job_option(
@@ -66,7 +48,7 @@ class OrientationOptions(ReadingOptions):
         Path | None,
         output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
     ] = None
-    as_json: Annotated[bool, output_option("--json", help="Print the result as JSON.")] = False
+    as_json: ResultAsJson = False
     quiet: Quiet = False
     progress: ProgressForm = "bars"
     plugins: Plugins = None

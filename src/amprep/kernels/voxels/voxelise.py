@@ -7,31 +7,8 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int16s, Int32s, Int64s
+from amprep.kernels.meshes.half_space import clip_to_half_space
 from amprep.kernels.meshes.rows import ends_in_row, slopes_of
-
-
-@njit(cache=True)
-def _clip(source: Floats, count: int, axis: int, bound: float, sign: float, target: Floats) -> int:
-    """Clip the polygon ``source[:count]`` to ``sign * (p[axis] - bound) >= 0``; return the number of corners kept.
-
-    The result is written to `target`, which has room for one corner more than the polygon.
-    """
-    kept = 0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        a = sign * (source[i, axis] - bound)
-        b = sign * (source[j, axis] - bound)
-        if a >= 0.0:
-            for c in range(3):
-                target[kept, c] = source[i, c]
-            kept += 1
-        if (a > 0.0 and b < 0.0) or (a < 0.0 and b > 0.0):
-            fraction = a / (a - b)
-            for c in range(3):
-                target[kept, c] = source[i, c] + fraction * (source[j, c] - source[i, c])
-            target[kept, axis] = bound
-            kept += 1
-    return kept
 
 
 @njit(cache=True)
@@ -120,8 +97,8 @@ def mark_elements(
                     for c in range(3):
                         band[i, c] = whole[i, c]
             else:
-                count = _clip(whole, 3, 1, bottom, 1.0, spare)
-                count = _clip(spare, count, 1, top, -1.0, band)
+                count = clip_to_half_space(whole, 3, 1, bottom, 1.0, spare)
+                count = clip_to_half_space(spare, count, 1, top, -1.0, band)
             if count == 0:
                 continue
             x_low, x_high = band[0, 0], band[0, 0]
@@ -136,8 +113,8 @@ def mark_elements(
                 if x_low >= left and x_high <= right:
                     _mark_column(band, count, labels[e], step, tolerance, holds, iy, ix, marks)
                     continue
-                corners = _clip(band, count, 0, left, 1.0, spare)
-                corners = _clip(spare, corners, 0, right, -1.0, piece)
+                corners = clip_to_half_space(band, count, 0, left, 1.0, spare)
+                corners = clip_to_half_space(spare, corners, 0, right, -1.0, piece)
                 if corners > 0:
                     _mark_column(piece, corners, labels[e], step, tolerance, holds, iy, ix, marks)
 

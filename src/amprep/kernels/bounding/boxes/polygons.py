@@ -9,6 +9,7 @@ from numba import njit
 
 from amprep.arrays import Floats, Int64s
 from amprep.kernels.helper import helper
+from amprep.kernels.meshes.half_space import clip_to_half_space
 
 MOST_CORNERS = 64
 """Greatest number of corners of a polygon that is clipped; each half-space adds one."""
@@ -18,27 +19,6 @@ ROUNDING = 1e-9
 
 _STACK = 64
 """Pieces of one polygon that wait to be clipped: at most six for each box."""
-
-
-@helper
-def clip(source: Floats, count: int, axis: int, bound: float, sign: float, target: Floats) -> int:
-    """Clip the polygon ``source[:count]`` to ``sign * (p[axis] - bound) >= 0``; return the number of corners."""
-    kept = 0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        a = sign * (source[i, axis] - bound)
-        b = sign * (source[j, axis] - bound)
-        if a >= 0.0:
-            for c in range(3):
-                target[kept, c] = source[i, c]
-            kept += 1
-        if (a > 0.0 and b < 0.0) or (a < 0.0 and b > 0.0):
-            fraction = a / (a - b)
-            for c in range(3):
-                target[kept, c] = source[i, c] + fraction * (source[j, c] - source[i, c])
-            target[kept, axis] = bound
-            kept += 1
-    return kept
 
 
 @helper
@@ -84,7 +64,7 @@ def _cut(
 ) -> int:
     """Clip a polygon, or a box given by its least and its greatest corner; return the number of corners."""
     if not solid:
-        return int(clip(source, count, axis, bound, sign, target))
+        return int(clip_to_half_space(source, count, axis, bound, sign, target))
     for c in range(3):
         target[0, c] = source[0, c]
         target[1, c] = source[1, c]

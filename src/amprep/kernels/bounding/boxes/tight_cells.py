@@ -4,8 +4,9 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.bounding.boxes.polygons import MOST_CORNERS, clip, measure, normal_component
+from amprep.kernels.bounding.boxes.polygons import MOST_CORNERS, measure, normal_component
 from amprep.kernels.helper import helper
+from amprep.kernels.meshes.half_space import clip_to_half_space
 
 _ROUNDING = 1e-9
 """Fraction of a cell by which a polygon may reach into the next one without being cut."""
@@ -43,8 +44,8 @@ def _cut_off(
     if plane == np.inf:
         _copy(polygon, count, lower)
         return count, count
-    below = clip(polygon, count, axis, plane, -1.0, lower)
-    above = clip(polygon, count, axis, plane, 1.0, rest)
+    below = clip_to_half_space(polygon, count, axis, plane, -1.0, lower)
+    above = clip_to_half_space(polygon, count, axis, plane, 1.0, rest)
     _copy(rest, above, polygon)
     return below, above
 

@@ -4,9 +4,10 @@ import numpy as np
 from numba import njit
 
 from amprep.arrays import Floats, Int16s, Int32s, Int64s
-from amprep.kernels.bounding.boxes.polygons import clip, normal_component
+from amprep.kernels.bounding.boxes.polygons import normal_component
 from amprep.kernels.bounding.grid_cuts.records import ClippedSurface, GridPlanes
 from amprep.kernels.helper import helper
+from amprep.kernels.meshes.half_space import clip_to_half_space
 
 # Strategy. The coordinates of the vertices are compared exactly with the planes of the grid; vertices that should be
 # in a plane have been moved into it. A triangle in a plane belongs to the cell on the side of the material, any other
@@ -112,8 +113,8 @@ def clip_to_cells(points: Floats, triangles: Int64s, planes: GridPlanes, surface
                 if last > first:
                     whole = False
                 for at in range(first, last):
-                    below = clip(polygon, count, axis, planes[axis][at + 1], -1.0, stack[top])
-                    count = clip(polygon, count, axis, planes[axis][at + 1], 1.0, rest)
+                    below = clip_to_half_space(polygon, count, axis, planes[axis][at + 1], -1.0, stack[top])
+                    count = clip_to_half_space(polygon, count, axis, planes[axis][at + 1], 1.0, rest)
                     for i in range(count):
                         for c in range(3):
                             polygon[i, c] = rest[i, c]
