@@ -7,7 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Int64s, Ints, MeshArrays
 from amprep.geometry.cells.tiling import Tiles, expand, fills_unit_cube, tile
-from amprep.geometry.merging.merge_cells import unite_cells
+from amprep.geometry.merging.merge_cells import fill_voxels, unite_cells
 from amprep.geometry.merging.prisms import unite_prisms
 from amprep.geometry.merging.union import is_solid
 from amprep.geometry.merging.voxel_contents import ContentsTable
@@ -45,9 +45,12 @@ class CellInstances(NamedTuple):
         """Tell which instances belong to a support group."""
         return np.asarray(self.request.edges.group[self.cells.edge] == group)
 
-    def with_new_contents(self) -> "CellInstances":
-        """Return the same instances without voxel contents, whose shapes depend on what was united before."""
-        return self._replace(contents=ContentsTable(self.templates))
+    def with_own_contents(self) -> "CellInstances":
+        """Return the same instances with a copy of the voxel contents: what is added there is not seen elsewhere.
+
+        The shapes of contents depend on what was united before, to a few lattice steps.
+        """
+        return self._replace(contents=self.contents.copy())
 
 
 def classify(request: CellRequest, cells: Cells) -> CellInstances:
@@ -85,25 +88,57 @@ def expand_cells(
     thickness
         Thickness of the plates, mm.
     """
-    cells, request = instances.cells, instances.request
-    grid, index = request.grid, np.flatnonzero(chosen & instances.tiles)
-    edge, template = cells.edge[index], cells.template[index].astype(np.int64)
-    square = request.edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 1)
-    shift = np.array(DIRECTIONS, np.int64)[request.edges.direction[edge]][:, ::-1]
-    if len(edge) and instances.whole[template].all():
+    cells, grid = instances.cells, instances.request.grid
+    template, square, shift = tiles = _tiles(instances, chosen)
+    if instances.whole[template].all() and len(template):
         yield unite_prisms(square, shift, grid.origin, _voxel_size(grid))
-        template, square, shift = template[:0], square[:0], shift[:0]
-    if plates is not None and len(plates):
-        below = plates[:, ::-1].astype(np.int64) - (0, 0, 1)
-        plate = instances.contents.plate(thickness / grid.step)
-        template = np.concatenate([template, np.full(len(below), plate)])
-        square, shift = np.concatenate([square, below]), np.concatenate([shift, np.zeros_like(below[:, :2])])
-    if len(template):
-        yield from _united(instances.contents, template, square, shift, grid)
+        tiles = _CellTiles(template[:0], square[:0], shift[:0])
+    tiles = tiles.with_plates(instances.contents, plates, thickness / grid.step)
+    if len(tiles.template):
+        yield from _united(instances.contents, *tiles, grid)
     for other in np.flatnonzero(chosen & ~instances.tiles):
         one = np.array([cells.template[other]]), cells.matrix[other : other + 1]
         points, triangles, _ = expand(instances.templates, *one)
         yield points, triangles
+
+
+def unite_contents(
+    instances: CellInstances, chosen: Bools, plates: Ints | None = None, thickness: float = 0.0
+) -> None:
+    """Unite the voxel contents that `expand_cells` uses with the same arguments, and keep them."""
+    tiles, grid = _tiles(instances, chosen), instances.request.grid
+    if not instances.whole[tiles.template].all():
+        tiles = tiles.with_plates(instances.contents, plates, thickness / grid.step)
+        fill_voxels(instances.contents, *tiles)
+
+
+class _CellTiles(NamedTuple):
+    """Cells that are tiles: template ``(n,)``, upper square ``(n, 3)`` x, y, layer, and shift to the lower one."""
+
+    template: Int64s
+    square: Int64s
+    shift: Int64s
+
+    def with_plates(self, contents: ContentsTable, squares: Ints | None, thickness: float) -> "_CellTiles":
+        """Return the tiles with a plate below each square ``(k, 3)`` plane, y, x; the thickness is in layers."""
+        if squares is None or not len(squares):
+            return self
+        below = squares[:, ::-1].astype(np.int64) - (0, 0, 1)
+        plate = np.full(len(below), contents.plate(thickness))
+        return _CellTiles(
+            np.concatenate([self.template, plate]),
+            np.concatenate([self.square, below]),
+            np.concatenate([self.shift, np.zeros_like(below[:, :2])]),
+        )
+
+
+def _tiles(instances: CellInstances, chosen: Bools) -> _CellTiles:
+    """Return the chosen instances that are tiles."""
+    cells, edges, index = instances.cells, instances.request.edges, np.flatnonzero(chosen & instances.tiles)
+    edge = cells.edge[index]
+    square = edges.upper[edge][:, ::-1].astype(np.int64) - (0, 0, 1)
+    shift = np.array(DIRECTIONS, np.int64)[edges.direction[edge]][:, ::-1]
+    return _CellTiles(cells.template[index].astype(np.int64), square, shift)
 
 
 def _voxel_size(grid: Grid) -> np.ndarray:

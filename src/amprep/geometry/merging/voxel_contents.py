@@ -1,7 +1,6 @@
 """Compute the union of the cells in one voxel of the grid, once for each set of cells."""
 
 from collections.abc import Sequence
-from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -84,11 +83,22 @@ class ContentsTable:
         self._corners: dict[tuple[int, int, int], tuple[int, int, int]] = {}
         self._buckets: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
         self._parts_of: dict[tuple[int, int, int], tuple[int, int]] = {}
-        self._united = cache(self._unite)
+        self._solids: dict[tuple[int, ...], Manifold] = {}
         self._contents_of: dict[bytes, int] = {}
         self._outline_number: dict[bytes, int] = {b"": 0}
         self._outlines: list[Int64s] = [np.empty((0, 2, 2), np.int64)]
         self._interfaces: dict[tuple[int, int], Interface | None] = {}
+
+    def copy(self) -> "ContentsTable":
+        """Return a table with the same contents; what is added to one of the two is not in the other."""
+        other = ContentsTable(self.templates)
+        other.parts, other.contents = list(self.parts), list(self.contents)
+        other._plates, other._corners = dict(self._plates), dict(self._corners)
+        other._buckets = {bucket: list(corners) for bucket, corners in self._buckets.items()}
+        other._parts_of, other._solids = dict(self._parts_of), dict(self._solids)
+        other._contents_of, other._interfaces = dict(self._contents_of), dict(self._interfaces)
+        other._outline_number, other._outlines = dict(self._outline_number), list(self._outlines)
+        return other
 
     def plate(self, thickness: float) -> int:
         """Return the number of the template of a plate, see `amprep.geometry.cells.tiling.plate`."""
@@ -121,7 +131,7 @@ class ContentsTable:
         if key not in self._contents_of:
             mesh = self.parts[parts[0]]
             if len(parts) > 1:
-                mesh = arrays_of(self._united(tuple(parts.tolist())))
+                mesh = arrays_of(self._unite(tuple(parts.tolist())))
             self._contents_of[key] = len(self.contents)
             self.contents.append(self._classified(*mesh))
         return self._contents_of[key]
@@ -182,9 +192,12 @@ class ContentsTable:
 
     def _unite(self, parts: tuple[int, ...]) -> "Manifold":
         """Unite parts one after the other, because many sets begin with the same parts."""
-        if len(parts) == 1:
-            return as_manifold(*self.parts[parts[0]])
-        return evaluated(self._united(parts[:-1]) + self._united(parts[-1:]))
+        if parts not in self._solids:
+            if len(parts) == 1:
+                self._solids[parts] = as_manifold(*self.parts[parts[0]])
+            else:
+                self._solids[parts] = evaluated(self._unite(parts[:-1]) + self._unite(parts[-1:]))
+        return self._solids[parts]
 
     def _classified(self, points: Floats, triangles: Int64s) -> VoxelContents:
         """Put inner points first and sort the triangles by their corners and faces."""

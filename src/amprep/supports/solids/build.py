@@ -24,7 +24,13 @@ from amprep.supports.solids.least_section import without_narrow
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.territory import territory_section
 from amprep.supports.solids.thin_rests import NO_HOLES, without_thin_rests
-from amprep.supports.solids.unite_group import SupportContext, sheet_of, solid_of, stored_solid
+from amprep.supports.solids.unite_group import (
+    SupportContext,
+    sheet_of,
+    solid_of,
+    stored_solid,
+    unite_patterns,
+)
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -164,6 +170,7 @@ def build_supports(
     clearance = WallClearance(layout, rules.gap, depth) if rules.gap > 0.0 else None
     obstacles = PartObstacles(parts, clearance, around.earlier)
     context = SupportContext(layout, surfaces, obstacles, rules.connector, depth, posts, rules.least)
+    unite_patterns(context, instances)
     builder = _SupportBuilder(context, parts, instances, as_beams, rules)
     names = [", ".join(parts[part].label for part in held) for held in layout.group_parts]
     keys = [key_of(layout, group, instances, as_beams) for group in range(len(names))]

@@ -135,9 +135,19 @@ def _meeting(solid: "Manifold", meshes: Mapping[int, Mesh]) -> list[int]:
 def drop_floating(
     points: Floats, triangles: Ints, feet: tuple[Floats, Floats] | None = None
 ) -> tuple[Floats, Ints]:
-    """Return the disconnected components of a closed mesh that reach the plate or a foot, with their voids.
+    """Return the disconnected components of a closed mesh that stand, see `find_grounded`, with their voids."""
+    shell, stays = find_grounded(points, triangles, feet)
+    if stays.all():
+        return points, triangles
+    return drop_unused_vertices(points, triangles[stays[shell]])
 
-    Voids of less than 1e-4 mm3, which rounding leaves, and voids of a mean width of less than 0.2 mm are filled.
+
+def find_grounded(
+    points: Floats, triangles: Ints, feet: tuple[Floats, Floats] | None = None
+) -> tuple[Int64s, Bools]:
+    """Tell which disconnected components of a closed mesh reach the plate or a foot, or are voids of those that do.
+
+    Voids of less than 1e-4 mm3, which rounding leaves, and voids of a mean width of less than 0.2 mm do not count.
 
     Parameters
     ----------
@@ -145,6 +155,11 @@ def drop_floating(
         ``(n, 3)`` mm and ``(m, 3)``.
     feet
         Least and greatest corners ``(k, 3)`` of boxes; a component with a vertex in one of them stands on a part.
+
+    Returns
+    -------
+    component, stands
+        The component of each triangle ``(m,)``, and whether each component stands.
     """
     count, of_triangle = label_shells(triangles, len(points))
     shell = np.zeros(len(points), np.int64)
@@ -154,7 +169,7 @@ def drop_floating(
     stays = lowest <= CONTACT_TOLERANCE
     loose = ~stays[of_triangle]
     if not loose.any():
-        return points, triangles
+        return of_triangle, stays
     corners = points[triangles[loose]]
     volume = np.bincount(of_triangle[loose], np.linalg.det(corners), count) / 6.0
     is_void = volume < -np.maximum(_CRUMB, 0.5 * _NARROW * _areas(corners, of_triangle[loose], count))
@@ -164,7 +179,7 @@ def drop_floating(
     voids = np.flatnonzero(is_void)
     if len(voids):
         _drop_voids(stays, voids, points, shell)
-    return drop_unused_vertices(points, triangles[stays[of_triangle]])
+    return of_triangle, stays
 
 
 def _areas(corners: Floats, shell: Int64s, count: int) -> Floats:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Bools, Floats, Ints
-from amprep.cells.instances import CellInstances, expand_cells
+from amprep.cells.instances import CellInstances, expand_cells, unite_contents
 from amprep.geometry.cells.tiling import expand
 from amprep.geometry.connectors.connect import connect
 from amprep.geometry.connectors.least_width import LeastSection, Posts
@@ -85,7 +85,7 @@ def solid_of(
     on_beams
         Whether beams carry the solid: then connectors begin no deeper than `SEAT`.
     """
-    layout, instances = context.layout, instances.with_new_contents()
+    layout, instances = context.layout, instances.with_own_contents()
     mine = instances.of(group) & ~instances.sheet
     if instances.sheet.any() and not mine.any() and not on_beams:
         solids = _extras(instances, group)
@@ -106,14 +106,27 @@ def solid_of(
         shaped = _subtract_and_shape(context, group, union(connectors), red, seat / 2, sink, instances)
         connectors, notch = [shaped.connectors], shaped.notch
     connectors += _feet(context, group)
-    seats = red & (layout.red.square[:, 0] > 0) & ~_stands_on_full_square(instances, layout) & (not extend)
-    below = expand_cells(
-        instances, mine & ~instances.connector, layout.red.square[seats], float(seat.max(initial=0.0))
-    )
+    below = expand_cells(instances, *_cells_below(context, group, instances))
     cells = [*(as_manifold(*mesh) for mesh in below), *_extras(instances, group)]
     cells = cells if notch.is_empty() else [union(cells) - notch]
     solids = context.obstacles.clip(cells + connectors)
     return clip_to_territory(layout, group, union(solids), instances) if solids else None
+
+
+def unite_patterns(context: SupportContext, instances: CellInstances) -> None:
+    """Unite the cells of each voxel for all groups, so that groups with the same patterns of cells share them."""
+    for group in range(len(context.layout.group_parts)):
+        unite_contents(instances, *_cells_below(context, group, instances))
+
+
+def _cells_below(context: SupportContext, group: int, instances: CellInstances) -> tuple[Bools, Ints, float]:
+    """Return the cells of a group below its red squares, the squares that need a plate, and its thickness in mm."""
+    layout = context.layout
+    mine = instances.of(group) & ~instances.sheet & ~instances.connector
+    above_plate = layout.connected & (layout.red_group == group) & (layout.red.square[:, 0] > 0)
+    seats = above_plate & ~_stands_on_full_square(instances, layout)
+    seats &= context.connector.connector != "extend"
+    return mine, layout.red.square[seats], context.seat if layout.red.square[:, 0].any() else 0.0
 
 
 def stored_solid(

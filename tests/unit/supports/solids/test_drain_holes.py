@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from manifold3d import Manifold
+from manifold3d import Manifold, OpType
 
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.powder.cavities import find_cavities
@@ -45,6 +45,16 @@ def test_only_the_hole_that_would_cut_something_off_is_left_out(monkeypatch):
     assert low.tolist() == [OPENING[0].tolist()]
     assert find_cavities(arrays_of(opened)) == []
     assert LAMP.volume() - opened.volume() == pytest.approx(0.4 * 0.4 * 1.0)
+
+
+def test_a_hole_inside_the_box_of_what_would_be_cut_off_but_apart_from_it_is_cut(monkeypatch):
+    """The plate carries four legs, which reach down around the block but touch neither it nor the hole."""
+    legs = [box((x, y, 0.5), (x + 0.3, y + 0.3, 6.0)) for x in (-1.0, 4.7) for y in (-1.0, 4.7)]
+    whole = LAMP + box((-1, -1, 6), (5, 5, 7)) + Manifold.batch_boolean(legs, OpType.Add)
+    given_holes(monkeypatch, [OPENING, CUTTING], [CUTTING])
+    opened, (low, _) = cut_drain_holes(whole, [], 0.2, NO_FEET)
+    assert low.tolist() == [OPENING[0].tolist()]
+    assert find_cavities(arrays_of(opened)) == []
 
 
 def test_pieces_that_floated_before_hinder_no_hole(monkeypatch):
