@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -28,7 +28,7 @@ class LabelSettings:
     Attributes
     ----------
     row
-        Its number in the file, the heading counted.
+        Its number in the file, as a spreadsheet counts: the heading and empty rows are counted.
     part
         Name of the part; ``*`` and ``?`` stand for any characters.
     text
@@ -90,13 +90,10 @@ def read_labels(path: Path) -> tuple[LabelSettings, ...]:
         if path.stat().st_size > _LARGEST_FILE:
             raise JobError(f"{path}: a list of labels must have at most {_LARGEST_FILE} bytes")
         text = path.read_text(encoding="utf-8-sig")
-        rows = csv.DictReader(io.StringIO(text), delimiter=_delimiter(text), strict=True)
-        _check_heading(rows.fieldnames or [], path)
-        found = []
-        for number, row in enumerate(rows, start=2):
-            if number > _MOST_ROWS:
-                raise JobError(f"{path}: a list of labels must have at most {_MOST_ROWS} rows")
-            found.append(_label(row, number, f"{path}: row {number}"))
+        rows = csv.reader(io.StringIO(text), delimiter=_delimiter(text), strict=True)
+        filled = _filled(rows, path)
+        heading = _heading(next(filled, (1, []))[1], path)
+        found = [_label(heading, cells, number, f"{path}: row {number}") for number, cells in filled]
     except OSError as error:
         raise JobError(f"{path}: cannot be read ({error.strerror or error})") from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -104,27 +101,40 @@ def read_labels(path: Path) -> tuple[LabelSettings, ...]:
     return tuple(found)
 
 
+def _filled(rows: Iterable[list[str]], path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows that are not empty, with their numbers as a spreadsheet counts them."""
+    for number, row in enumerate(rows, start=1):
+        if number > _MOST_ROWS:
+            raise JobError(f"{path}: a list of labels must have at most {_MOST_ROWS} rows")
+        cells = [cell.strip() for cell in row]
+        if any(cells):
+            yield number, cells
+
+
 def _delimiter(text: str) -> str:
-    """Return the sign between columns: a semicolon where the heading has one, as some spreadsheets write."""
-    return ";" if ";" in text.partition("\n")[0] else ","
+    """Return the sign between columns: a semicolon where the first line that is not empty has one."""
+    return ";" if ";" in text.lstrip().partition("\n")[0] else ","
 
 
-def _check_heading(names: object, path: Path) -> None:
-    heading = [str(name).strip() for name in names] if isinstance(names, list) else []
-    for name in heading:
+def _heading(names: list[str], path: Path) -> list[str]:
+    while names and not names[-1]:  # spreadsheets write empty columns
+        names = names[:-1]
+    for name in names:
         if name not in COLUMNS:
             raise JobError(f"{path}: unknown column {name[:40]!r}{nearest_hint(name, COLUMNS)}")
-    if not {"part", "text"} <= set(heading):
+        if names.count(name) > 1:
+            raise JobError(f"{path}: the heading has the column {name} {names.count(name)} times; keep one")
+    if not {"part", "text"} <= set(names):
         raise JobError(
-            f"{path}: expected a heading with the columns part and text, got {', '.join(heading)[:80]}"
+            f"{path}: expected a heading with the columns part and text, got {', '.join(names)[:80] or 'none'}"
         )
+    return names
 
 
-def _label(row: Mapping[str, str | None], number: int, where: str) -> LabelSettings:
-    values = {str(name).strip(): str(value or "").strip() for name, value in row.items() if name}
-    if None in row:  # DictReader puts further columns under this key
+def _label(heading: list[str], cells: list[str], number: int, where: str) -> LabelSettings:
+    if any(cells[len(heading) :]):
         raise JobError(f"{where}: it has more columns than the heading")
-    given = {name: value for name, value in values.items() if value}
+    given = {name: cell for name, cell in zip(heading, cells, strict=False) if cell}
     if "part" not in given or "text" not in given:
         raise JobError(f"{where}: part and text must not be empty")
     _check_text(given["text"], where)

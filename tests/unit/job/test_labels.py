@@ -48,12 +48,18 @@ def test_semicolons_of_spreadsheets_are_read(tmp_path):
         ("part,text,depth_mm\nb,A,nan\n", "depth_mm: expected a number, got 'nan'"),
         ("part,text\nb,A,B\n", "more columns than the heading"),
         ('part,text\nb,"A\n', "not a CSV file"),
-        ("", "columns part and text"),
+        ("", "columns part and text, got none"),
+        ("part,text,text\nb,A,B\n", "the heading has the column text 2 times"),
+        ("part,text\n\n,\nb,A?\n", "row 4: the font has no"),
     ],
 )
 def test_mistakes_are_named_with_row_and_column(tmp_path, text, words):
     with pytest.raises(JobError, match=words):
         read(tmp_path, text)
+
+
+def test_empty_rows_count_but_say_nothing(tmp_path):
+    assert read(tmp_path, "\n;;\n\npart;text;\n\nb;A;\n;;\n") == (LabelSettings(6, "b", "A"),)
 
 
 def test_a_job_names_its_list_relative_to_its_folder(tmp_path):
