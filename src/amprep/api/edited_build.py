@@ -21,6 +21,8 @@ def replan(
     dry_run: bool = False,
     verify_all: bool = False,
     time_limit_s: float | None = None,
+    page: bool = False,
+    force: bool = False,
     plugins: Host | Sequence[str] = (),
     stop: Stop | None = None,
     progress: Progress = silent,
@@ -46,6 +48,10 @@ def replan(
         Whether supports that are kept are judged as well.
     time_limit_s
         Seconds after which routing ends with its best result so far; None for no limit.
+    page
+        Whether ``NAME.replanned.report.html`` is written, too: the page that `run` gives.
+    force
+        Whether a ``NAME.replanned.3mf`` is replaced that was changed since it was planned again.
     plugins, stop, progress, watcher
         As in `run`.
 
@@ -53,7 +59,7 @@ def replan(
     ------
     AmprepError
         When the file cannot be read, when nothing says what it was made from, when a part is outside the build volume
-        or too near to another, or when a plugin fails.
+        or too near to another, when the new file would replace a changed one, or when a plugin fails.
 
     Examples
     --------
@@ -66,9 +72,8 @@ def replan(
         if job is None
         else (job_and_host((job,), {}, plugins))
     )
-    options = ReplanOptions(
-        Path(output), None if report is None else Path(report), dry_run, verify_all, time_limit_s
-    )
+    known = None if report is None else Path(report)
+    options = ReplanOptions(Path(output), known, dry_run, verify_all, time_limit_s, page, force)
     return replan_build(
         Path(build),
         options,

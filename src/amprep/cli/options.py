@@ -99,6 +99,10 @@ Sets = Annotated[
         help="Set a key of the job file, for example supports.pitch_mm=0.8; repeatable.",
     ),
 ]
+OpenReport = Annotated[
+    bool, output_option("--open", help="Open the report in the browser when the files are written.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
 DryRun = Annotated[bool, output_option("--dry-run", help="Plan and verify everything, but write nothing.")]
 ResultAsJson = Annotated[bool, output_option("--json", help="Print the result as JSON.")]
 ReportAsJson = Annotated[bool, output_option("--json", help="Print the report as JSON on standard output.")]
@@ -236,9 +240,7 @@ class BuildOptions(JobOptions):
             help="Type of supports in a generic file: support (default) or model.",
         ),
     ] = None
-    open_report: Annotated[
-        bool, output_option("--open", help="Open the report in the browser when the files are written.")
-    ] = False
+    open_report: OpenReport = False
     seed: Annotated[int | None, job_option("--seed", help="Seed of the random numbers; default 0.")] = None
     time_limit: Annotated[
         float | None,

@@ -85,6 +85,8 @@ class ReplanRecord(Summarised):
         Durations of the stages.
     file, report_file, sha256
         The files that were written, and the digest of the build file; empty after a dry run.
+    page_file
+        The page, empty if none was asked for.
     """
 
     edited: str
@@ -100,6 +102,7 @@ class ReplanRecord(Summarised):
     file: str = ""
     report_file: str = ""
     sha256: str = ""
+    page_file: str = ""
 
     @property
     def faults(self) -> int:
@@ -148,18 +151,23 @@ def summary(record: ReplanRecord, folder: Path = Path()) -> "RenderableType":
     from rich.text import Text
 
     blocks = [Text(f"{record.build_id}: {counts_in_words(record)}"), Text(record.source, style="dim")]
-    lines = [(_part_words(each), "") for each in record.parts if each.change != "none" or each.reason]
-    lines += [(f"{label}: deleted", "") for label in record.deleted]
+    lines = [(each, "") for each in part_lines(record)]
     lines += [(f"! {words}", "yellow") for words in _unsupported_words(record)]
     lines += [(f"! {each}", "red") for each in record.violations]
     shown = lines[:_MOST_LINES]
     if len(lines) > len(shown):
         shown.append((f"... and {len(lines) - len(shown)} more in the JSON", "dim"))
     blocks += [Text(printable(line), style=style) for line, style in shown]
-    blocks += [Text(printable(line), style="dim") for line in (*record.notes, _verified(record))]
-    files = [record.file, record.report_file]
+    blocks += [Text(printable(line), style="dim") for line in (*record.notes, verified_words(record))]
+    files = [record.page_file, record.report_file, record.file]
     blocks += [Text(printable(f"wrote {folder / name}"), style="dim") for name in files if name]
     return Group(*blocks)
+
+
+def part_lines(record: ReplanRecord) -> list[str]:
+    """Return one line for each part that was changed or planned again, and for each that is gone."""
+    changed = [each for each in record.parts if each.change != "none" or each.reason]
+    return [*map(_part_words, changed), *(f"{label}: deleted" for label in record.deleted)]
 
 
 def _unsupported_words(record: ReplanRecord) -> Iterator[str]:
@@ -180,7 +188,8 @@ def _part_words(part: ReplannedPart) -> str:
     return f"{part.label}: {change}; supports {part.supports}{reason}"
 
 
-def _verified(record: ReplanRecord) -> str:
+def verified_words(record: ReplanRecord) -> str:
+    """Return whether the build keeps its promises, and what was judged."""
     result = (
         "every promise holds" if not record.violations else counted(len(record.violations), "broken promise")
     )

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from amprep import workers
-from amprep.cli.jobs.reporting import finish
+from amprep.cli.jobs.reporting import finish, open_page
 from amprep.cli.log import logging_to
 from amprep.cli.options import (
     Debug,
     DryRun,
+    Force,
     LogFile,
     NoPlugins,
+    OpenReport,
     Plugins,
     ProgressForm,
     Quiet,
@@ -58,6 +60,11 @@ class ReplanningOptions:
     output: Annotated[
         Path | None, output_option("-o", "--output", help="Output folder; default: the folder of the file.")
     ] = None
+    html: Annotated[
+        bool, output_option("--html", help="Write the page with a 3D view, too; --open implies it.")
+    ] = False
+    open_report: OpenReport = False
+    force: Force = False
     dry_run: DryRun = False
     as_json: ReportAsJson = False
     quiet: Quiet = False
@@ -86,7 +93,9 @@ def replan(
     they save; it is then taken from the build file beside it whose identifier
     is in the names of objects, or from that of --report, or --job states it.
 
-    It writes NAME.replanned.3mf and NAME.replanned.report.json.
+    It writes NAME.replanned.3mf and NAME.replanned.report.json. Those of an
+    earlier call are replaced; where the 3MF file was changed since, only with
+    --force.
 
     Exit codes: 0 if done, 1 if something is unsupported or fails verification,
     2 for wrong input, parts that collide or are outside the build volume
@@ -98,6 +107,8 @@ def replan(
 
     from amprep.report.replanning import summary, to_json
 
+    if options.open_report:
+        open_page(folder, [record.page_file])
     finish(record, to_json, lambda found: summary(found, folder), options)
 
 
@@ -134,6 +145,8 @@ def _replanned(build: Path, folder: Path, options: ReplanningOptions) -> "Replan
                 dry_run=options.dry_run,
                 verify_all=options.verify_all,
                 time_limit_s=options.time_limit,
+                page=options.html or options.open_report,
+                force=options.force,
                 plugins=host,
                 watcher=bars,
             )

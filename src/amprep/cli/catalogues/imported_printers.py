@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from amprep.cli.options import AsJson
+from amprep.cli.options import AsJson, Force
 
 if TYPE_CHECKING:
     from amprep.printers.catalogue import PrinterProfile
@@ -31,7 +31,7 @@ def import_printers(
         Path | None,
         typer.Option("-o", "--output", help="Folder for the profiles; default: your configuration folder."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    force: Force = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="List the printers, but write nothing.")] = False,
     as_json: AsJson = False,
 ) -> None:

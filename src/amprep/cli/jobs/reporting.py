@@ -101,11 +101,11 @@ def build_and_report(
 
     folder = _shown(folder_of(inputs, options))
     if options.open_report:
-        _open(folder, record.report_files)
+        open_page(folder, record.report_files)
     finish(record, to_json, lambda shown: summary(shown, folder), options)
 
 
-def _open(folder: Path, names: Sequence[str]) -> None:
+def open_page(folder: Path, names: Sequence[str]) -> None:
     """Open the page among the reports in the browser; a dry run has none."""
     for name in names:
         if name.endswith(".html"):

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from amprep.cli.completion import cells, materials, packers, printers
+from amprep.cli.options import Force
 
 
 def init(
@@ -47,7 +48,7 @@ def init(
             help="Program that will open the build jobs: generic, prusaslicer or cura.",
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    force: Force = False,
 ) -> None:
     """Write a job file for these inputs, with every other key as a comment.
 

@@ -15,7 +15,7 @@ from amprep.measures.differences.records import (
     SettingDifference,
     SupportDifference,
 )
-from amprep.model.build import Build, PlacedPart, SupportBody, Unsupported
+from amprep.model.build import Build, BuildSettings, PlacedPart, SupportBody, Unsupported
 from amprep.model.mesh import Mesh
 
 _LEAST_ANGLE_DEG = 0.01
@@ -36,7 +36,7 @@ def find_differences(before: Build, after: Build) -> BuildDifferences:
         tuple(_parts(before, after)),
         tuple(_supports(before, after)),
         tuple(_listed(before, after)),
-        tuple(_settings(before.settings, after.settings)),
+        settings_differences(before.settings, after.settings),
     )
 
 
@@ -126,12 +126,17 @@ def _area(region: Unsupported) -> float:
     return region.measure if region.kind not in ("edge", "tip") else 0.0
 
 
+def settings_differences(before: BuildSettings, after: BuildSettings) -> tuple[SettingDifference, ...]:
+    """Return the settings of a build that differ from those of an earlier one, their names with dots."""
+    return tuple(_settings(before, after))
+
+
 def _settings(before: Any, after: Any, within: str = "") -> Iterator[SettingDifference]:
-    """Yield the fields of two records of a kind that differ; arrays are compared by value."""
+    """Yield the fields of a record that another of its kind has with other values; arrays are compared by value."""
     for field in fields(before):
         name = f"{within}{field.name}"
         old, new = getattr(before, field.name), getattr(after, field.name)
-        if is_dataclass(old) and type(old) is type(new):
+        if is_dataclass(old) and isinstance(new, type(old)):
             yield from _settings(old, new, f"{name}.")
         elif isinstance(old, Mapping) and isinstance(new, Mapping):
             yield from _keys(old, new, f"{name}.")

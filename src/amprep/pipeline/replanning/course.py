@@ -10,17 +10,19 @@ import numpy as np
 from amprep.checks.packing.motion import motion_fault
 from amprep.checks.packing.parts_placed import check_placed
 from amprep.errors import InputError
+from amprep.files import read_json
 from amprep.geometry.motions.rigid import angle_deg, displacement
 from amprep.host import Host
 from amprep.job import Job
 from amprep.model import Build, Orientations, Stop
 from amprep.model.counting import counted
-from amprep.pipeline.outputs import OutputFolder
+from amprep.pipeline.outputs import OutputFolder, safe_name
 from amprep.pipeline.replanning.keep import Kept, choose_kept
+from amprep.pipeline.replanning.page import PAGE, write_page
 from amprep.pipeline.replanning.plan import bodies_of, plan_again
 from amprep.pipeline.replanning.recognise import recognise
 from amprep.pipeline.replanning.records import EditedBuild, EditedPart
-from amprep.pipeline.replanning.source import BuildSource, find_source
+from amprep.pipeline.replanning.source import LARGEST_REPORT, BuildSource, find_source
 from amprep.pipeline.stages import Clock, Watcher
 from amprep.pipeline.verifying.build import Verification, verify_build
 from amprep.report.json_values import write_json_file
@@ -29,6 +31,7 @@ from amprep.sealing.seal import file_digest
 
 _MOST_NAMED = 8
 """Faults of the placement that a message names."""
+NO_SUPPORTS = "the settings ask for no supports; --job JOB.toml plans them by the settings of a job"
 _NUMBERED = re.compile(r"(.*\.replanned)(?:-(\d+))?")
 
 
@@ -48,6 +51,10 @@ class ReplanOptions:
         Whether supports that are kept are judged, too.
     time_limit
         Seconds after which routing ends with its best result so far; None for no limit.
+    page
+        Whether the page that a run gives is written, too.
+    force
+        Whether a build file of the new name is replaced although it was changed since it was planned again.
     """
 
     folder: Path
@@ -55,6 +62,8 @@ class ReplanOptions:
     dry_run: bool = False
     verify_all: bool = False
     time_limit: float | None = None
+    page: bool = False
+    force: bool = False
 
 
 def replan_build(
@@ -82,21 +91,27 @@ def replan_build(
     AmprepError
         For wrong input, a part outside the build volume or too near to another, or a plugin that fails.
     """
-    clock, limit = Clock(watcher), stop.within(options.time_limit)
+    clock, limit, name = Clock(watcher), stop.within(options.time_limit), new_name(path)
+    if not (options.force or options.dry_run):
+        _keep_edits(options.folder, safe_name(name))
     source = find_source(path, job=job, report=options.report, host=host, clock=clock)
     with clock.stage("compare"):
         edited = recognise(source.bodies, source.original, places_known=source.places_known)
         edited, notes = _as_the_user_turned(edited)
         _refuse_faults(edited, source.original, stop)
-        kept = choose_kept(edited, source.original, stop)
-    name = new_name(path)
+        kept = choose_kept(edited, source.original, stop, source.other_settings)
     build = plan_again(edited, kept, source.original, source.resolved, name, clock, limit)
     record = _record(path, source, edited, kept, build)
+    if not build.settings.supported:
+        notes.append(NO_SUPPORTS)
     record = replace(record, notes=(*record.notes, *notes), judged_all=options.verify_all)
     only = None if options.verify_all else _changed(edited, kept)
     with OutputFolder(options.folder, name, numbered=False) as outputs:
         record = _finished(record, build, only, outputs, options.dry_run, clock, stop)
         if not options.dry_run:
+            if options.page:
+                write_page(record, build, source.resolved, outputs, clock, stop)
+                record = replace(record, page_file=outputs.name(PAGE), stages=clock.times)
             write_json_file(to_json(record), outputs.path("report.json"))
             outputs.publish()
     return record
@@ -106,6 +121,29 @@ def new_name(path: Path) -> str:
     """Return the name of the build that is made from an edited file: ``NAME.replanned``, then ``NAME.replanned-2``."""
     numbered = _NUMBERED.fullmatch(path.stem)
     return f"{path.stem}.replanned" if numbered is None else f"{numbered[1]}-{int(numbered[2] or 1) + 1}"
+
+
+def _keep_edits(folder: Path, name: str) -> None:
+    """Refuse to replace a build that somebody changed since it was planned again: its report has another digest.
+
+    Raises
+    ------
+    InputError
+        If there is such a file.
+    """
+    file, report = folder / f"{name}.3mf", folder / f"{name}.report.json"
+    if not file.exists():
+        return
+    try:
+        stated = read_json(report, "a report of amprep", LARGEST_REPORT)
+        as_written = isinstance(stated, dict) and stated.get("sha256") == file_digest(file)
+    except InputError:
+        as_written = False
+    if not as_written:
+        raise InputError(
+            f"{file} was changed since amprep wrote it; plan that file again, or use --force to replace it, or -o for "
+            "another folder"
+        )
 
 
 def _as_the_user_turned(edited: EditedBuild) -> tuple[EditedBuild, list[str]]:

@@ -25,6 +25,8 @@ from amprep.pipeline.verifying.nearby import are_near, boxes_in_plan, distance_t
 
 _REASONS_OF_OTHERS = (ENCLOSED, TERRITORY, CAPACITY, OUT_OF_TIME)
 """Reasons that may no longer hold when other parts move; the others follow from the part itself."""
+_MOST_NAMED = 3
+"""Settings that a reason names."""
 
 
 class Kept(NamedTuple):
@@ -42,7 +44,7 @@ class Kept(NamedTuple):
     reasons: dict[int, str]
 
 
-def choose_kept(edited: EditedBuild, original: Build, stop: Stop) -> Kept:
+def choose_kept(edited: EditedBuild, original: Build, stop: Stop, other_settings: Sequence[str] = ()) -> Kept:
     """Return which supports stay.
 
     Parameters
@@ -53,9 +55,13 @@ def choose_kept(edited: EditedBuild, original: Build, stop: Stop) -> Kept:
         The build as it was written; without supports if they are not known.
     stop
         Ends the judges early.
+    other_settings
+        Names of the settings by which its supports were not planned; if there are any, none is kept.
     """
     if not original.settings.supported:
         return Kept((), {})
+    if other_settings:
+        return Kept((), dict.fromkeys(range(len(edited.parts)), _other_words(other_settings)))
     moved = _surroundings_changed(edited, original)
     reasons = {
         number: reason
@@ -67,6 +73,13 @@ def choose_kept(edited: EditedBuild, original: Build, stop: Stop) -> Kept:
         for part in body.parts:
             reasons.setdefault(part, f"its supports do not fit here: {message}")
     return Kept(_drop_shared(supports, reasons, edited), reasons)
+
+
+def _other_words(names: Sequence[str]) -> str:
+    """Return that the job has other settings, with a few of their names as a job file has them."""
+    keys = [name.rpartition(".")[2] for name in names]
+    more = f" and {len(keys) - _MOST_NAMED} more" if len(keys) > _MOST_NAMED else ""
+    return f"the job has another {', '.join(keys[:_MOST_NAMED])}{more}"
 
 
 def _own_reason(

@@ -7,13 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from amprep.arrays import CONTACT_TOLERANCE
 from amprep.checks.printed.found import PrintedBody
 from amprep.errors import InputError
 from amprep.files import read_json
+from amprep.geometry.meshes.sampling import triangle_areas
 from amprep.host import Host
 from amprep.job import Job
 from amprep.job.planning import job_of_build
-from amprep.model import Build, Mesh, PlacedPart
+from amprep.measures.differences.find import settings_differences
+from amprep.measures.differences.records import SettingDifference
+from amprep.model import Build, BuildSettings, Mesh, PlacedPart
 from amprep.pipeline.packing import labels
 from amprep.pipeline.reading import read_job
 from amprep.pipeline.resolve import ResolvedJob, resolve
@@ -25,8 +29,17 @@ from amprep.threemf.build.identifier import read_identifier
 if TYPE_CHECKING:
     from amprep.threemf import EditedFile
 
-_LARGEST_REPORT = 256 * 1024 * 1024
+LARGEST_REPORT = 256 * 1024 * 1024
 """Largest report, bytes."""
+_OF_NO_SUPPORT = (
+    "build_id",
+    "printer",
+    "space.",
+    "plate_origin",
+    "planning.seed",
+    "planning.supports.memory_mb",
+)
+"""Beginnings of the names of settings that supports do not depend on, as long as they are inside the build volume."""
 _MOST_FILES = 5000
 """Most build files that are looked at beside an edited file."""
 
@@ -49,6 +62,9 @@ class BuildSource:
         False if only a job is known, so that every part counts as new.
     bodies
         The bodies in the edited file, mm from the corner of the plate.
+    other_settings
+        Names of the settings of a job by which the supports of the build were not planned, so that none is kept.
+        `original` has the settings of the job.
     """
 
     original: Build
@@ -57,6 +73,7 @@ class BuildSource:
     words: str
     places_known: bool
     bodies: tuple[PrintedBody, ...]
+    other_settings: tuple[str, ...] = ()
 
 
 def find_source(path: Path, *, job: Job | None, report: Path | None, host: Host, clock: Clock) -> BuildSource:
@@ -91,16 +108,34 @@ def find_source(path: Path, *, job: Job | None, report: Path | None, host: Host,
         if job is None:
             raise InputError(_nothing_known(path, file))
         return _of_job(file, resolve(job, host), clock)
+    deleted = file.deleted if file.recorded is original else 0
+    bodies = _on_plate(file, original)
     if job is not None:
-        words = f"{words}; supports by {job.source}"
-    elif not original.settings.planning:
+        resolved = resolve(_completed(job, original.settings), host)
+        words, settings = f"{words}; supports by {job.source}", settings_for(resolved, original)
+        ordered = replace(original, settings=settings)
+        others = _that_matter(settings_differences(original.settings, settings))
+        return BuildSource(ordered, deleted, resolved, words, True, bodies, others)
+    if not original.settings.planning:
         raise InputError(
             f"{path}: the build was written by an earlier version, which did not record how supports were "
             "planned; give its job by --job JOB.toml"
         )
-    resolved = resolve(job or job_of_build(original.settings, path), host)
-    deleted = file.deleted if file.recorded is original else 0
-    return BuildSource(original, deleted, resolved, words, True, _on_plate(file, original))
+    resolved = resolve(job_of_build(original.settings, path), host)
+    return BuildSource(original, deleted, resolved, words, True, bodies)
+
+
+def _completed(job: Job, settings: BuildSettings) -> Job:
+    """Return a job with the printer and the target of a build where it states none."""
+    printer, target = job.printer, job.target
+    if job.printer_is_default:
+        printer = replace(printer, name=settings.printer, space=settings.space)
+    return replace(job, printer=printer, target=target if "target" in job.table else settings.target)
+
+
+def _that_matter(found: Iterable[SettingDifference]) -> tuple[str, ...]:
+    """Return the names of settings that supports depend on."""
+    return tuple(each.name for each in found if not each.name.startswith(_OF_NO_SUPPORT))
 
 
 def _original(path: Path, file: "EditedFile", report: Path | None) -> tuple[Build | None, str]:
@@ -108,21 +143,59 @@ def _original(path: Path, file: "EditedFile", report: Path | None) -> tuple[Buil
     if report is not None:
         found = _reported(report, file)
         return _read(found), f"made from {found.name}, by {report.name}"
-    if file.recorded is not None:
-        return file.recorded, "made from the build that the file records"
+    recorded = file.recorded
+    if recorded is not None and not _has_changed_bodies(recorded):
+        return recorded, "made from the build that the file records"
     beside = sorted(each for each in path.resolve().parent.glob("*.3mf") if each.name != path.name)
     for each in beside[:_MOST_FILES] if file.identifiers else ():
         if read_identifier(each) in file.identifiers and (build := _read(each)) is not None:
             return build, f"made from {each.name}, by the identifier in names of objects"
+    if recorded is not None:
+        words = "made from the build that the file records, with coordinates that another program rounded"
+        return _as_rounded(recorded, path), words
     return None, ""
 
 
+def _has_changed_bodies(build: Build) -> bool:
+    """Return whether a part or support has other triangles than amprep wrote, by its digest."""
+    stored = [body.stored for body in build.supports if body.stored is not None]
+    return any(_is_changed(each) for each in build.parts) or any(
+        each.recorded_digest not in ("", each.digest) for each in stored
+    )
+
+
+def _is_changed(placed: PlacedPart) -> bool:
+    return placed.recorded_digest not in ("", placed.part.mesh.digest)
+
+
+def _as_rounded(build: Build, path: Path) -> Build:
+    """Return a build whose parts are as they are in a file that another program saved with rounded coordinates.
+
+    A rounded part has the recorded volume, up to what a thin skin contributes.
+
+    Raises
+    ------
+    InputError
+        If a part has another volume than the build recorded.
+    """
+    for each in build.parts:
+        mesh, volume = each.part.mesh, each.part.volume_mm3
+        area = float(triangle_areas(mesh.vertices[mesh.triangles]).sum())
+        if _is_changed(each) and abs(mesh.signed_volume - volume) > CONTACT_TOLERANCE * area:
+            raise InputError(
+                f"{path}: {each.label} has another shape than the build recorded: it was cut, repaired or replaced; "
+                "run the job again with the new shape"
+            )
+    return replace(build, parts=tuple(replace(each, recorded_digest="") for each in build.parts))
+
+
 def _read(path: Path) -> Build | None:
-    """Return the build that a file records; None if parts of it are no longer in the file, which was edited, too."""
+    """Return the build that a file records; None if parts of it are gone or changed, since it was edited, too."""
     from amprep.threemf import read_edited_file
 
     file = read_edited_file(path)
-    return None if file.deleted else file.recorded
+    whole = file.recorded is not None and not file.deleted and not _has_changed_bodies(file.recorded)
+    return file.recorded if whole else None
 
 
 def _reported(report: Path, file: "EditedFile") -> Path:
@@ -133,7 +206,7 @@ def _reported(report: Path, file: "EditedFile") -> Path:
     InputError
         If the report names no such file, or it is not beside the report as it was written.
     """
-    record = read_json(report, "a report of amprep", _LARGEST_REPORT)
+    record = read_json(report, "a report of amprep", LARGEST_REPORT)
     builds = record.get("builds") if isinstance(record, dict) else None
     entries = [each for each in builds if isinstance(each, dict)] if isinstance(builds, list) else []
     stated = [(each.get("file"), each.get("sha256")) for each in entries]

@@ -13,6 +13,8 @@ from amprep.errors import InputError
 from amprep.model.build import Build, Target
 from amprep.model.mesh import Mesh
 from amprep.threemf.as_read import read_as_printed
+from amprep.threemf.as_read.bambu import read_as_bambu
+from amprep.threemf.as_read.structure import read_structure
 from amprep.threemf.build import record
 from amprep.threemf.build.identifier import identifiers_in
 from amprep.threemf.build.metadata import BuildMetadata, read_metadata
@@ -70,13 +72,21 @@ def read_edited_file(path: Path) -> EditedFile:
             check_version(metadata.model[record.FORMAT], path)
             recorded, deleted = _recorded(model, metadata)
         target = _target(package) if recorded is None else recorded.settings.target
-        printed = read_as_printed(package.data, model, target)
+        unit_mm, bodies = _bodies(package, model, target)
     except lib3mf.ELib3MFException as error:
         raise InputError(f"{path}: lib3mf refuses the file ({error}); export it again") from error
     except (ValueError, TypeError, OverflowError) as error:
         raise InputError(f"{path}: cannot be read as an edited build ({error}); export it again") from error
-    bodies = tuple(_in_millimetres(each, printed.unit_mm) for each in printed.bodies)
-    return EditedFile(recorded, deleted, bodies, target, _identifiers(package, model))
+    found = tuple(_in_millimetres(each, unit_mm) for each in bodies)
+    return EditedFile(recorded, deleted, found, target, _identifiers(package, model))
+
+
+def _bodies(package: Package, model: Any, target: Target) -> tuple[float, Sequence[PrintedBody]]:
+    """Return the length of the unit, mm, and the bodies in the file."""
+    if package.bambu_config:
+        return read_structure(package.data).unit_mm, read_as_bambu(package, model)
+    printed = read_as_printed(package.data, model, target)
+    return printed.unit_mm, printed.bodies
 
 
 def _target(package: Package) -> Target:
@@ -87,8 +97,9 @@ def _target(package: Package) -> Target:
 
 
 def _identifiers(package: Package, model: Any) -> tuple[str, ...]:
-    """Return the identifiers of builds in names of objects, which PrusaSlicer stores in its configuration."""
-    names, objects = [package.prusaslicer_config.decode("utf-8", "replace")], model.GetObjects()
+    """Return the identifiers of builds in names of objects, which slicers store in their configurations."""
+    configurations = (package.prusaslicer_config, package.bambu_config)
+    names, objects = [each.decode("utf-8", "replace") for each in configurations], model.GetObjects()
     while objects.MoveNext() and len(names) <= _MOST_NAMES:
         names.append(objects.GetCurrentObject().GetName())
     return tuple(identifiers_in("\n".join(names)))

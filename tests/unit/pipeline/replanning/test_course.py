@@ -21,42 +21,7 @@ from amprep.report.replanning import ReplannedPart, ReplanRecord, summary
 from amprep.stl import write_stl
 from amprep.threemf import read_build
 
-JOB = """
-printer = "EOS M290"
-[packing]
-strategy = "extreme-points"
-clearance_mm = 4.0
-lift_mm = 0.0
-[supports]
-rules = "thesis"
-pitch_mm = 2.0
-[cells]
-strategy = "prism"
-connector = "full"
-[[part]]
-file = "tee.stl"
-quantity = 3
-[[part]]
-file = "bar.stl"
-"""
 NAMES = ["tee", "tee-2", "tee-3", "bar"]
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A build of three tees with supports and a bar without."""
-    folder = tmp_path_factory.mktemp("made")
-    write_stl(mesh_of(box((4, 12, 10), (10, 0, 0)) + box((24, 12, 3), (0, 0, 9))), folder / "tee.stl")
-    write_stl(mesh_of(box((12, 6, 5), (0, 0, 0))), folder / "bar.stl")
-    (folder / "job.toml").write_text(JOB)
-    record = amprep.run(folder / "job.toml", output=folder)
-    assert record.faults == 0
-    return folder
-
-
-@pytest.fixture
-def plate(made):
-    return made / "job.build-1.3mf"
 
 
 @pytest.fixture(scope="module", params=["prusaslicer", "cura"])
@@ -211,6 +176,25 @@ def test_the_report_says_what_happened(replanned, tmp_path):
     report = json.loads((tmp_path / record.report_file).read_text(encoding="utf-8"))
     assert report["parts"][0]["supports"] == "taken along"
     assert (report["file"], report["sha256"]) == (record.file, record.sha256)
+
+
+def test_a_build_that_was_planned_again_and_then_changed_is_not_replaced(replanned, tmp_path):
+    first, _ = replanned({0: shift(y=120.0)})
+    again, _ = replanned({0: shift(y=110.0)})
+    assert first.sha256 != again.sha256
+    edit(tmp_path / again.file, tmp_path / "copy.3mf", {0: shift(y=5.0)}).replace(tmp_path / again.file)
+    with pytest.raises(InputError, match=r"edited\.replanned\.3mf was changed since .* --force"):
+        replanned()
+    forced, _ = replanned({0: shift(y=110.0)}, force=True)
+    assert forced.sha256 == again.sha256
+
+
+def test_the_page_has_the_build_and_says_what_was_planned_again(replanned, tmp_path):
+    record, _ = replanned({0: shift(y=120.0)}, page=True)
+    page = (tmp_path / record.page_file).read_text(encoding="utf-8")
+    assert "tee: moved by 120.00 mm; supports taken along" in page
+    assert "overhang 1 of tee-2" in page
+    assert "kept supports not judged again" in page
 
 
 def test_the_closing_list_names_what_was_planned_again_and_each_part_without_support():
