@@ -34,7 +34,7 @@ BASES = (ROOT, ROOT / "src" / "amprep")
 FILES = {path.name for base in ("src", "tests", "fixtures", "plugins") for path in (ROOT / base).rglob("*")}
 PATH = re.compile(r"`([\w.*-]+(?:/[\w.*-]+)*/?)`")
 OF_THE_READER = re.compile(
-    r"(NAME|job|bracket|plate)\.|.*\bNAME\b|(out|dist)/$|\.\w+$|(post|settings)\.toml$"
+    r"(NAME|job|bracket|plate)\.|.*\bNAME\b|(out|dist)/$|\.\w+$|(post|settings)\.toml$|(amprep-)?batch(-job)?\.json$"
 )
 """Paths of files that the reader makes, and suffixes."""
 SECTIONS = {

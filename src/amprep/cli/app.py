@@ -11,9 +11,9 @@ from amprep import __version__
 from amprep.cli import bench
 from amprep.cli.builds import compare, diff, hook, replan, seal, verify
 from amprep.cli.catalogues import cells, materials, plugins, printers
+from amprep.cli.jobs import batch, orient, run, support
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
-from amprep.cli.jobs import orient, run, support
 from amprep.cli.setup import demo, doctor, init, schema
 
 
@@ -44,6 +44,8 @@ app = typer.Typer(
 )
 app.command("run")(run.run)
 app.command("support")(support.support)
+app.command("batch")(batch.batch)
+app.command("watch")(batch.watch)
 app.command("lattice")(lattice.lattice)
 app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
