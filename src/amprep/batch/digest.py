@@ -2,10 +2,12 @@
 
 import hashlib
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 
 from amprep import __version__
+from amprep.batch.records import BatchJob
 from amprep.errors import AmprepError
 from amprep.job import Job, job_of
 from amprep.job.user_settings import with_user_settings
@@ -13,6 +15,11 @@ from amprep.sealing.seal import file_digest
 
 MOST_FILES = 10_000
 """Largest number of files of a job."""
+
+
+def with_digest(job: BatchJob) -> BatchJob:
+    """Return a job with its digest, which is that of its files now."""
+    return replace(job, digest=digest_of(job.source, job.arguments))
 
 
 def digest_of(source: Path, arguments: Sequence[str]) -> str:

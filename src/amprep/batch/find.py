@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from amprep.batch.digest import digest_of, files_of
+from amprep.batch.digest import files_of
 from amprep.batch.records import BatchJob
 from amprep.errors import AmprepError, InputError
 from amprep.job import job_of
@@ -51,7 +51,7 @@ def find_jobs(inputs: Sequence[Path], output: Path, arguments: Sequence[str]) ->
         raise InputError(f"more than {MOST_JOBS} jobs; name the folders with the jobs")
     names = _unique([name for _, name in sources])
     return [
-        BatchJob(name, source, output / name, tuple(arguments), digest_of(source, arguments))
+        BatchJob(name, source, output / name, tuple(arguments))
         for (source, _), name in zip(sources, names, strict=True)
     ]
 

@@ -10,6 +10,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from amprep import __version__
+from amprep.batch.digest import with_digest
 from amprep.batch.finished import finished_before, json_object, note_finished
 from amprep.batch.records import BatchJob, JobFigures, JobOutcome, State
 from amprep.errors import AmprepError
@@ -101,6 +102,7 @@ def run_one(job: BatchJob, version: str, workers: int, *, again: bool) -> JobOut
     if version != __version__:
         message = f"a worker has amprep {__version__}, expected {version}"
         return JobOutcome(job.name, job.source, job.folder, "crashed", message)
+    job = with_digest(job)
     earlier = None if again else finished_before(job)
     return earlier or JobProcess(job, workers).outcome()
 

@@ -5,6 +5,7 @@ from collections import deque
 from typing import Protocol
 
 from amprep import workers
+from amprep.batch.digest import with_digest
 from amprep.batch.finished import finished_before
 from amprep.batch.process import JobProcess
 from amprep.batch.records import BatchJob, JobOutcome
@@ -86,7 +87,7 @@ class LocalQueue:
         """Begin jobs while there is room; return those that an earlier batch finished."""
         earlier = []
         while self._waiting and len(self._processes) < self._count:
-            job = self._waiting.popleft()
+            job = with_digest(self._waiting.popleft())
             found = None if self._again else finished_before(job)
             if found is not None:
                 earlier.append(found)

@@ -33,7 +33,7 @@ class BatchJob:
     arguments
         Options of ``amprep run`` that the whole batch has.
     digest
-        SHA-256 of all that determines the result; empty if the job cannot be read.
+        SHA-256 of all that determines the result, as `with_digest` finds it; empty if the job cannot be read.
     """
 
     name: str

@@ -13,7 +13,7 @@ from amprep.batch.queue import JobQueue
 from amprep.batch.records import BatchJob, BatchRecord, JobOutcome
 from amprep.batch.summary import write_summary
 from amprep.errors import AmprepError, InputError
-from amprep.job import job_of
+from amprep.job import Job, job_of
 
 SETTLED_S = 2.0
 """A job begins when none of its files has changed for this time, so that it does not read half a file."""
@@ -40,6 +40,7 @@ class FolderWatch:
     ) -> None:
         self._folder, self._output, self._arguments = folder, output, arguments
         self._settled_s = settled_s
+        self._read: dict[Path, tuple[Stamps, Job | None]] = {}
         self._seen: dict[Path, tuple[Stamps, float]] = {}
         self._begun: dict[Path, Stamps] = {}
 
@@ -52,7 +53,7 @@ class FolderWatch:
         return [job for job in jobs if self._is_ready(job, now)]
 
     def _is_ready(self, job: BatchJob, now: float) -> bool:
-        stamps = _stamps(job.source)
+        stamps = self._stamps(job.source)
         if stamps is None or self._begun.get(job.source) == stamps:
             return False
         before, since = self._seen.get(job.source, (None, now))
@@ -63,6 +64,19 @@ class FolderWatch:
             return False
         self._begun[job.source] = stamps
         return True
+
+    def _stamps(self, source: Path) -> Stamps | None:
+        """Return the state of all files of a job, whose file is read only when it changed; None if one is missing."""
+        own = _states([source])
+        if own is None:
+            return None
+        if self._read.get(source, ((), None))[0] != own:
+            self._read[source] = own, _job(source)
+        job = self._read[source][1]
+        with suppress(AmprepError):
+            others = _states(files_of(job)) if job else ()
+            return None if others is None else own + others
+        return own
 
 
 def watch_folder(
@@ -129,13 +143,17 @@ def _record(found: dict[str, JobOutcome], begin: float) -> BatchRecord:
     return BatchRecord(__version__, tuple(found.values()), time.monotonic() - begin)
 
 
-def _stamps(source: Path) -> Stamps | None:
-    """Return the state of all files of a job; None while one of them is missing."""
-    files = [source]
-    with suppress(AmprepError):  # a job that is wrong runs, so that its error is shown
-        files += files_of(job_of([str(source)]))
+def _states(files: Sequence[Path]) -> Stamps | None:
+    """Return path, size and time of change of each file; None while one of them is missing."""
     try:
         states = [(path, path.stat()) for path in files]
     except OSError:
         return None
     return tuple((str(path), state.st_size, state.st_mtime_ns) for path, state in states)
+
+
+def _job(source: Path) -> Job | None:
+    """Return the job of a file; None if it is wrong: it runs, so that its error is shown."""
+    with suppress(AmprepError):
+        return job_of([str(source)])
+    return None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from amprep.batch import process
+from amprep.batch import digest, process
 from amprep.batch.records import BatchJob
 
 DONE = """
@@ -35,12 +35,10 @@ def plan(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Plan:
         return [sys.executable, "-c", program, str(job.folder), *others]
 
     monkeypatch.setattr(process, "command_of", command)
+    monkeypatch.setattr(digest, "digest_of", lambda source, _: f"digest of {source.name}")
 
     def jobs(stated: dict[str, Sequence[str]]) -> list[BatchJob]:
         programs.update(stated)
-        return [
-            BatchJob(name, tmp_path / name, tmp_path / "out" / name, (), f"digest of {name}")
-            for name in stated
-        ]
+        return [BatchJob(name, tmp_path / name, tmp_path / "out" / name) for name in stated]
 
     return jobs

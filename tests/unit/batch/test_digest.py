@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from amprep.batch import digest
-from amprep.batch.digest import digest_of, files_of
+from amprep.batch.digest import digest_of, files_of, with_digest
+from amprep.batch.records import BatchJob
 from amprep.errors import AmprepError
 from amprep.job import job_of
 
@@ -23,7 +24,7 @@ def job(tmp_path: Path) -> Path:
 
 def test_every_file_and_option_counts(job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = [digest_of(job, ())]
-    assert digest_of(job, ()) == found[0]
+    assert with_digest(BatchJob("job", job, job.parent)).digest == found[0]
     for name in ("parts/a.stl", "cell.stl", "labels.csv"):
         (job.parent / name).write_text("changed")
         found.append(digest_of(job, ()))
