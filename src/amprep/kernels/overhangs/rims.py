@@ -1,16 +1,15 @@
 """Step away from the borders of overhang regions that nothing carries."""
 
 import numpy as np
-from numba import njit
 
 from amprep.arrays import Floats, Int64s
-from amprep.kernels.helper import helper
+from amprep.kernels.helper import kernel, uncounted
 from amprep.kernels.overhangs.walks import FAR, FREE, WalkableFaces, walk
 
 _DIRECTIONS = 32
 
 
-@helper
+@uncounted
 def _height(faces: WalkableFaces, face: int, x: float, y: float) -> float:
     """Return the height of the plane of a face at a point in plan."""
     a, b, c = faces.corners[face, 0], faces.corners[face, 1], faces.corners[face, 2]
@@ -21,7 +20,7 @@ def _height(faces: WalkableFaces, face: int, x: float, y: float) -> float:
     return height
 
 
-@njit(cache=True)
+@kernel
 def step_from_rims(
     faces: WalkableFaces, points: Floats, face: Int64s, rim: float, plate: float, moved: Floats, on: Int64s
 ) -> None:

@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from amprep.arrays import Floats, Int64s
-from amprep.kernels.helper import helper
+from amprep.arrays import Bools, Floats, Int64s
+from amprep.kernels.helper import kernel, uncounted
 
 # Strategy. The faces of a region are flatter than 90 degrees, so each of them is a triangle in plan, and a horizontal
 # straight line over the region is a line from triangle to triangle through their common sides. In each triangle the
@@ -17,6 +16,8 @@ from amprep.kernels.helper import helper
 # suffice. No line between two anchors is shorter than twice the shortest ledge.
 # A walk ends where it can no longer matter: beyond the shortest ledge so far, and above the height up to which an
 # anchor counts. Over a noisy mesh, whose triangles are small and many, this is nearly all of the time.
+# Where only the verdict is asked, the direction that carried the point before is tried early, as points come in the
+# order of the triangles; and a line ends where, with the least distance to an anchor on its other side, it is too long.
 
 ANCHOR, FREE = -1, -2
 """What is beyond a side at the border of a region: the part carries it there, or it does not."""
@@ -58,7 +59,7 @@ class CarryingLimits(NamedTuple):
     tilt
         ``(m, 2)`` rise of the axis of the bore that each face is part of, mm per mm along x and y; 0 where unknown.
     most
-        Length (mm) at which walks end.
+        ``(m,)`` length (mm) at which walks from points of each face end.
     plate
         Height (mm) up to which a region is on the plate.
     climb
@@ -69,7 +70,7 @@ class CarryingLimits(NamedTuple):
     arch: Floats
     rise: float
     tilt: Floats
-    most: float
+    most: Floats
     plate: float
     climb: Floats
 
@@ -95,7 +96,7 @@ class _WalkEnd(NamedTuple):
     crown: float
 
 
-@helper
+@uncounted
 def walk(
     faces: WalkableFaces,
     face: int,
@@ -151,7 +152,7 @@ def walk(
     return _WalkEnd(length, FREE, face, height, top, crown)
 
 
-@helper
+@uncounted
 def _chord(
     faces: WalkableFaces,
     limits: CarryingLimits,
@@ -159,19 +160,20 @@ def _chord(
     point: tuple[float, float, float],
     direction: tuple[float, float],
     nearest: float,
+    least: float,
 ) -> tuple[float, float]:
     """Return the bridge and the arch along a line through a point, infinite where there is none.
 
-    One end of an arch is at most `nearest` mm from the point.
+    One end of an arch is at most `nearest` mm from the point. No end is nearer than `least` mm.
     """
     dx, dy = direction
     slope = limits.tilt[face, 0] * dx + limits.tilt[face, 1] * dy
     printed = point[2] + limits.climb[face]
-    one = walk(faces, face, point, (dx, dy), limits.most, np.inf, limits.plate, slope)
+    one = walk(faces, face, point, (dx, dy), limits.most[face] - least, np.inf, limits.plate, slope)
     if one.kind != ANCHOR:
         return np.inf, np.inf
     highest = printed if one.top > printed else np.inf
-    most = limits.most - one.length
+    most = limits.most[face] - one.length
     other = walk(faces, face, point, (-dx, -dy), most, highest, limits.plate, -slope)
     if other.kind != ANCHOR:
         return np.inf, np.inf
@@ -182,7 +184,16 @@ def _chord(
     return bridge, bridge if is_arch else np.inf
 
 
-@helper
+@uncounted
+def _direction(k: int, to_x: float, to_y: float) -> tuple[float, float]:
+    """Return the direction of line k through a point: that to the nearest anchor, whose vector is given, if k < 0."""
+    if k < 0:
+        size = max(np.sqrt(to_x * to_x + to_y * to_y), 1e-12)
+        return to_x / size, to_y / size
+    return np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS)
+
+
+@uncounted
 def _towards(
     faces: WalkableFaces,
     limits: CarryingLimits,
@@ -197,7 +208,7 @@ def _towards(
     return end.length if end.kind == ANCHOR else np.inf
 
 
-@njit(cache=True)
+@kernel
 def find_ledges(
     faces: WalkableFaces,
     limits: CarryingLimits,
@@ -215,22 +226,23 @@ def find_ledges(
     """
     for n in range(len(points)):
         x, y, z = points[n]
+        at = face[n]
         ledge = np.inf
         if z <= limits.plate:
             ledge = 0.0
         elif not np.isnan(targets[n, 0]):
             dx, dy = targets[n, 0] - x, targets[n, 1] - y
             size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
-            ledge = _towards(faces, limits, face[n], (x, y, z), (dx / size, dy / size), limits.most)
+            ledge = _towards(faces, limits, at, (x, y, z), (dx / size, dy / size), limits.most[at])
             if ledge > size + 1e-6:
                 for k in range(2 * _CHORDS):
                     towards = (np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS))
-                    most = min(ledge, limits.most)
-                    ledge = min(ledge, _towards(faces, limits, face[n], (x, y, z), towards, most))
+                    most = min(ledge, limits.most[at])
+                    ledge = min(ledge, _towards(faces, limits, at, (x, y, z), towards, most))
         ledges[n] = ledge
 
 
-@njit(cache=True)
+@kernel
 def find_spans(
     faces: WalkableFaces,
     limits: CarryingLimits,
@@ -238,7 +250,6 @@ def find_spans(
     face: Int64s,
     targets: Floats,
     nearest: Floats,
-    fully: bool,
     spans: Floats,
 ) -> None:
     """Find the shortest bridge and arch through each point.
@@ -253,24 +264,54 @@ def find_spans(
         ``(n, 2)`` mm, the anchor nearest to each point; not a number if its region has none.
     nearest
         ``(n,)`` mm, largest distance of a point from the nearer end of an arch.
-    fully
-        Whether to try all directions even if a bridge or arch is within its limit.
     spans
         ``(n, 2)`` out: length of the shortest bridge and of the shortest arch, mm.
     """
     for n in range(len(points)):
         x, y, z = points[n]
-        at = face[n]
         bridge, arch = np.inf, np.inf
         if not np.isnan(targets[n, 0]):
-            for k in range(_CHORDS + 1):
-                dx, dy = np.cos(np.pi * k / _CHORDS), np.sin(np.pi * k / _CHORDS)
-                if k == 0:
-                    dx, dy = targets[n, 0] - x, targets[n, 1] - y
-                    size = max(np.sqrt(dx * dx + dy * dy), 1e-12)
-                    dx, dy = dx / size, dy / size
-                one, two = _chord(faces, limits, at, (x, y, z), (dx, dy), nearest[n])
+            for k in range(-1, _CHORDS):
+                towards = _direction(k, targets[n, 0] - x, targets[n, 1] - y)
+                one, two = _chord(faces, limits, face[n], (x, y, z), towards, nearest[n], 0.0)
                 bridge, arch = min(bridge, one), min(arch, two)
-                if not fully and (bridge <= limits.bridge or arch <= limits.arch[at]):
-                    break
         spans[n, 0], spans[n, 1] = bridge, arch
+
+
+@kernel
+def find_spanned(
+    faces: WalkableFaces,
+    limits: CarryingLimits,
+    points: Floats,
+    face: Int64s,
+    targets: Floats,
+    nearest: Floats,
+    least: Floats,
+    spanned: Bools,
+) -> None:
+    """Tell through which points a bridge or an arch leads that is within its limit; parameters as of `find_spans`.
+
+    Parameters
+    ----------
+    least
+        ``(n,)`` mm, a lower bound on the distance of any anchor from each point.
+    spanned
+        ``(n,)``, filled.
+    """
+    before = 0
+    for n in range(len(points)):
+        x, y, z = points[n]
+        at = face[n]
+        spanned[n] = False
+        if np.isnan(targets[n, 0]) or 2.0 * least[n] > limits.most[at]:
+            continue
+        for attempt in range(-1, _CHORDS + 1):
+            k = before if attempt == 0 else attempt - 1 if attempt > 0 else -1
+            if attempt > 0 and k == before:
+                continue
+            towards = _direction(k, targets[n, 0] - x, targets[n, 1] - y)
+            bridge, arch = _chord(faces, limits, at, (x, y, z), towards, nearest[n], least[n])
+            if bridge <= limits.bridge or arch <= limits.arch[at]:
+                spanned[n] = True
+                before = before if k < 0 else k
+                break

@@ -61,6 +61,29 @@ class Limits(NamedTuple):
     layer: float
 
 
+class Spots(NamedTuple):
+    """Points on overhang regions with the anchors nearest to them.
+
+    Attributes
+    ----------
+    at, face
+        ``(n, 3)`` mm, and the face of the regions ``(n,)`` that each is on.
+    target
+        ``(n, 2)`` mm in plan, the point of the nearest anchor; not a number where the region has none.
+    least
+        ``(n,)`` mm, a lower bound on its distance in plan; infinite where the region has none.
+    """
+
+    at: Floats
+    face: Int64s
+    target: Floats
+    least: Floats
+
+    def take(self, rows: Int64s) -> "Spots":
+        """Return some of the points."""
+        return Spots(self.at[rows], self.face[rows], self.target[rows], self.least[rows])
+
+
 class Carrier(NamedTuple):
     """The faces of overhang regions with the limits up to which the part carries them.
 
@@ -91,99 +114,10 @@ class Carrier(NamedTuple):
     tree: "KDTree"
     owner: Int64s
 
-    def ledges(self, points: Floats, face: Int64s, *, in_order: bool = False) -> Floats:
-        """Return the length ``(n,)`` mm of the shortest ledge at points ``(n, 3)`` on the regions' faces ``(n,)``.
-
-        With `in_order` only ledges count that are printed no later than the point, and none that is too long to carry
-        it.
-        """
-        from amprep.kernels.overhangs.walks import find_ledges
-
-        target, _ = self.nearest(points, face)
-        ledges = np.empty(len(points))
-        most = max(self.limits.ledge + TOLERANCE, self._longest()) if in_order else np.inf
-        limits = self._kernel_limits(most, in_order=in_order)
-        find_ledges(self._faces(), limits, np.ascontiguousarray(points), face, target, ledges)
-        return ledges
-
-    def spans(
-        self, points: Floats, face: Int64s, ledges: Floats, *, fully: bool = False
-    ) -> tuple[Floats, Floats]:
-        """Return the shortest bridge and arch ``(n,)`` mm at points, infinite where there is none.
-
-        Lines along a ring that is carried on one side only are no arches: unless the region is a cylinder or a sphere,
-        an end of an arch is hardly farther from a point than its shortest ledge ``(n,)``.
-
-        Without `fully` the search ends as soon as one is within its limit, it does not find longer ones, and only those
-        count of which one end is printed no later than the point. Near a border without anchors, the lines through a
-        point a little farther inside count where those through the point itself do not suffice.
-        """
-        bridge, arch = self._spans_at(points, face, _OBLIQUE * ledges, fully=fully)
-        straight_across = np.isfinite(arch) | (bridge <= TWICE * ledges)
-        left = np.flatnonzero(~(straight_across if fully else self._within_spans(bridge, arch, face)))
-        inner, on = self._from_rims(points[left], face[left])
-        left, inner, on = left[on >= 0], inner[on >= 0], on[on >= 0]
-        more = self._spans_at(inner, on, TWICE / 2 * self.ledges(inner, on), fully=fully)
-        bridge[left], arch[left] = np.minimum(bridge[left], more[0]), np.minimum(arch[left], more[1])
-        return bridge, arch
-
-    def _from_rims(self, points: Floats, face: Int64s) -> tuple[Floats, Int64s]:
-        """Return points moved away from near borders without anchors, and their faces, -1 where there is none."""
-        from amprep.kernels.overhangs.rims import step_from_rims
-
-        moved, on = np.empty_like(points), np.empty(len(points), np.int64)
-        step_from_rims(self._faces(), np.ascontiguousarray(points), face, _RIM, self.limits.plate, moved, on)
-        return moved, on
-
-    def _spans_at(
-        self, points: Floats, face: Int64s, nearest: Floats, *, fully: bool
-    ) -> tuple[Floats, Floats]:
-        """Return the shortest bridge and arch of the lines through points themselves.
-
-        Where the diameter is unknown, an end of an arch is at most `nearest` ``(n,)`` mm from the point.
-        """
-        from amprep.kernels.overhangs.walks import find_spans
-
-        target, _ = self.nearest(points, face)
-        spans = np.empty((len(points), 2))
-        nearest = np.where(np.isnan(self.diameters[self.regions.label[face]]), nearest, np.inf)
-        most = np.inf if fully else self._longest()
-        find_spans(
-            self._faces(),
-            self._kernel_limits(most, in_order=not fully),
-            np.ascontiguousarray(points),
-            face,
-            target,
-            nearest,
-            fully,
-            spans,
-        )
-        return spans[:, 0], spans[:, 1]
-
-    def carries(self, points: Floats, face: Int64s, ledges: Floats | None = None) -> Bools:
-        """Tell which points ``(n, 3)`` mm on the regions' faces ``(n,)`` the part carries.
-
-        The shortest ledges ``(n,)`` in order are measured unless they are given.
-        """
-        if ledges is None:
-            ledges = self.ledges(points, face, in_order=True)
-        carried = ledges <= self.limits.ledge + TOLERANCE
-        left = np.flatnonzero(~carried)
-        bridge, arch = self.spans(points[left], face[left], ledges[left])
-        carried[left] = self._within_spans(bridge, arch, face[left])
-        return np.asarray(carried)
-
-    def _within_spans(self, bridge: Floats, arch: Floats, face: Int64s) -> Bools:
-        """Tell which bridges and arches over faces are within their limits."""
-        return np.asarray((bridge <= self.limits.bridge + TOLERANCE) | (arch <= self.arch[face] + TOLERANCE))
-
-    def nearest(self, points: Floats, face: Int64s) -> tuple[Floats, Floats]:
-        """Return the point ``(n, 2)`` of the nearest anchor, and a lower bound ``(n,)`` mm on its distance in plan.
-
-        Where the region has no anchor, these are NaN and infinity.
-        """
+    def spots(self, points: Floats, face: Int64s) -> Spots:
+        """Return points ``(n, 3)`` mm on the regions' faces ``(n,)`` with the anchors nearest to them."""
         if not len(self.owner):
-            return np.full((len(points), 2), np.nan), np.full(len(points), np.inf)
+            return Spots(points, face, np.full((len(points), 2), np.nan), np.full(len(points), np.inf))
         keys = np.column_stack([points[:, :2], _APART * self.regions.label[face]])
         distance, sample = self.tree.query(keys)
         distance = np.asarray(distance)
@@ -195,7 +129,95 @@ class Carrier(NamedTuple):
         target = start + np.clip(share, end_share, 1 - end_share)[:, None] * along
         alien = distance > _APART / 2
         target[alien] = np.nan
-        return target, np.where(alien, np.inf, np.maximum(distance - _SPACING / 2, 0.0))
+        least = np.where(alien, np.inf, np.maximum(distance - _SPACING / 2, 0.0))
+        return Spots(np.ascontiguousarray(points), face, target, least)
+
+    def ledges(self, spots: Spots, *, in_order: bool = False) -> Floats:
+        """Return the length ``(n,)`` mm of the shortest ledge at each point.
+
+        With `in_order` only ledges count that are printed no later than the point, and none that is too long to carry
+        it.
+        """
+        most = np.maximum(self._longest(), self.limits.ledge + TOLERANCE) if in_order else self._endless()
+        return self._ledges(spots, self._kernel_limits(most, in_order=in_order))
+
+    def _ledges(self, spots: Spots, limits: "CarryingLimits") -> Floats:
+        from amprep.kernels.overhangs.walks import find_ledges
+
+        ledges = np.empty(len(spots.at))
+        find_ledges(self._faces(), limits, spots.at, spots.face, spots.target, ledges)
+        return ledges
+
+    def spans(self, spots: Spots, ledges: Floats) -> tuple[Floats, Floats]:
+        """Return the shortest bridge and arch ``(n,)`` mm at points, infinite where there is none.
+
+        Lines along a ring that is carried on one side only are no arches: unless the region is a cylinder or a sphere,
+        an end of an arch is hardly farther from a point than its shortest ledge ``(n,)``.
+
+        Near a border without anchors, the lines through a point a little farther inside count where those through the
+        point itself do not lead straight across.
+        """
+        limits = self._kernel_limits(self._endless(), in_order=False)
+        bridge, arch = self._spans(spots, _OBLIQUE * ledges, limits)
+        left = np.flatnonzero(~np.isfinite(arch) & (bridge > TWICE * ledges))
+        rows, inner = self._from_rims(spots.take(left))
+        left = left[rows]
+        more = self._spans(inner, TWICE / 2 * self._ledges(inner, limits), limits)
+        bridge[left], arch[left] = np.minimum(bridge[left], more[0]), np.minimum(arch[left], more[1])
+        return bridge, arch
+
+    def _spans(self, spots: Spots, nearest: Floats, limits: "CarryingLimits") -> tuple[Floats, Floats]:
+        """Return the shortest bridge and arch of the lines through points themselves.
+
+        Where the diameter is unknown, an end of an arch is at most `nearest` ``(n,)`` mm from the point.
+        """
+        from amprep.kernels.overhangs.walks import find_spans
+
+        spans = np.empty((len(spots.at), 2))
+        nearest = self._nearest_ends(spots, nearest)
+        find_spans(self._faces(), limits, spots.at, spots.face, spots.target, nearest, spans)
+        return spans[:, 0], spans[:, 1]
+
+    def _nearest_ends(self, spots: Spots, nearest: Floats) -> Floats:
+        return np.where(np.isnan(self.diameters[self.regions.label[spots.face]]), nearest, np.inf)
+
+    def _from_rims(self, spots: Spots) -> tuple[Int64s, Spots]:
+        """Return the rows of points near borders without anchors, and these points moved away from there."""
+        from amprep.kernels.overhangs.rims import step_from_rims
+
+        moved, on = np.empty_like(spots.at), np.empty(len(spots.at), np.int64)
+        step_from_rims(self._faces(), spots.at, spots.face, _RIM, self.limits.plate, moved, on)
+        rows = np.flatnonzero(on >= 0)
+        return rows, self.spots(moved[rows], on[rows])
+
+    def carries(self, spots: Spots, ledges: Floats | None = None) -> Bools:
+        """Tell which points the part carries: by a ledge, a bridge or an arch within its limit.
+
+        Only bridges and arches count of which one end is printed no later than the point. The shortest ledges ``(n,)``
+        in order are measured unless they are given.
+        """
+        if ledges is None:
+            ledges = self.ledges(spots, in_order=True)
+        carried = ledges <= self.limits.ledge + TOLERANCE
+        limits = self._kernel_limits(self._longest(), in_order=True)
+        left = np.flatnonzero(~carried)
+        carried[left] = self._spanned(spots.take(left), _OBLIQUE * ledges[left], limits)
+        left = left[~carried[left]]
+        left = left[spots.least[left] <= self.farthest(spots.face[left])]
+        rows, inner = self._from_rims(spots.take(left))
+        timeless = limits._replace(climb=np.full(len(self.climb), np.inf))
+        carried[left[rows]] = self._spanned(inner, TWICE / 2 * self._ledges(inner, timeless), limits)
+        return np.asarray(carried)
+
+    def _spanned(self, spots: Spots, nearest: Floats, limits: "CarryingLimits") -> Bools:
+        """Tell through which points themselves bridges or arches lead within their limits; as `_spans`."""
+        from amprep.kernels.overhangs.walks import find_spanned
+
+        spanned = np.empty(len(spots.at), np.bool_)
+        nearest = self._nearest_ends(spots, nearest)
+        least = np.maximum(spots.least - 2 * _END, 0.0)
+        find_spanned(self._faces(), limits, spots.at, spots.face, spots.target, nearest, least, spanned)
+        return spanned
 
     def farthest(self, face: Int64s) -> Floats:
         """Return the greatest distance (mm) from the nearest anchor at which a point of each face may be carried."""
@@ -212,18 +234,26 @@ class Carrier(NamedTuple):
 
         return WalkableFaces(self.regions.corners, self.regions.beyond)
 
-    def _longest(self) -> float:
-        """Return a length (mm) that lines which carry points do not exceed, but for oblique lines across bores."""
+    def _longest(self) -> Floats:
+        """Return lengths ``(m,)`` mm that lines which carry points of each face do not exceed.
+
+        Oblique lines across bores whose diameter is within its limit are the exception.
+        """
         chords = self.arch[self.arch < ANY_CHORD]
         bores = self.diameters[self.diameters <= self.limits.bore + TOLERANCE]
-        return float(max(self.limits.bridge, chords.max(initial=0.0), 2 * bores.max(initial=0.0)) + TOLERANCE)
+        bore = max(self.limits.bridge, chords.max(initial=0.0), 2 * bores.max(initial=0.0))
+        own = np.where(self.arch < ANY_CHORD, np.maximum(self.limits.bridge, self.arch), bore)
+        return np.asarray(own + 2 * TOLERANCE)
 
-    def _kernel_limits(self, most: float, *, in_order: bool) -> "CarryingLimits":
+    def _endless(self) -> Floats:
+        return np.full(len(self.arch), np.inf)
+
+    def _kernel_limits(self, most: Floats, *, in_order: bool) -> "CarryingLimits":
         from amprep.kernels.overhangs.walks import CarryingLimits
 
         rise = float(np.tan(np.radians(self.limits.angle_deg) / 2) / 4) - 1e-3
         bridge = self.limits.bridge + TOLERANCE
-        climb = self.climb if in_order else np.full(len(self.arch), np.inf)
+        climb = self.climb if in_order else self._endless()
         tilt = self.tilts[self.regions.label]
         return CarryingLimits(bridge, self.arch + TOLERANCE, rise, tilt, most, self.limits.plate, climb)
 

@@ -94,9 +94,10 @@ def region_sizes(
 
 def _measured(carrier: Carrier, points: Floats, face: Int64s, region: Int64s) -> _Points:
     """Measure points; those from which no straight line leads to an anchor have ledges over `_UNSEEN`."""
-    ledge = carrier.ledges(points, face)
+    spots = carrier.spots(points, face)
+    ledge = carrier.ledges(spots)
     unseen = np.flatnonzero(np.isinf(ledge))
-    ledge[unseen] = _UNSEEN + np.minimum(carrier.nearest(points[unseen], face[unseen])[1], _UNSEEN)
+    ledge[unseen] = _UNSEEN + np.minimum(spots.least[unseen], _UNSEEN)
     return _Points(points, face, region, ledge)
 
 
@@ -106,8 +107,8 @@ def _largest(
     """Return the triangles of each region that are the farthest from anchors, at most `_MOST_PIECES`."""
     middle = corners.mean(axis=1)
     radius = np.linalg.norm((corners - middle[:, None])[:, :, :2], axis=2).max(axis=1)
-    _, near = carrier.nearest(middle, face)
-    chosen = _first_of_each(region, near + radius, np.arange(len(face)))
+    least = carrier.spots(middle, face).least
+    chosen = _first_of_each(region, least + radius, np.arange(len(face)))
     return corners[chosen], face[chosen], region[chosen]
 
 
@@ -136,7 +137,7 @@ def _halves(corners: Floats) -> Floats:
 
 def _named(carrier: Carrier, worst: _Points, holds: Bools) -> dict[int, RegionSize]:
     """Return kind and size of each region from its worst point."""
-    bridge, arch = carrier.spans(worst.at, worst.face, worst.ledge, fully=True)
+    bridge, arch = carrier.spans(carrier.spots(worst.at, worst.face), worst.ledge)
     diameter = carrier.diameters[carrier.regions.label[worst.face]]
     by_width = arch / np.sin(np.radians(carrier.limits.angle_deg))
     bore = np.where(np.isnan(diameter) | np.isinf(arch), by_width, diameter)

@@ -76,19 +76,19 @@ def _judge(carrier: Carrier, corners: Floats, face: Int64s) -> tuple[Bools, Bool
     """Tell which triangles ``(n, 3, 3)`` to split, and which need support (those to split: perhaps)."""
     middle = corners.mean(axis=1)
     radius = np.linalg.norm((corners - middle[:, None])[:, :, :2], axis=2).max(axis=1)
-    _, near = carrier.nearest(middle, face)
-    needed = near - radius > carrier.farthest(face)
+    spots = carrier.spots(middle, face)
+    needed = spots.least - radius > carrier.farthest(face)
     split = np.zeros(len(face), np.bool_)
     left = np.flatnonzero(~needed)
     ledges = np.zeros(len(face))
-    ledges[left] = carrier.ledges(middle[left], face[left], in_order=True)
+    ledges[left] = carrier.ledges(spots.take(left), in_order=True)
     beyond = ledges[left] + radius[left] > carrier.limits.ledge
     split[left] = beyond & (radius[left] > _COARSEST)
     left = left[(beyond | np.isfinite(carrier.climb[face[left]])) & ~split[left]]
-    needed[left] = ~carrier.carries(middle[left], face[left], ledges[left])
+    needed[left] = ~carrier.carries(spots.take(left), ledges[left])
     left = left[radius[left] > _SMALL]
     tests = middle[left, None] + _INWARDS * (corners[left] - middle[left, None])
-    at = carrier.carries(tests.reshape(-1, 3), np.repeat(face[left], 3)).reshape(-1, 3)
+    at = carrier.carries(carrier.spots(tests.reshape(-1, 3), np.repeat(face[left], 3))).reshape(-1, 3)
     mixed = (at != ~needed[left, None]).any(axis=1)
     split[left[mixed & (radius[left] > _FINEST)]] = True
     needed[left[mixed]] = True
