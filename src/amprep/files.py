@@ -141,9 +141,9 @@ def read_json(path: Path, what: str, largest: int) -> Any:
     """
     try:
         if path.stat().st_size > largest:
-            raise InputError(f"{path}: not {what}: larger than {largest} bytes")
+            raise InputError(f"{path}: expected {what}, but the file is larger than {largest / 2**20:g} MiB")
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not {what}: not JSON") from error
+        raise InputError(f"{path}: expected {what}, but the file is not JSON") from error

@@ -24,7 +24,7 @@ def read_table(path: Path, what: str) -> dict[str, Any]:
         )
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise JobError(f"{path}: a {what} file must have at most {LARGEST_FILE} bytes")
+            raise JobError(f"{path}: a {what} file must have at most {LARGEST_FILE >> 20} MiB")
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise JobError(f"{path}: cannot be read ({error.strerror or error})") from error

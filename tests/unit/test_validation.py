@@ -63,7 +63,7 @@ def test_every_named_field_is_checked():
         (b"\xff", "not a TOML file"),
         (b"a = ", "not a TOML file"),
         (b"a = " + b"[" * 3000 + b"]" * 3000, "nested too deeply"),
-        (b" " * (LARGEST_FILE + 1), f"at most {LARGEST_FILE} bytes"),
+        (b" " * (LARGEST_FILE + 1), f"at most {LARGEST_FILE >> 20} MiB"),
     ],
 )
 def test_a_file_that_is_no_table_is_refused_with_its_name(tmp_path, content, message):

@@ -36,7 +36,7 @@ def read_cell_table(path: Path) -> dict[str, Any]:
     """
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: a cell's TOML file must not exceed {LARGEST_FILE} bytes")
+            raise InputError(f"{path}: a cell's TOML file must not exceed {LARGEST_FILE >> 20} MiB")
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error

@@ -157,5 +157,7 @@ def _united_cells(request: CellRequest, emit: Emit) -> tuple["Manifold", int]:
     solids += [as_manifold(*each.mesh.arrays) for each in extra]
     cells = union(solids)
     if cells.volume() <= CRUMB:
-        raise JobError("the cell has no solid; walls without thickness cannot fill a region")
+        raise JobError(
+            "the cell has no solid; walls without thickness cannot fill a region; choose another by --cell"
+        )
     return cells, len(np.unique(instances.cells.edge[~instances.sheet])) + len(extra)

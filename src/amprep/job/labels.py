@@ -88,7 +88,7 @@ def read_labels(path: Path) -> tuple[LabelSettings, ...]:
     """
     try:
         if path.stat().st_size > _LARGEST_FILE:
-            raise JobError(f"{path}: a list of labels must have at most {_LARGEST_FILE} bytes")
+            raise JobError(f"{path}: a list of labels must have at most {_LARGEST_FILE >> 20} MiB")
         text = path.read_text(encoding="utf-8-sig")
         rows = csv.reader(io.StringIO(text), delimiter=_delimiter(text), strict=True)
         filled = _filled(rows, path)

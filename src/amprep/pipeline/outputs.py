@@ -22,6 +22,17 @@ def safe_name(text: str) -> str:
     return kept[:100] or "unnamed"
 
 
+def _refuse_unusable(folder: Path) -> None:
+    """Refuse an output folder that is a file, or below one, or that this user may not write to."""
+    nearest = next((each for each in (folder, *folder.parents) if each.exists()), None)
+    if nearest is not None and not nearest.is_dir():
+        raise InputError(
+            f"cannot write to the output folder {folder}: {nearest} is a file; choose another by -o"
+        )
+    if nearest is not None and not os.access(nearest, os.W_OK):
+        raise InputError(f"cannot write to the output folder {folder}: no permission; choose another by -o")
+
+
 class OutputFolder:
     """Collects the files of a run and publishes them together; after an exception or a signal no file appears.
 
@@ -39,10 +50,11 @@ class OutputFolder:
     Raises
     ------
     InputError
-        If the folder cannot be created or written.
+        If the folder cannot be created or written; what is known before anything is written is refused at once.
     """
 
     def __init__(self, folder: Path, stem: str, *, numbered: bool = True) -> None:
+        _refuse_unusable(folder)
         self.folder, self.stem, self.numbered = folder, safe_name(stem), numbered
         self._names: list[str] = []
 

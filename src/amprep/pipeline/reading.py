@@ -4,6 +4,8 @@ import os
 import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from itertools import islice
 from pathlib import Path
 from typing import NoReturn
 
@@ -133,12 +135,24 @@ def _expand(path: Path, suffixes: Collection[str]) -> list[Path]:
         if path.is_dir():
             return _files_in(path, suffixes)
         if not path.exists():
-            raise InputError(f"{path}: no such file or folder")
+            raise InputError(f"{path}: no such file or folder{_hint_for(path)}")
         if not path.is_file():
             raise InputError(f"{path}: expected a file or a folder, got something else")
     except OSError as error:
         raise InputError(f"{str(path)[:200]}: cannot be accessed: {error.strerror or error}") from error
     return [path]
+
+
+def _hint_for(path: Path) -> str:
+    """Return what a path that does not exist may mean: a file with a wrong count, or one with a similar name."""
+    stem, colon, _ = path.name.rpartition(":")
+    if colon and path.with_name(stem).is_file():
+        return f"; a count of copies must be a whole number, as in {stem}:4"
+    beside = (
+        (each.name for each in islice(path.parent.iterdir(), _MOST_FILES)) if path.parent.is_dir() else ()
+    )
+    close = get_close_matches(path.name, list(beside), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""
 
 
 def _files_in(folder: Path, suffixes: Collection[str]) -> list[Path]:

@@ -62,9 +62,9 @@ def run_job(resolved: ResolvedJob, options: RunOptions, *, watcher: Watcher, sto
         For wrong input, a plugin that fails, or when nothing fits the build volume.
     """
     clock, stops = Clock(watcher), SupportStops.after(options.time_limit, stop)
+    outputs = OutputFolder(options.folder, resolved.job.name)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
     packed = pack_parts(loaded, clock, stops.routing)
-    outputs = OutputFolder(options.folder, resolved.job.name)
     return make_builds(loaded, packed, outputs, options, clock, stops, stop)
 
 

@@ -151,7 +151,7 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     with pytest.raises(JobError, match="expected a job file, found nothing"):
         load_job(tmp_path / "y.toml")
     path.write_bytes(b"#" * 5_000_000)
-    with pytest.raises(JobError, match="at most 4194304 bytes"):
+    with pytest.raises(JobError, match="at most 4 MiB"):
         load_job(path)
 
 

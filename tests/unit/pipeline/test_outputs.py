@@ -64,11 +64,9 @@ def test_builds_of_an_earlier_run_with_more_builds_are_named(tmp_path):
 
 def test_a_folder_that_is_a_file_is_refused(tmp_path):
     (tmp_path / "file").touch()
-    with (
-        pytest.raises(InputError, match="cannot write to the output folder"),
-        OutputFolder(tmp_path / "file", "job"),
-    ):
-        pass
+    for folder in (tmp_path / "file", tmp_path / "file" / "in it"):
+        with pytest.raises(InputError, match=r"cannot write to the output folder .*file is a file"):
+            OutputFolder(folder, "job")
 
 
 def contents(folder):

@@ -43,4 +43,6 @@ def _refuse(title: str, found: Sequence[Violation]) -> None:
     if found:
         first, more = found[0], len(found) - 1
         others = f" (and {counted(more, 'other violation')})" if more else ""
-        raise PluginError(f"{title} broke its promise: {first.subject} {first.message}{others}")
+        raise PluginError(
+            f"{title} broke its promise: {first.subject} {first.message}{others}; choose another"
+        )

@@ -135,7 +135,7 @@ def _keep_edits(folder: Path, name: str) -> None:
     if not file.exists():
         return
     try:
-        stated = read_json(report, "a report of amprep", LARGEST_REPORT)
+        stated = read_json(report, "NAME.report.json of amprep", LARGEST_REPORT)
         as_written = isinstance(stated, dict) and stated.get("sha256") == file_digest(file)
     except InputError:
         as_written = False
@@ -170,10 +170,11 @@ def _refuse_faults(edited: EditedBuild, original: Build, stop: Stop) -> None:
         raise InputError("expected a part of a build in the file, got none")
     found = check_placed([each.placed for each in edited.parts], original.settings, stop)
     if found:
+        whom = "it" if len(found) == 1 else "them"
         shown = "; ".join(f"{each.subject}: {each.message}" for each in found[:_MOST_NAMED])
         more = f"; and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
         raise InputError(
-            f"{counted(len(found), 'part')} cannot stay there: {shown}{more}; move and try again"
+            f"{counted(len(found), 'part')} cannot stay there: {shown}{more}; move {whom} and try again"
         )
 
 

@@ -206,7 +206,7 @@ def _reported(report: Path, file: "EditedFile") -> Path:
     InputError
         If the report names no such file, or it is not beside the report as it was written.
     """
-    record = read_json(report, "a report of amprep", LARGEST_REPORT)
+    record = read_json(report, "NAME.report.json of amprep", LARGEST_REPORT)
     builds = record.get("builds") if isinstance(record, dict) else None
     entries = [each for each in builds if isinstance(each, dict)] if isinstance(builds, list) else []
     stated = [(each.get("file"), each.get("sha256")) for each in entries]

@@ -133,7 +133,7 @@ def _builds(report: Path) -> list[dict[str, Any]]:
     InputError
         If it cannot be read or is not a report of amprep.
     """
-    record = read_json(report, "a report of amprep", _LARGEST_REPORT)
+    record = read_json(report, "NAME.report.json of amprep", _LARGEST_REPORT)
     builds = record.get("builds") if isinstance(record, dict) else None
     if not isinstance(builds, list) or not all(isinstance(each, dict) for each in builds):
         raise InputError(f"{report}: not a report of amprep: it lists no builds")

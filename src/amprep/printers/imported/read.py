@@ -95,7 +95,7 @@ def _of_file(path: Path, read: Any) -> list[PrinterProfile]:
 def _text(path: Path) -> str:
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: larger than {LARGEST_FILE} bytes")
+            raise InputError(f"{path}: larger than {LARGEST_FILE >> 20} MiB, which no profile is")
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error

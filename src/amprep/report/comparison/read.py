@@ -73,7 +73,7 @@ def read_runs(paths: Sequence[Path]) -> list[ComparedRun]:
 
 
 def _read(path: Path) -> Mapping[str, Any]:
-    report = read_json(path, "a report of a run", _LARGEST)
+    report = read_json(path, "the JSON report of a run", _LARGEST)
     if not isinstance(report, dict) or not isinstance(report.get("builds"), list) or "triage" not in report:
         raise InputError(f"{path}: not a report of a run: expected the file NAME.report.json of amprep run")
     if report.get("format") != _FORMAT:

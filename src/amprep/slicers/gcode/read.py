@@ -26,6 +26,7 @@ from amprep.slicers.gcode.tables import (
 _HEAD = 8 << 20
 """The first bytes in which labels and settings are searched."""
 _TAIL = 1 << 20
+_COMMAND = re.compile(r"^\s*(?:N\d+\s+)?[GMT]\d", re.MULTILINE | re.IGNORECASE)
 _BLOCK = 4 << 20
 _BINARY = b"GCDE"
 _WIDTHS = (";WIDTH:", "; LINE_WIDTH:")
@@ -71,7 +72,7 @@ def read_head(path: Path) -> GcodeHead:
     Raises
     ------
     InputError
-        If it cannot be read or is binary G-code.
+        If it cannot be read, is binary, or has no command of G-code.
     """
     with _opened(path) as file:
         head = file.read(_HEAD)
@@ -85,6 +86,8 @@ def read_head(path: Path) -> GcodeHead:
     if b"\0" in head:
         raise InputError(f"{path}: not G-code, but a binary file")
     text = head.decode("utf-8", "replace")
+    if not _COMMAND.search(text):
+        raise InputError(f"{path}: not G-code: no line begins with a command such as G1")
     dialect = dialect_of(text)
     return GcodeHead(
         program_of(text[:100_000]),

@@ -131,7 +131,9 @@ class SupportNetwork:
         violations = check_plan(posed.problem, plan)
         if violations:
             first = violations[0]
-            raise PluginError(f"the support router broke its promise: {first.subject} {first.message}")
+            raise PluginError(
+                f"the support router broke its promise: {first.subject} {first.message}; choose another by --router"
+            )
         if self.territories:
             plan = self._straightened(plan, posed, red_squares)
         return self.read(plan, posed, red_squares)

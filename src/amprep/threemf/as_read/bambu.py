@@ -46,7 +46,7 @@ def read_as_bambu(package: Package, model: "Lib3MF.Model") -> list[PrintedBody]:
     """
     plates = _used_plates(package.bambu_config)
     if plates > 1:
-        raise ValueError(f"the project has parts on {plates} plates, expected one")
+        raise ValueError(f"the project has parts on {plates} plates; move all to one")
     roles = parse_bambu_config(package.bambu_config, "the project")
     bodies: list[PrintedBody] = []
     items, index = model.GetBuildItems(), 0

@@ -129,7 +129,9 @@ def read_contents(path: Path) -> Contents:
     except OSError as error:
         raise InputError(f"{path}: cannot read the file: {error.strerror or error}") from error
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError) as error:
-        raise InputError(f"{path}: not a 3MF package or a damaged one ({error}); export it again") from error
+        raise InputError(
+            f"{path}: not a 3MF file, or a damaged one ({error}); give a .3mf file, or export it again"
+        ) from error
     except (NotImplementedError, RuntimeError, ValueError) as error:
         raise InputError(f"{path}: a 3MF package may not use this kind of zip file ({error})") from error
     return Contents(entries, outlines)

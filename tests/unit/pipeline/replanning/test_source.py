@@ -115,7 +115,7 @@ def test_a_project_is_found_by_the_names_in_its_configuration(plate, tmp_path):
 
 def test_a_project_with_parts_on_two_plates_is_refused(made, plate, tmp_path):
     file = project(plate, tmp_path / "a.3mf", plates=2)
-    with pytest.raises(InputError, match="parts on 2 plates, expected one"):
+    with pytest.raises(InputError, match="parts on 2 plates; move all to one"):
         amprep.replan(file, output=tmp_path, report=made / "job.report.json")
 
 

@@ -63,13 +63,15 @@ def test_the_count_of_a_folder_holds_for_each_file_in_it(tmp_path):
     ("name", "words"),
     [
         ("none.stl", "no such file"),
+        ("bracket.slt", r"no such file or folder \(did you mean 'bracket\.stl'\?\)"),
+        ("bracket.stl:x", "a count of copies must be a whole number, as in bracket.stl:4"),
         ("empty", "no file to read"),
         ("\0", "not a usable"),
         ("x" * 5000, "too long"),
     ],
 )
 def test_what_is_not_there_is_refused_in_one_line(tmp_path, name, words):
-    (tmp_path / "a.stl").write_text("x")
+    (tmp_path / "bracket.stl").write_text("x")
     (tmp_path / "empty").mkdir()
     with pytest.raises(InputError, match=words) as caught:
         expand_inputs([(tmp_path / name, None)], SUFFIXES)

@@ -108,6 +108,7 @@ def test_supports_of_the_slicer_are_apart_from_the_object(tmp_path):
     [
         (b"GCDE\x01\x00", "binary G-code"),
         (b"G1 X1\0\0", "binary file"),
+        (b"G codes are not\nin this text\n", "not G-code: no line begins with a command"),
         (None, "cannot be read"),
     ],
 )
@@ -122,7 +123,7 @@ def test_files_that_are_no_text_are_refused(tmp_path, content, words):
 def test_a_line_without_end_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(reading, "_BLOCK", 1000)
     path = tmp_path / "a.gcode"
-    path.write_text(";" + "x" * 5000, encoding="utf-8")
+    path.write_text("G28\n;" + "x" * 5000, encoding="utf-8")
     with pytest.raises(InputError, match="line of more than"):
         read_gcode(path, read_head(path), HEIGHTS)
 
@@ -130,7 +131,8 @@ def test_a_line_without_end_is_refused(tmp_path, monkeypatch):
 def test_too_many_labels_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(tables, "MOST_LINES", 10)
     path = tmp_path / "a.gcode"
-    path.write_text("".join(f"; printing object {k} id:0 copy 0\n" for k in range(20)), encoding="utf-8")
+    labels = "".join(f"; printing object {k} id:0 copy 0\n" for k in range(20))
+    path.write_text(f"G28\n{labels}", encoding="utf-8")
     with pytest.raises(InputError, match="different labels"):
         read_gcode(path, read_head(path), HEIGHTS)
 
@@ -139,7 +141,8 @@ def test_too_many_labels_are_refused(tmp_path, monkeypatch):
 def test_a_label_without_end_is_refused(tmp_path, lead):
     path = tmp_path / "a.gcode"
     name = "a" if lead else "a" * 70_000
-    path.write_text(f"; printing object b id:0 copy 0\n{lead}; printing object {name}\n", encoding="utf-8")
+    text = f"G28\n; printing object b id:0 copy 0\n{lead}; printing object {name}\n"
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="label of more than"):
         read_gcode(path, read_head(path), HEIGHTS)
 

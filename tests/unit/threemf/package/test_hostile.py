@@ -116,8 +116,8 @@ def test_an_archive_with_damaged_lzma_data_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "not a 3MF package"),
-        (b"nonsense", "not a 3MF package"),
+        (b"", "not a 3MF file"),
+        (b"nonsense", "not a 3MF file"),
         (packed()[: len(packed()) // 2], "damaged"),
         (packed()[:-3], "damaged"),
         (packed()[:200] + b"\0" * 20 + packed()[220:], "damaged"),
