@@ -31,7 +31,13 @@ def test_an_unchanged_file_breaks_no_promise(amprep, written, tmp_path, dialect)
     outcome, broken = verdict(amprep, written[dialect], tmp_path)
     assert (outcome.code, broken) == (0, [])
     judged = outcome.json["limits_judged"]
-    of_file = ("printed as planned", "support unchanged", "part unchanged", "distance to other parts")
+    of_file = (
+        "printed as planned",
+        "support unchanged",
+        "part unchanged",
+        "record unchanged",
+        "distance to other parts",
+    )
     assert [each for each in of_file if judged[each].startswith("not judged")] == []
 
 
@@ -76,7 +82,8 @@ def test_a_file_of_an_earlier_version_is_accepted_and_says_what_is_not_judged(
 ):
     outcome, broken = verdict(amprep, as_before(written[dialect]), tmp_path)
     assert (outcome.code, broken) == (0, [])
-    assert outcome.json["limits_judged"]["support unchanged"].startswith("not judged: an earlier version")
+    for promise in ("support unchanged", "record unchanged"):
+        assert outcome.json["limits_judged"][promise].startswith("not judged: an earlier version")
 
 
 def test_there_are_faults_enough_in_every_dialect():

@@ -183,6 +183,12 @@ _STRAY = (
 )
 
 
+_MODIFIER = '<metadata type="volume" key="modifier" value="1"/>'
+_SLICES = '<s:slicestack id="50" zbottom="0"><s:slice ztop="1"/></s:slicestack>'
+_INFILL = '<metadata name="cura:infill_mesh">True</metadata>'
+RECORD = "record unchanged"
+
+
 def _volume_type(kind: str, number: int) -> Fault:
     """Give the volume with a number another type in PrusaSlicer's configuration."""
 
@@ -192,6 +198,25 @@ def _volume_type(kind: str, number: int) -> Fault:
         return entries | {CONFIG: text}
 
     return fault
+
+
+def _in_record(pattern: str, replacement: str) -> Fault:
+    """Return a fault in the record that the geometry does not show."""
+    return sub(pattern, replacement)
+
+
+def _record_of_another(entries: Entries) -> Entries:
+    """Say of the settings what another build of the same parts says."""
+    text = re.sub('"clearance": 5.0', '"clearance": 4.0', entries[MODEL])
+    return entries | {MODEL: re.sub('(identifier"[^>]*>)[0-9a-f]{8}', r"\g<1>00000000", text)}
+
+
+def _turn_clipping(entries: Entries) -> Entries:
+    """Turn over the first triangle of the clipping mesh."""
+    head, found, tail = entries[MODEL].partition('z="60.000000"')
+    return entries | {
+        MODEL: head + found + re.sub(r'v1="(\d+)" v2="(\d+)"', r'v1="\2" v2="\1"', tail, count=1)
+    }
 
 
 FAULTS = (
@@ -327,6 +352,69 @@ FAULTS = (
         "the version is removed", sub(r"<metadata name=.slic3rpe:Version3mf.*?</metadata>", ""), PRUSASLICER
     ),
     Planted("the version is 0", sub(r"(slic3rpe:Version3mf[^>]*>)1", r"\g<1>0"), PRUSASLICER),
+    *(
+        Planted(f"triangles have {each}", sub("<triangle ", f'<triangle slic3rpe:{each}="4" '), PRUSASLICER)
+        for each in ("custom_supports", "mmu_segmentation")
+    ),
+    Planted(
+        "a volume is a modifier, said otherwise",
+        sub("(<metadata[^>]*ModelPart[^>]*>)", rf"\1{_MODIFIER}", entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted(
+        "an object has several instances",
+        sub('<object id="1"', r'\g<0> instances_count="3"', entry=CONFIG),
+        PRUSASLICER,
+    ),
+    Planted("a volume ends one triangle later", sub('lastid="23"', 'lastid="24"', entry=CONFIG), PRUSASLICER),
+    Planted(
+        "Cura knows a setting of an item", sub("<metadatagroup>(?=.{20,60}bodies)", rf"\g<0>{_INFILL}"), CURA
+    ),
+    Planted("Cura knows a setting of the model", sub("(?=<metadata )", _INFILL), CURA),
+    Planted(
+        "Cura fills below, as it does by default",
+        sub(r"<metadata name=.cura:support_mesh_drop.*?</metadata>", ""),
+        CURA,
+    ),
+    Planted(
+        "Cura's namespace is another one", sub('http://software.ultimaker[^"]*', "http://localhost"), CURA
+    ),
+    Planted("the file has slices", sub("<resources>", rf"\g<0>{_SLICES}"), ("beams",)),
+    Planted(
+        "geometry comes from another part",
+        sub("<component ", r'\g<0>p:path="/3D/other.model" '),
+        ("cura",),
+        None,
+    ),
+    Planted("a number of other notation", sub('<vertex x="0.000000"', '<vertex x="0x1"'), ("generic",)),
+    Planted("an extension is required", sub("<model ", '<model requiredextensions="s" '), ("generic",)),
+    Planted(
+        "a part is mirrored",
+        sub('transform="1 0 0 0 1 0 0 0 1 10 ', 'transform="-1 0 0 0 1 0 0 0 1 27 '),
+        ("prusaslicer",),
+        "allowed motion",
+    ),
+    Planted(
+        "a support holds another part", _in_record('"holds": \\[0\\]', '"holds": [0, 1]'), ("beams",), RECORD
+    ),
+    Planted(
+        "a part has another label", _in_record('"label": "bracket-2"', '"label": "x"'), ("cura",), RECORD
+    ),
+    Planted(
+        "supports are not demanded",
+        _in_record('"supported": true', '"supported": false'),
+        ("generic",),
+        RECORD,
+    ),
+    Planted("a larger volume", _in_record(r'"size": \[100', '"size": [1000'), ("prusaslicer",), RECORD),
+    Planted("places are not recorded", _in_record(r', "at": \[[^]]*\]', ""), ("prusaslicer",), RECORD),
+    Planted(
+        "numbers are not recorded",
+        sub(r"<metadata name=.amprep:contents.*?</metadata>", ""),
+        ("generic",),
+        RECORD,
+    ),
+    Planted("the record of another build", _record_of_another, ("cura",), RECORD),
     Planted("all radii times 1.5", scale_radii(1.5), BEAMS, promise="support unchanged"),
     Planted("all radii times 0.01", scale_radii(0.01), BEAMS, promise="least wall"),
     Planted(
@@ -357,6 +445,9 @@ FAULTS = (
         BEAMS,
         promise="coverage",
     ),
+    Planted("balls at nodes", sub("<b:beamlattice ", r'\g<0>ballmode="all" ballradius="3" '), BEAMS),
+    Planted("a beam is added", sub("(?=<b:beam )", '<b:beam v1="8" v2="13"/>'), BEAMS, "support unchanged"),
+    Planted("a triangle of the clipping mesh is turned over", _turn_clipping, BEAMS),
     Planted("another cap", sub('cap="sphere"', 'cap="butt"'), BEAMS),
     Planted("one beam has another cap", sub(r'(<b:beam v1="8" v2="12")', r'\1 cap1="hemisphere"'), BEAMS),
     Planted("beams must be longer", sub('minlength="0.001"', 'minlength="50"'), BEAMS),
@@ -383,6 +474,6 @@ def as_before(entries: Entries) -> Entries:
     """Return the entries as the version before digests of supports wrote them."""
     text = re.sub(r', "surface": false, "sha256": "\w+"', "", entries[MODEL])
     text = re.sub(r', "at": \[[^]]*\]', "", text)
-    text = re.sub(r'\s*<metadata name="amprep:contents".*?</metadata>', "", text)
+    text = re.sub(r'\s*<metadata name="amprep:(contents|digest)".*?</metadata>', "", text)
     assert text.count("sha256") == 2, "only those of the parts are left"
     return entries | {MODEL: text}

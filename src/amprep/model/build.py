@@ -253,14 +253,31 @@ class Unsupported:
         return self.minor and self.reason != EXCEPTED
 
 
+@dataclass(frozen=True)
+class StoredRecord:
+    """The digest that a build file states of amprep's record in it, and that of the record as it is.
+
+    Attributes
+    ----------
+    recorded_digest
+        SHA-256 that the file states; empty in files of earlier versions.
+    digest
+        SHA-256 of the settings, parts, supports and listed overhangs as the file states them.
+    """
+
+    recorded_digest: str
+    digest: str
+
+
 @dataclass(frozen=True, eq=False)
 class Build:
-    """One printing run: its settings, parts, supports, and unsupported overhangs."""
+    """One printing run: its settings, parts, supports, and unsupported overhangs; `stored` is that of its file."""
 
     settings: BuildSettings
     parts: tuple[PlacedPart, ...]
     supports: tuple[SupportBody, ...] = ()
     unsupported: tuple[Unsupported, ...] = ()
+    stored: StoredRecord | None = None
 
 
 MAX_STAND_IN_TRIANGLES = 100_000

@@ -4,6 +4,7 @@ NAMESPACE = "http://schemas.amprep.dev/3mf/2026/11"
 """Namespace of all metadata that amprep reads from jobs and writes into builds."""
 
 CORE_NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+BEAM_NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"
 CURA_NAMESPACE = "http://software.ultimaker.com/xml/cura/3mf/2015/10"
 PRUSASLICER_NAMESPACE = "http://schemas.slic3r.org/3mf/2017/06"
 

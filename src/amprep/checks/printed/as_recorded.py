@@ -9,7 +9,7 @@ from amprep.arrays import CONTACT_TOLERANCE
 from amprep.checks.packing.parts_placed import ROUNDING
 from amprep.checks.printed.found import PrintedBeams, PrintedBody, PrintedFile, PrintedKind
 from amprep.checks.violation import Violation, place_words
-from amprep.geometry.meshes.topology import drop_unused_vertices
+from amprep.geometry.meshes.topology import drop_unused_vertices, edges_match
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.mesh import Mesh
 
@@ -164,7 +164,9 @@ def _faults_of_clipping(beams: PrintedBeams) -> list[str]:
     if not beams.keeps_inside:
         return ["would remove the beams inside their clipping mesh"]
     low, high = beams.clipping.bounds if len(beams.clipping.triangles) else (np.zeros(3), np.zeros(3))
-    if abs(beams.clipping.signed_volume - float(np.prod(high - low))) > 1e-6 * float(np.prod(high - low)):
+    volume = float(np.prod(high - low))
+    is_closed = edges_match(beams.clipping.triangles)
+    if not is_closed or abs(beams.clipping.signed_volume - volume) > 1e-6 * volume:
         return ["would clip beams at a mesh that is no box"]
     ends = beams.ends.reshape(-1, 3)
     outside = ((ends < low - CONTACT_TOLERANCE) | (ends > high + CONTACT_TOLERANCE)).any(axis=1)

@@ -34,6 +34,7 @@ PROMISES = (
     "allowed motion",
     "part unchanged",
     unchanged.PROMISE,
+    unchanged.RECORD,
     cells.CLOSED,
     cells.INSIDE,
     cells.STANDING,

@@ -31,6 +31,7 @@ def extents_of(build: Build, pairs: PairCounts, printed: PrintedFile | None) -> 
         else f"as {printed.program} reads it, tolerance {ROUNDING:g} mm",
         **_of_parts(build, pairs),
         unchanged.PROMISE: unchanged.extent_of(build, NOT_JUDGED),
+        unchanged.RECORD: unchanged.extent_of_record(build, NOT_JUDGED),
         **_of_supports(build),
         free_below.PROMISE: free_below.extent_of(build, NOT_JUDGED),
     }

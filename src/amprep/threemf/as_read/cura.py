@@ -18,8 +18,8 @@ _KINDS: dict[str, PrintedKind] = {
     "cutting_mesh": "modifier",
 }
 _DROP_DOWN = "support_mesh_drop_down"
-"""Whether Cura prints supports below a support too; earlier versions of amprep do not forbid it."""
-_PROJECT = "cura/"
+"""Whether Cura prints supports below a support too, which it does unless the file forbids it."""
+_PREFIX, _PROJECT = "cura", "cura/"
 
 
 def read_as_cura(structure: Structure, meshes: ObjectMeshes) -> PrintedFile:
@@ -30,7 +30,8 @@ def read_as_cura(structure: Structure, meshes: ObjectMeshes) -> PrintedFile:
         vertices, triangles = meshes.of(instance.object_id)
         settings = _settings_of(instance)
         foreign = sorted(settings.keys() - _KINDS - {_DROP_DOWN})
-        if settings.get(_DROP_DOWN, "").strip().lower() not in ("", "false"):
+        drops = settings.get(_DROP_DOWN, "true" if "support_mesh" in settings else "false")
+        if drops.strip().lower() != "false":
             remarks.append(f"it would fill the space below {instance.name!r} down to the plate")
         if foreign:
             remarks.append(
@@ -40,6 +41,7 @@ def read_as_cura(structure: Structure, meshes: ObjectMeshes) -> PrintedFile:
         bodies.append(PrintedBody(instance.name, _kind_of(instance, settings), mesh))
     project = [name for name in structure.entries if name.lower().startswith(_PROJECT)]
     remarks += [f"the package has settings of a Cura project, {name[:80]}" for name in project[:1]]
+    remarks += _of_no_object(structure)
     return PrintedFile("Cura", structure.unit_mm, tuple(bodies), tuple(remarks))
 
 
@@ -61,9 +63,24 @@ def _settings_of(instance: MeshInstance) -> dict[str, str]:
 
 
 def _own_settings(thing: FileObject) -> dict[str, str]:
+    """Return an object's settings; those with another prefix or namespace, which may count, keep a prefix."""
     found = {}
     for each in thing.element.iterfind(f"{_CORE}metadatagroup/{_CORE}metadata"):
         prefix, _, name = each.get("name", "").rpartition(":")
-        if thing.element.nsmap.get(prefix) == CURA_NAMESPACE:
-            found[name] = each.text or ""
+        is_named, is_declared = prefix == _PREFIX, each.nsmap.get(prefix) == CURA_NAMESPACE
+        if is_named or is_declared:
+            found[name if is_named and is_declared else each.get("name", "")] = each.text or ""
     return found
+
+
+def _of_no_object(structure: Structure) -> list[str]:
+    """Return a remark for settings of Cura that belong to the model or to build items, where amprep writes none."""
+    entries = structure.root.iterfind(f"{_CORE}metadata")
+    items = structure.root.iterfind(f"{_CORE}build/{_CORE}item/{_CORE}metadatagroup/{_CORE}metadata")
+    named = [(each, each.get("name", "")) for each in (*entries, *items)]
+    found = [
+        name
+        for each, name in named
+        if name.startswith(f"{_PREFIX}:") or each.nsmap.get(name.rpartition(":")[0]) == CURA_NAMESPACE
+    ]
+    return [f"the model or a build item has settings of Cura: {', '.join(found)[:80]}"] if found else []

@@ -4,8 +4,7 @@ from amprep.checks.printed.found import PrintedBody, PrintedFile, PrintedKind
 from amprep.model.mesh import Mesh
 from amprep.threemf.as_read.meshes import ObjectMeshes, placed
 from amprep.threemf.as_read.structure import MeshInstance, Structure
-
-BEAM_NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"
+from amprep.threemf.names import BEAM_NAMESPACE
 
 _KINDS: dict[str, PrintedKind] = {
     "model": "model",

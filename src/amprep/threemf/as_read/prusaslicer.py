@@ -5,6 +5,7 @@ version in the metadata, which is found by its literal name, decides whether vol
 than `model` are not read; an item is printed unless its attribute begins with zero.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,18 +29,24 @@ _KINDS: dict[str, PrintedKind] = {
     "SupportEnforcer": "enforcer",
 }
 _VERSION = "slic3rpe:Version3mf"
+_KNOWN_ATTRIBUTES = {"object": {"id"}, "volume": {"firstid", "lastid"}}
 _KNOWN_KEYS = {"object": {"name"}, "volume": {"name", "volume_type", "modifier"}}
 
 
 class _VolumeRange:
-    """Triangles of an object, both ends included, with their name and kind."""
+    """Triangles of an object, both ends included, with their name and kind; later settings replace earlier ones."""
 
-    def __init__(self, first: int, last: int, values: dict[str, str]) -> None:
+    def __init__(self, first: int, last: int, settings: Sequence[tuple[str, str]]) -> None:
         self.first, self.last = first, last
-        self.name = values.get("name", "")
-        self.kind: PrintedKind = _KINDS.get(values.get("volume_type", ""), "model")
-        if "volume_type" not in values and values.get("modifier") == "1":
-            self.kind = "modifier"
+        self.name = ""
+        self.kind: PrintedKind = "model"
+        for key, value in settings:
+            if key == "name":
+                self.name = value
+            elif key == "volume_type":
+                self.kind = _KINDS.get(value, "model")
+            elif key == "modifier" and value == "1":
+                self.kind = "modifier"
 
 
 class _Configuration:
@@ -49,6 +56,8 @@ class _Configuration:
         self.volumes: dict[int, list[_VolumeRange]] = {}
         self.foreign: list[str] = []
         root = parse_xml(text)
+        if root.tag != "config":
+            self.foreign.append(str(root.tag)[:40])
         for thing in root.iterchildren("object"):
             number = int(thing.get("id", ""))
             if number in self.volumes:
@@ -61,13 +70,18 @@ class _Configuration:
                 for each in thing.iterchildren("volume")
             ]
 
-    def _values(self, element: "_Element", kind: str) -> dict[str, str]:
-        values = {}
+    def _values(self, element: "_Element", kind: str) -> list[tuple[str, str]]:
+        values = []
+        self.foreign += [
+            f"{name} of {kind}"[:40]
+            for name in map(str, element.attrib)
+            if name not in _KNOWN_ATTRIBUTES[kind]
+        ]
         for each in element.iterchildren("metadata"):
             key = each.get("key", "")
             if each.get("type") != kind or key not in _KNOWN_KEYS[kind]:
                 self.foreign.append(key[:40])
-            values[key] = each.get("value", "")
+            values.append((key, each.get("value", "")))
         self.foreign += [
             str(each.tag)[:40] for each in element.iterchildren() if each.tag not in ("metadata", "volume")
         ]
@@ -103,7 +117,7 @@ def _bodies(
     """Return the volumes of an instance, in build coordinates."""
     vertices, triangles = meshes.of(instance.object_id)
     if volumes is None:
-        volumes = [_VolumeRange(0, len(triangles) - 1, {"name": instance.name})]
+        volumes = [_VolumeRange(0, len(triangles) - 1, [("name", instance.name)])]
     is_read = instance.printable and all(each.type in ("", "model") for each in instance.path)
     found = []
     for volume in volumes:

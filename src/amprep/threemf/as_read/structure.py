@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from amprep.arrays import Floats
+from amprep.threemf.as_read.vocabulary import foreign_words
 from amprep.threemf.build.metadata import without_meshes
-from amprep.threemf.names import CORE_NAMESPACE, MODEL_NAME
+from amprep.threemf.names import BEAM_NAMESPACE, CORE_NAMESPACE, MODEL_NAME
 from amprep.threemf.package.xml import parse_xml
 
 if TYPE_CHECKING:
@@ -84,6 +85,8 @@ class Structure:
         The extensions that a reader must know.
     meshes_of_beams
         Ids of the objects that clip beams, or stand in for them.
+    foreign
+        What the model has that amprep never writes, in words.
     """
 
     entries: Mapping[str, bytes]
@@ -93,6 +96,7 @@ class Structure:
     items: tuple[FileItem, ...]
     required_namespaces: frozenset[str]
     meshes_of_beams: frozenset[int]
+    foreign: tuple[str, ...]
 
     def instances(self) -> list[MeshInstance]:
         """Return every instance of an object with a mesh, in the order of the file.
@@ -118,9 +122,14 @@ class Structure:
         return None
 
     def remarks(self) -> list[str]:
-        """Return what no build file of any target has: further models, and objects that nothing refers to."""
+        """Return what no build file of any target has: further models and markup, objects that nothing refers to."""
         others = [name for name in self.entries if name.lower().endswith(".model") and name != MODEL_NAME]
         found = [f"the package has another model, {name}" for name in others]
+        found += [f"the model has {each}, which amprep does not write" for each in self.foreign]
+        found += [
+            f"the file requires an extension that amprep does not write, {each[:80] or 'without a namespace'}"
+            for each in sorted(self.required_namespaces - {BEAM_NAMESPACE})
+        ]
         used = {item.object_id for item in self.items}
         used |= {inner for each in self.objects.values() for inner, _ in each.components}
         used |= self.meshes_of_beams
@@ -176,6 +185,7 @@ def read_structure(package: bytes) -> Structure:
         items,
         frozenset(required),
         _meshes_of_beams(text),
+        foreign_words(text),
     )
 
 

@@ -4,12 +4,14 @@ lib3mf 2.5.0 cannot read it: a value comes back with part of its end tag if the 
 falls within that tag.
 """
 
+import hashlib
 import io
+import json
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from amprep.threemf.build.record import numbered
+from amprep.threemf.build.record import DIGEST, numbered
 from amprep.threemf.names import CORE_NAMESPACE, MODEL_NAME, NAMESPACE
 from amprep.threemf.package.xml import parse_xml
 
@@ -61,10 +63,23 @@ def _own_entries(scope: "_Element", metadata: Iterable["_Element"]) -> dict[str,
         prefix, _, name = each.get("name", "").rpartition(":")
         if scope.nsmap.get(prefix) == NAMESPACE:
             sections[name] = each.text or ""
+    return joined_entries(sections)
+
+
+def joined_entries(sections: Mapping[str, str]) -> dict[str, str]:
+    """Return metadata by name, with the sections of a split entry joined."""
     return {name: _joined(name, sections) for name in sections if "." not in name}
 
 
-def _joined(name: str, sections: dict[str, str]) -> str:
+def record_digest(model: Mapping[str, str], items: Sequence[Mapping[str, str]]) -> str:
+    """Return the SHA-256 of amprep's metadata of a model and of its build items, without the digest itself."""
+    values = [
+        sorted((name, value) for name, value in each.items() if name != DIGEST) for each in (model, *items)
+    ]
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()
+
+
+def _joined(name: str, sections: Mapping[str, str]) -> str:
     count = 1
     while numbered(name, count + 1) in sections:
         count += 1

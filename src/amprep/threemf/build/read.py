@@ -10,12 +10,12 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.printed.found import PrintedBody, PrintedFile
 from amprep.errors import InputError
-from amprep.model.build import Build, BuildSettings, PlacedPart, StoredSupport, SupportBody
+from amprep.model.build import Build, BuildSettings, PlacedPart, StoredRecord, StoredSupport, SupportBody
 from amprep.model.mesh import Mesh
 from amprep.model.part import Part
 from amprep.threemf.as_read import read_as_printed
 from amprep.threemf.build import record
-from amprep.threemf.build.metadata import BuildMetadata, read_metadata
+from amprep.threemf.build.metadata import BuildMetadata, read_metadata, record_digest
 from amprep.threemf.build.stored_bodies import BodyReader, StoredBody
 from amprep.threemf.build.values import (
     as_list,
@@ -119,9 +119,10 @@ def _build(model: Any, metadata: BuildMetadata) -> Build:
     if record.CONTENTS in metadata.model:
         record.check_contents(_value(metadata.model, record.CONTENTS), len(parts), len(supports))
     regions = as_list(_value(metadata.model, record.UNSUPPORTED), record.UNSUPPORTED)
-    return Build(
-        settings, parts, supports, tuple(record.unsupported_of(each, len(parts)) for each in regions)
-    )
+    unsupported = tuple(record.unsupported_of(each, len(parts)) for each in regions)
+    recorded = metadata.model.get(record.DIGEST, "")
+    own = StoredRecord(recorded, record_digest(metadata.model, metadata.items))
+    return Build(settings, parts, supports, unsupported, own)
 
 
 def settings_in(metadata: BuildMetadata) -> BuildSettings:

@@ -41,7 +41,7 @@ FORMAT_VERSION = "1"
 """Version of the metadata; a file with another version is refused."""
 
 FORMAT, SETTINGS, VOLUME, PARTS, UNSUPPORTED = "format", "settings", "volume", "parts", "unsupported"
-CONTENTS, IDENTIFIER, PLANNING = "contents", "identifier", "planning"
+CONTENTS, IDENTIFIER, PLANNING, DIGEST = "contents", "identifier", "planning", "digest"
 """Names of the model's metadata in amprep's namespace."""
 
 BODIES = "bodies"

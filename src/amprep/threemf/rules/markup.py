@@ -7,7 +7,7 @@ from xml.parsers import expat
 
 from amprep.threemf.names import CORE_NAMESPACE
 from amprep.threemf.rules.broken import BrokenRules
-from amprep.threemf.rules.runs import RUN, Run, take_runs
+from amprep.threemf.rules.runs import RUN, Run, without_runs
 from amprep.threemf.rules.schema import (
     DIALECT,
     ELEMENTS,
@@ -18,7 +18,6 @@ from amprep.threemf.rules.schema import (
     Element,
 )
 
-_CHUNK = 1 << 20
 _XML = "http://www.w3.org/XML/1998/namespace"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
@@ -81,14 +80,10 @@ class Markup:
         """Check a whole part."""
         if content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
             self._declared("", "utf-16", 0)
-        held = b""
         try:
-            for start in range(0, len(content), _CHUNK):
-                buffer = held + content[start : start + _CHUNK]
-                cut = buffer.rfind(b"<")
-                held = buffer[cut:] if cut > 0 else b""
-                self._feed(buffer[:cut] if cut > 0 else buffer, final=False)
-            self._feed(held, final=True)
+            for text, self._runs in without_runs(content):
+                self._parser.Parse(text, False)
+            self._parser.Parse(b"", True)
         except (expat.ExpatError, ValueError, LookupError) as error:
             self.add(
                 "3MF core 2.3.3.1", f"the markup must use declared namespaces ({error})", touches_parts=True
@@ -97,11 +92,6 @@ class Markup:
     def add(self, rule: str, expected: str, *, touches_parts: bool, place: str = "") -> None:
         """Add a finding at the present place."""
         self.found.add(rule, expected, place or self.place, touches_parts=touches_parts)
-
-    def _feed(self, chunk: bytes, *, final: bool) -> None:
-        text, runs = take_runs(chunk)
-        self._runs = runs
-        self._parser.Parse(text, final)
 
     def _declared(self, _: str, encoding: str | None, __: int) -> None:
         if encoding is not None and encoding.lower() != "utf-8":

@@ -1,6 +1,7 @@
 """Runs of plain vertices and triangles: taken out of the text of a model part by one pattern, and read as arrays."""
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from amprep.arrays import Floats, Int64s
 RUN = "amprep-run"
 """Attribute of the empty element that stands for a run in the text."""
 
+_CHUNK = 1 << 20
 _MOST = 1000
 """Elements of one run; the pattern needs memory for each."""
 _NUMBER = rb"[-+]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][-+]?\d{1,2})?"
@@ -64,3 +66,14 @@ def take_runs(text: bytes) -> tuple[bytes, dict[str, Run]]:
         return f'<{key} {RUN}="{number}"/>'.encode()
 
     return _RUNS.sub(replaced, text), runs
+
+
+def without_runs(content: bytes) -> Iterator[tuple[bytes, dict[str, Run]]]:
+    """Yield the text of a model part piece by piece, cut before elements, with the runs that were taken out."""
+    held = b""
+    for start in range(0, len(content), _CHUNK):
+        buffer = held + content[start : start + _CHUNK]
+        cut = buffer.rfind(b"<")
+        held = buffer[cut:] if cut > 0 else b""
+        yield take_runs(buffer[:cut] if cut > 0 else buffer)
+    yield take_runs(held)

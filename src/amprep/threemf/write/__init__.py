@@ -20,6 +20,7 @@ from amprep.threemf.package.write import write_package
 from amprep.threemf.write.document import Document
 from amprep.threemf.write.generic_and_cura import components_document
 from amprep.threemf.write.geometry import check_geometry, mesh_text, text_size
+from amprep.threemf.write.metadata import with_digest
 from amprep.threemf.write.prusaslicer import merged_document, prusaslicer_config
 from amprep.threemf.write.skeleton import Skeleton, is_readable, make_skeleton
 
@@ -48,9 +49,8 @@ def write_build(build: Build, path: Path) -> None:
     """
     _refuse_surfaces(build)
     merged = build.settings.target == "prusaslicer"
-    write_document(
-        merged_document(build) if merged else components_document(build), path, with_volumes=merged
-    )
+    document = merged_document(build) if merged else components_document(build)
+    write_document(with_digest(document), path, with_volumes=merged)
 
 
 def write_document(document: Document, path: Path, *, with_volumes: bool) -> None:

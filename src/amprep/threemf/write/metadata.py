@@ -1,15 +1,17 @@
 """The metadata of a build file, the same in every dialect."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from amprep import __version__
 from amprep.model.build import Build
 from amprep.model.part import Part
 from amprep.threemf.build import record
 from amprep.threemf.build.identifier import identifier_of
-from amprep.threemf.build.values import JsonObject, plain, to_json
+from amprep.threemf.build.metadata import joined_entries, record_digest
+from amprep.threemf.build.values import JsonObject, plain, to_json, xml_text
 from amprep.threemf.names import NAMESPACE
-from amprep.threemf.write.document import Metadata
+from amprep.threemf.write.document import Document, Metadata
 
 STANDARD_NAMES = frozenset(
     [
@@ -90,6 +92,19 @@ def support_record(build: Build, index: int, digest: str) -> JsonObject:
 def item_metadata(records: Iterable[JsonObject]) -> Metadata:
     """Return the metadata of a build item that contains parts and supports with these records."""
     return own_metadata(record.BODIES, to_json(list(records)))
+
+
+def with_digest(document: Document) -> Document:
+    """Return a document of a build whose metadata state the digest of all of amprep's entries."""
+    digest = record_digest(
+        _own_values(document.metadata), [_own_values(each.metadata) for each in document.items]
+    )
+    return replace(document, metadata=(*document.metadata, *own_metadata(record.DIGEST, digest)))
+
+
+def _own_values(metadata: Metadata) -> dict[str, str]:
+    """Return amprep's entries as a reader of the file gets them."""
+    return joined_entries({name: xml_text(value) for space, name, value in metadata if space == NAMESPACE})
 
 
 def own_metadata(name: str, value: str) -> Metadata:

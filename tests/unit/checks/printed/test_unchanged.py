@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from tests.shared.supported import box, build_of, table
 
-from amprep.checks.printed.unchanged import PROMISE, check_unchanged, extent_of
-from amprep.model.build import StoredSupport
+from amprep.checks.printed.unchanged import PROMISE, RECORD, check_unchanged, extent_of, extent_of_record
+from amprep.model.build import StoredRecord, StoredSupport
 
 BUILD = build_of([table(10)], [box((4, 4, 10.1), (2, 2, 0))])
 
@@ -40,3 +40,18 @@ def test_what_has_no_digest_is_said_not_to_be_judged():
     assert extent_of(old, "not judged").startswith("not judged: an earlier version wrote the file")
     assert check_unchanged(BUILD) == []
     assert extent_of(BUILD, "not judged") == "not judged: the build is in no file"
+
+
+def test_a_changed_record_is_named():
+    changed = replace(BUILD, stored=StoredRecord("a", "b"))
+    (found,) = check_unchanged(changed)
+    assert (found.promise, found.subject) == (RECORD, BUILD.settings.build_id)
+    assert extent_of_record(changed, "not judged").startswith("SHA-256 of the record")
+
+
+def test_a_record_as_it_was_written_or_without_a_digest_is_no_fault():
+    assert check_unchanged(replace(BUILD, stored=StoredRecord("a", "a"))) == []
+    old = replace(BUILD, stored=StoredRecord("", "a"))
+    assert check_unchanged(old) == []
+    assert extent_of_record(old, "not judged").startswith("not judged: an earlier version wrote the file")
+    assert extent_of_record(BUILD, "not judged") == "not judged: the build is in no file"
