@@ -27,6 +27,8 @@ _WORTH_IT = 30_000.0
 """Least work (in triangles, beyond the largest task) for which processes are made, in 0.05 s."""
 
 _POLL_S = 0.1
+_MOST_IDLE = 300
+"""Polls in a row in which no worker used processor time, after which they count as hanging: 30 s."""
 _HEAD = struct.Struct("=iq")
 """Number of the task, -1 for none that follows, and the number of bytes of its result, -1 for a failure."""
 
@@ -45,8 +47,10 @@ _ALLOWED: ContextVar[int] = ContextVar("workers", default=1)
 # a worker. The smallest task is done before, which loads the kernels once. The numbers of the others are in one pipe,
 # the largest tasks first, from which each worker takes the next number when it is free. Each worker sends its results
 # through a pipe of its own. Tasks that fail, and those of a worker that was killed, are done in this process at the
-# end, in their order, so that an error is the same as with one process. Workers ignore signals; they end when this
-# process ends.
+# end, in their order, so that an error is the same as with one process. So are those of workers that hang, for example
+# at a lock that another thread of a compiled library held when the process forked: whoever waits uses no processor
+# time. Polls are counted instead of seconds, because all processes may be suspended together. Workers ignore signals;
+# they end when this process ends.
 
 
 def available() -> int:
@@ -142,10 +146,14 @@ class _Workers(NamedTuple):
     def results(self, is_cancelled: Callable[[], bool]) -> Iterator[tuple[int, Any]]:
         """Yield the number and the result of each task when it is done; nothing for tasks that failed or were lost."""
         waiting, poll = set(self.processes), select.poll()
+        idle, used = 0, 0
         for pipe in waiting:
             poll.register(pipe, select.POLLIN)
-        while waiting and not is_cancelled():
-            for pipe, _ in poll.poll(1000.0 * _POLL_S):
+        while waiting and idle < _MOST_IDLE and not is_cancelled():
+            ready, before = poll.poll(1000.0 * _POLL_S), used
+            used = sum(_ticks_of(self.processes[pipe]) for pipe in waiting)
+            idle = 0 if ready or used != before else idle + 1
+            for pipe, _ in ready:
                 head = _read(pipe, _HEAD.size)
                 number, size = _HEAD.unpack(head) if head else (-1, 0)
                 found = _read(pipe, size) if size > 0 else b""
@@ -166,6 +174,15 @@ class _Workers(NamedTuple):
                     os.kill(process, signal.SIGKILL)
             with suppress(ChildProcessError):
                 os.waitpid(process, 0)
+
+
+def _ticks_of(process: int) -> int:
+    """Return the processor time that a process has used, in ticks of the system; 0 if it has ended."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()
+        return int(fields[11]) + int(fields[12])
+    except (OSError, ValueError, IndexError):
+        return 0
 
 
 @contextmanager

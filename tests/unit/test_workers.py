@@ -15,7 +15,7 @@ LARGE = [1e6] * 6
 
 
 def process_of(number: int) -> tuple[int, int]:
-    time.sleep(0.02)
+    time.sleep(0.1)  # every worker gets a task, even on a loaded machine
     return number * number, os.getpid()
 
 
@@ -69,6 +69,32 @@ def test_the_tasks_of_workers_that_die_are_done_in_this_process(dying: set[int])
 
     with allowed(2):
         assert share_out(dies, LARGE) == list(range(6))
+
+
+@pytest.mark.parametrize("hanging", [{5}, set(range(1, 6))])
+def test_the_tasks_of_workers_that_hang_are_done_in_this_process(
+    hanging: set[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    me = os.getpid()
+    monkeypatch.setattr(workers, "_MOST_IDLE", 3)
+
+    def hangs(number: int) -> int:
+        if os.getpid() != me and number in hanging:
+            signal.pause()
+        return number
+
+    with allowed(2):
+        assert share_out(hangs, LARGE) == list(range(6))
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
+def test_a_process_that_works_uses_processor_time() -> None:
+    before, until = workers._ticks_of(os.getpid()), time.process_time() + 0.05
+    while time.process_time() < until:
+        pass
+    assert workers._ticks_of(os.getpid()) > before
+    assert workers._ticks_of(2**30) == 0
 
 
 def test_of_several_errors_the_one_of_the_first_task_is_raised() -> None:
