@@ -75,7 +75,8 @@ def merge_coplanar(vertices: Floats, triangles: Ints) -> MeshArrays | None:
     solid = as_manifold(vertices, triangles)
     if not accepted(solid) or solid.is_empty():
         return None
-    mesh = solid.simplify(COPLANAR).to_mesh64()
+    solid = solid.simplify(COPLANAR)  # the first one is large
+    mesh = solid.to_mesh64()
     return np.asarray(mesh.vert_properties[:, :3], np.float64), np.asarray(mesh.tri_verts, np.int64)
 
 

@@ -20,7 +20,7 @@ from amprep.geometry.meshes.topology import (
 )
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
+    pass
 
 SEAM_TOLERANCE = 1e-3
 """Largest width (mm) of an open seam that is closed; equal to the contact tolerance."""
@@ -100,10 +100,10 @@ def repair_mesh(vertices: ArrayLike, triangles: ArrayLike) -> RepairedMesh:
         return RepairedMesh(points, corners.astype(np.int32), 0.0, (), defect, whole, whole < 0)
     found: list[RepairedMesh] = []
     for candidate in _candidates(points, corners):
-        solid = as_manifold(candidate.vertices, candidate.triangles)
-        if accepted(solid):
+        volume = _accepted_volume(candidate)
+        if volume is not None:
             found.append(_oriented(candidate))
-            if not found[-1].problem and _faithful(solid, candidate):
+            if not found[-1].problem and _faithful(volume, candidate):
                 return found[-1]
     solids = [repaired for repaired in found if not repaired.problem]
     return (solids or found or [_rejected(_cleaned(points, corners))])[0]
@@ -121,9 +121,15 @@ def _candidates(vertices: Floats, triangles: Int64s) -> Iterator[_Candidate]:
     yield from _seams_closed(unique)
 
 
+def _accepted_volume(mesh: _Candidate) -> float | None:
+    """Return the volume that manifold3d measures, None if it rejects the mesh; its solid is large and not kept."""
+    solid = as_manifold(mesh.vertices, mesh.triangles)
+    return solid.volume() if accepted(solid) else None
+
+
 def _same_solid(one: _Candidate, other: _Candidate) -> bool:
     """Tell whether two candidates have the same volume, as they do if only whole shells are repeated."""
-    if not all(accepted(as_manifold(mesh.vertices, mesh.triangles)) for mesh in (one, other)):
+    if any(_accepted_volume(mesh) is None for mesh in (one, other)):
         return False
     return bool(np.isclose(_oriented(one).volume, _oriented(other).volume, rtol=1e-9))
 
@@ -164,15 +170,15 @@ def _seams_closed(mesh: _Candidate) -> Iterator[_Candidate]:
             yield _without(whole, degenerate(whole.triangles), "degenerate triangle")
 
 
-def _faithful(solid: "Manifold", mesh: _Candidate) -> bool:
-    """Tell whether manifold3d measures the volume that the triangles enclose.
+def _faithful(volume: float, mesh: _Candidate) -> bool:
+    """Tell whether the volume that manifold3d measures is the one that the triangles enclose.
 
     At edges of more than two triangles it may pair triangles so that too many cancel; another candidate may be better.
     """
     corners = mesh.vertices[mesh.triangles] - mesh.vertices[0]
     enclosed = float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
     size = float(np.prod(np.ptp(mesh.vertices, axis=0)))
-    return bool(abs(solid.volume() - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
+    return bool(abs(volume - enclosed) <= 1e-6 * abs(enclosed) + 1e-9 * size)
 
 
 def _oriented(mesh: _Candidate) -> RepairedMesh:

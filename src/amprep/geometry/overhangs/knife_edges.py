@@ -4,7 +4,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.overhangs.faces import ANGLE_TOLERANCE_DEG
-from amprep.geometry.overhangs.surface import Surface
+from amprep.geometry.overhangs.surface import Surface, across_halves
 
 
 def knife_edges(
@@ -26,23 +26,20 @@ def knife_edges(
         Height (mm) up to which geometry is on the plate.
     """
     start, end = surface.points[surface.edges[:, 0]], surface.points[surface.edges[:, 1]]
-    along = end - start
-    length = np.linalg.norm(along, axis=1)
-    flat = np.abs(along[:, 2]) < length * np.sin(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
-    flat &= np.maximum(start[:, 2], end[:, 2]) > plate
-    rising = np.ones(len(along), np.bool_)
-    rise = surface.points[surface.opposite] - start[surface.half_edge]
-    tangent = along / np.maximum(length, 1e-300)[:, None]
-    halves = tangent[surface.half_edge]
-    ray = rise - np.einsum("ij,ij->i", rise, halves)[:, None] * halves
-    size = np.linalg.norm(ray, axis=1)
-    sinks = (ray[:, 2] <= 1e-6 * size) | overhanging[surface.half_face]
-    rising[surface.half_edge[sinks]] = False
-    chosen = np.flatnonzero(flat & rising)
-    return chosen[_solid_above(surface, normals, ray, tangent, chosen)]
+    rise, length = np.abs(end[:, 2] - start[:, 2]), np.linalg.norm(end - start, axis=1)
+    possible = rise < length * np.sin(np.radians(max(angle_deg - ANGLE_TOLERANCE_DEG, 0.0)))
+    possible &= np.maximum(start[:, 2], end[:, 2]) > plate
+    possible[surface.half_edge[overhanging[surface.half_face]]] = False
+    del start, end, rise, length  # large where the mesh is
+    halves = np.flatnonzero(possible[surface.half_edge])
+    ray, _ = across_halves(surface, halves)
+    sinks = ray[:, 2] <= 1e-6 * np.linalg.norm(ray, axis=1)
+    possible[surface.half_edge[halves[sinks]]] = False
+    chosen = np.flatnonzero(possible)
+    return chosen[_solid_above(surface, normals, chosen)]
 
 
-def _solid_above(surface: Surface, normals: Floats, ray: Floats, tangent: Floats, edges: Int64s) -> Bools:
+def _solid_above(surface: Surface, normals: Floats, edges: Int64s) -> Bools:
     """Tell for each edge whether the solid is above it.
 
     In the plane perpendicular to the edge, its faces are rays that rise from it. The solid is above the edge if
@@ -52,10 +49,11 @@ def _solid_above(surface: Surface, normals: Floats, ray: Floats, tangent: Floats
     position[edges] = np.arange(len(edges))
     halves = np.flatnonzero(position[surface.half_edge] >= 0)
     group = position[surface.half_edge[halves]]
-    right = np.cross(tangent[surface.half_edge[halves]], (0.0, 0.0, 1.0))
+    ray, tangent = across_halves(surface, halves)
+    right = np.cross(tangent, (0.0, 0.0, 1.0))
     right /= np.linalg.norm(right, axis=1, keepdims=True)
-    up = np.cross(right, tangent[surface.half_edge[halves]])
-    across, above = np.einsum("ij,ij->i", ray[halves], right), np.einsum("ij,ij->i", ray[halves], up)
+    up = np.cross(right, tangent)
+    across, above = np.einsum("ij,ij->i", ray, right), np.einsum("ij,ij->i", ray, up)
     order = np.lexsort((np.arctan2(above, across), group))
     rightmost = order[np.searchsorted(group[order], np.arange(len(edges)))]
     clockwise = above[rightmost, None] * right[rightmost] - across[rightmost, None] * up[rightmost]

@@ -63,6 +63,31 @@ def merge_vertices(vertices: Floats, triangles: NDArray[Any]) -> Surface:
     )
 
 
+def across_halves(surface: Surface, halves: Int64s) -> tuple[Floats, Floats]:
+    """Return the directions across half-edges in their faces, and the unit directions along them.
+
+    Parameters
+    ----------
+    surface
+        The surface.
+    halves
+        ``(k,)`` chosen half-edges; for all of them at once the memory may not suffice.
+
+    Returns
+    -------
+    across
+        ``(k, 3)``, perpendicular to the edge and away from it; the length is the width of the face.
+    along
+        ``(k, 3)`` unit vectors.
+    """
+    start, end = (surface.points[surface.edges[surface.half_edge[halves], side]] for side in (0, 1))
+    along = end - start
+    along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
+    ray = surface.points[surface.opposite[halves]] - start
+    ray -= np.einsum("ij,ij->i", ray, along)[:, None] * along
+    return ray, along
+
+
 def cross_products(points: Floats, corners: Int64s) -> Floats:
     """Return the cross products of two sides ``(n, 3)``: normals with twice the area as their length."""
     a, b, c = points[corners[:, 0]], points[corners[:, 1]], points[corners[:, 2]]

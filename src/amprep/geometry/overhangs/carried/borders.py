@@ -7,7 +7,7 @@ import numpy as np
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.geometry.overhangs.carried.facets import facets_of
 from amprep.geometry.overhangs.regions import components_of_faces
-from amprep.geometry.overhangs.surface import Surface
+from amprep.geometry.overhangs.surface import Surface, across_halves
 
 _STRAIGHT = np.pi - 1e-3
 """Least angle (radians) of the solid at an edge along which the part carries a region."""
@@ -49,21 +49,6 @@ class RegionFaces(NamedTuple):
     outer_label: Int64s
 
 
-class _Halves(NamedTuple):
-    """Half-edges of a surface with the directions across them.
-
-    Attributes
-    ----------
-    ray
-        ``(h, 3)`` direction in the face, perpendicular to the edge, away from it; its length is the face's width.
-    side
-        ``(h,)`` number of the side in its face: from corner i to corner i + 1.
-    """
-
-    ray: Floats
-    side: Int64s
-
-
 def region_faces(
     surface: Surface, normals: Floats, overhanging: Bools, plate: float, base: Bools | None = None
 ) -> RegionFaces:
@@ -86,13 +71,12 @@ def region_faces(
     """
     from amprep.kernels.overhangs.walks import ANCHOR, FREE
 
-    halves = _halves(surface)
     own = np.flatnonzero(overhanging[surface.half_face])
-    partner = _partners(surface, normals, halves)[own]
+    partner = _partners(surface, normals)[own]
     position = np.cumsum(overhanging) - 1
     faces = np.flatnonzero(overhanging)
     beyond = np.full((len(faces), 3), FREE, np.int64)
-    row, column = position[surface.half_face[own]], 2 - halves.side[own]
+    row, column = position[surface.half_face[own]], 2 - _sides(surface, own)
     paired = partner >= 0
     inner = paired & overhanging[surface.half_face[partner]]
     from_base = np.zeros(len(own), np.bool_)
@@ -100,11 +84,11 @@ def region_faces(
         from_base = inner & base[surface.half_face[partner]] & ~base[surface.half_face[own]]
         inner &= ~from_base
     across = partner[inner]
-    beyond[row[inner], column[inner]] = 3 * position[surface.half_face[across]] + 2 - halves.side[across]
+    beyond[row[inner], column[inner]] = 3 * position[surface.half_face[across]] + 2 - _sides(surface, across)
     ends = surface.edges[surface.half_edge[own]]
     anchored = surface.points[ends, 2].max(axis=1) <= plate
     rim = np.flatnonzero(paired & ~inner & ~from_base)
-    rim = rim[_goes_down(surface, normals, halves, own[rim], partner[rim])]
+    rim = rim[_goes_down(surface, normals, own[rim], partner[rim])]
     anchored[rim] = True
     anchored |= from_base
     anchored &= ~inner
@@ -126,17 +110,13 @@ def region_faces(
     )
 
 
-def _halves(surface: Surface) -> _Halves:
-    start, end = (surface.points[surface.edges[surface.half_edge, i]] for i in (0, 1))
-    along = end - start
-    along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-    ray = surface.points[surface.opposite] - start
-    ray -= np.einsum("ij,ij->i", ray, along)[:, None] * along
-    corner = (surface.triangles[surface.half_face] == surface.opposite[:, None]).argmax(axis=1)
-    return _Halves(ray, (corner + 1) % 3)
+def _sides(surface: Surface, halves: Int64s) -> Int64s:
+    """Return the numbers ``(k,)`` of half-edges in their faces: side i goes from corner i to corner i + 1."""
+    corners = surface.triangles[surface.half_face[halves]]
+    return np.asarray(((corners == surface.opposite[halves, None]).argmax(axis=1) + 1) % 3, np.int64)
 
 
-def _partners(surface: Surface, normals: Floats, halves: _Halves) -> Int64s:
+def _partners(surface: Surface, normals: Floats) -> Int64s:
     """Return for each half-edge the one on the other side of the solid at its edge, or -1 at an open edge."""
     count = np.bincount(surface.half_edge)[surface.half_edge] if len(surface.half_edge) else surface.half_edge
     partner = np.full(len(surface.half_edge), -1, np.int64)
@@ -146,29 +126,29 @@ def _partners(surface: Surface, normals: Floats, halves: _Halves) -> Int64s:
     for group in np.split(many, np.flatnonzero(np.diff(surface.half_edge[many])) + 1):
         for half in group.tolist():
             others = group[group != half]
-            angle = _solid_angle(surface, normals, halves, np.full(len(others), half), others)
+            angle = _solid_angle(surface, normals, np.full(len(others), half), others)
             partner[half] = others[angle.argmin()]
     return partner
 
 
-def _solid_angle(surface: Surface, normals: Floats, halves: _Halves, one: Int64s, other: Int64s) -> Floats:
+def _solid_angle(surface: Surface, normals: Floats, one: Int64s, other: Int64s) -> Floats:
     """Return the angles (radians) through the solid from faces to others at the same edges, by their half-edges."""
     inwards = -normals[surface.half_face[one]]
-    size = np.maximum(np.linalg.norm(halves.ray[one], axis=1), 1e-300)
-    across = np.einsum("ij,ij->i", halves.ray[other], halves.ray[one]) / size
-    deep = np.einsum("ij,ij->i", halves.ray[other], inwards)
+    (ray, _), (beside, _) = across_halves(surface, one), across_halves(surface, other)
+    across = np.einsum("ij,ij->i", beside, ray) / np.maximum(np.linalg.norm(ray, axis=1), 1e-300)
+    deep = np.einsum("ij,ij->i", beside, inwards)
     return np.asarray(np.arctan2(deep, across) % (2 * np.pi))
 
 
-def _goes_down(surface: Surface, normals: Floats, halves: _Halves, one: Int64s, other: Int64s) -> Bools:
+def _goes_down(surface: Surface, normals: Floats, one: Int64s, other: Int64s) -> Bools:
     """Tell where the face of the other half-edge goes down from the edge and the solid lies beyond it.
 
     The solid lies beyond it at an angle of 180 degrees or more, and above faces that point down. At such an angle
     faces that point up are below the region, even if they are level or rise.
     """
-    ray = halves.ray[other]
+    ray, _ = across_halves(surface, other)
     down = ray[:, 2] < -_DOWN * np.linalg.norm(ray, axis=1)
-    beyond = _solid_angle(surface, normals, halves, one, other) >= _STRAIGHT
+    beyond = _solid_angle(surface, normals, one, other) >= _STRAIGHT
     facing = normals[surface.half_face[other], 2]
     return np.asarray((down & (beyond | (facing < -_DOWN))) | (beyond & (facing > _DOWN)))
 
