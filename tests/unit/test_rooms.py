@@ -152,6 +152,7 @@ TESTS_OF_SEVERAL = {
     "plugins/readers/test_inputs.py": "inputs that every reader refuses",
     "plugins/routers/test_exact.py": "both exact routers",
     "report/test_documented.py": "every field of the reports",
+    "slices/test_files.py": "the files of slices in all formats",
     "test_docs.py": "the pages of docs/",
     "test_fixtures.py": "the meshes of fixtures/",
     "test_glossary.py": "docs/glossary.md",

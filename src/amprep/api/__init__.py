@@ -9,6 +9,7 @@ from amprep.api.build_file import diff, verify, write
 from amprep.api.edited_build import replan
 from amprep.api.inspection import explain_regions, inspect
 from amprep.api.orientation import orient
+from amprep.api.slices import slice_build
 from amprep.api.steps import emit_cells, load, pack, plan_supports
 from amprep.api.whole_job import fill_parts, run, support
 from amprep.checks.violation import Violation
@@ -24,6 +25,7 @@ from amprep.report.orientation.record import OrientationRecord
 from amprep.report.record import RunRecord
 from amprep.report.regions import RegionsRecord
 from amprep.report.replanning import ReplanRecord
+from amprep.report.slices.record import SliceRecord
 
 __all__ = [
     "BuildDifferences",
@@ -38,6 +40,7 @@ __all__ = [
     "RegionsRecord",
     "ReplanRecord",
     "RunRecord",
+    "SliceRecord",
     "SupportedBuild",
     "Verification",
     "Violation",
@@ -52,6 +55,7 @@ __all__ = [
     "plan_supports",
     "replan",
     "run",
+    "slice_build",
     "support",
     "verify",
     "write",

@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from amprep import __version__
 from amprep.cli import bench
 from amprep.cli.builds import compare, diff, hook, replan, seal, verify
+from amprep.cli.builds import slice as slices
 from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import batch, orient, run, support
 from amprep.cli.jobs import infill as lattice
@@ -51,6 +52,7 @@ app.command("verify")(verify.verify)
 app.command("seal")(seal.seal)
 app.command("diff")(diff.diff)
 app.command("compare")(compare.compare)
+app.command("slice")(slices.slice_)
 app.command("replan")(replan.replan)
 app.command("inspect")(inspection.inspect)
 app.command("orient")(orient.orient)

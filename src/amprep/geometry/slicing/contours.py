@@ -1,5 +1,6 @@
 """Cut a mesh by many horizontal planes at once, into closed contours."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -76,17 +77,36 @@ class SlicedMesh:
 
     def contours(self, heights: Floats) -> PlaneContours:
         """Cut the mesh by planes at ascending heights, ``(k,)`` mm. A vertex at a plane counts as above it."""
-        from amprep.kernels.slicing.contours import LevelRows, TracedContours, trace_contours
+        from amprep.kernels.slicing.contours import trace_contours
+
+        return self._traced(heights, trace_contours, 1)
+
+    def lines(self, heights: Floats) -> PlaneContours:
+        """Cut a surface by planes at ascending heights, whichever way its triangles face; areas are 0.
+
+        The last point of a closed line is its first one.
+        """
+        from amprep.kernels.slicing.lines import trace_lines
+
+        return self._traced(heights, trace_lines, 2)
+
+    def _traced(self, heights: Floats, trace: Callable[..., int], points_per_row: int) -> PlaneContours:
+        """Return what a kernel traces at ascending heights, with its most points for each row."""
+        from amprep.kernels.slicing.contours import LevelRows, TracedContours
 
         level, low, high = self.levels(heights)
         count = high - low
         size = int(count.sum())
         plane, triangle = np.empty(size, np.int64), np.empty(size, np.int64)
         found = TracedContours(
-            np.empty((size, 2)), np.empty(size + 1, np.int64), plane, triangle, np.empty(size)
+            np.empty((points_per_row * size, 2)),
+            np.empty(size + 1, np.int64),
+            plane,
+            triangle,
+            np.empty(size),
         )
         rows = LevelRows(low + 1, np.cumsum(count) - count)
-        number = trace_contours(
+        number = trace(
             self.linked, np.asarray(heights, np.float64), level, rows, np.zeros(size, np.bool_), found
         )
         first = found.first[: number + 1].copy()

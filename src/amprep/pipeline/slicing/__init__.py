@@ -1,0 +1,1 @@
+"""Cut a build into layers and write their contours."""

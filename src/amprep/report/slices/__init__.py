@@ -1,0 +1,1 @@
+"""What `amprep slice` wrote."""
