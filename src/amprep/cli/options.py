@@ -248,7 +248,8 @@ class BuildOptions(JobOptions):
             "--time-limit",
             min=0.0,
             metavar="SECONDS",
-            help="Stop packing and routing after this time, and leave out supports not finished after twice this time.",
+            help="Stop packing and routing after this time, leave out supports not finished after twice this time, and "
+            "end verification after three times.",
         ),
     ] = None
     allow_surface: Annotated[

@@ -30,7 +30,8 @@ class RunOptions:
     allow_surface
         Whether meshes that are not solids are accepted as surfaces.
     time_limit
-        Seconds after which packing and routing end with their best result so far; None for no limit.
+        Seconds after which packing and routing end with their best result so far, see `SupportStops`; None for no
+        limit.
     """
 
     folder: Path
@@ -65,7 +66,7 @@ def run_job(resolved: ResolvedJob, options: RunOptions, *, watcher: Watcher, sto
     outputs = OutputFolder(options.folder, resolved.job.name)
     loaded = read_job(resolved, clock, allow_surface=options.allow_surface)
     packed = pack_parts(loaded, clock, stops.routing)
-    return make_builds(loaded, packed, outputs, options, clock, stops, stop)
+    return make_builds(loaded, packed, outputs, options, clock, stops)
 
 
 def make_builds(
@@ -75,7 +76,6 @@ def make_builds(
     options: RunOptions,
     clock: Clock,
     stops: SupportStops,
-    stop: Stop,
 ) -> RunRecord:
     """Support, write and verify builds, write the reports, publish all files and return the record.
 
@@ -89,14 +89,14 @@ def make_builds(
         Options of the run.
     clock
         Times and shows the stages.
-    stops, stop
-        End the support of builds early with the best result so far, and the run without a result.
+    stops
+        End the support of builds, and the judges, early with the best result so far.
     """
     with outputs:
         supported = [support_build(build, clock, stops.routing, stops.building) for build in packed.builds]
         records = [
             finish_build(
-                each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stop
+                each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stops.judging
             )
             for number, each in enumerate(supported, start=1)
         ]

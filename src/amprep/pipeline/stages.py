@@ -63,13 +63,16 @@ LEAST_BUILDING = 30.0
 
 
 class SupportStops(NamedTuple):
-    """When to end the routing of supports, and when supports that are not finished are left out."""
+    """When to end the routing of supports, to leave out supports that are not finished, and to end the judges."""
 
     routing: Stop
     building: Stop
+    judging: Stop
 
     @classmethod
     def after(cls, seconds: float | None, stop: Stop) -> "SupportStops":
-        """Return stops after a time limit (None for none), and after as long again, at least `LEAST_BUILDING`."""
-        later = None if seconds is None else seconds + max(seconds, LEAST_BUILDING)
-        return cls(stop.within(seconds), stop.within(later))
+        """Return stops after a time limit (None for none), and twice after as long again, at least `LEAST_BUILDING`."""
+        if seconds is None:
+            return cls(stop, stop, stop)
+        more = max(seconds, LEAST_BUILDING)
+        return cls(stop.within(seconds), stop.within(seconds + more), stop.within(seconds + 2.0 * more))

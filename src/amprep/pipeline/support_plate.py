@@ -54,7 +54,7 @@ def support_plate(
     not_packed = Packing((), stop_reason="as it lies")
     packed = PackedParts(PackingProblem((), resolved.job.printer.space), not_packed, (placed,))
     outputs = OutputFolder(options.folder, placed.build_id, numbered=False)
-    return make_builds(lying, packed, outputs, options, clock, stops, stop)
+    return make_builds(lying, packed, outputs, options, clock, stops)
 
 
 def place_as_read(loaded: LoadedParts, *, center: bool = False) -> PackedBuild:

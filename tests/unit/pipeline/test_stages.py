@@ -43,8 +43,9 @@ def test_a_stage_that_fails_is_timed_and_left():
 
 
 def test_supports_are_finished_as_long_after_the_time_limit_as_it_is_but_at_least_half_a_minute():
-    for limit, later in ((1.0, 31.0), (100.0, 200.0)):
+    for limit, later, last in ((1.0, 31.0, 61.0), (100.0, 200.0, 300.0)):
         stops = SupportStops.after(limit, Stop())
         assert stops.routing.remaining() == pytest.approx(limit, abs=1.0)
         assert stops.building.remaining() == pytest.approx(later, abs=1.0)
+        assert stops.judging.remaining() == pytest.approx(last, abs=1.0)
     assert SupportStops.after(None, Stop()).building.deadline is None

@@ -42,7 +42,7 @@ def check_apart(build: Build, stop: Stop, solids: KnownSolids | None = None) -> 
     boxes = [body.mesh.bounds for body in bodies]
     low, high = (np.array([box[side] for box in boxes]).reshape(-1, 3) for side in (0, 1))
     for i, j in near_pairs(low, high, -TOLERANCE):
-        if stop.cancelled.is_set():
+        if stop():
             return found
         if not set(bodies[i].parts) & set(bodies[j].parts):
             found += _overlap(bodies[i], bodies[j], solids)
@@ -76,7 +76,7 @@ def _too_near_others(build: Build, stop: Stop) -> list[Violation]:
     boxes = [mesh.bounds for mesh in meshes]
     for body in build.supports:
         for index, placed in enumerate(build.parts):
-            if stop.cancelled.is_set():
+            if stop():
                 return found
             if index not in body.parts:
                 least = _granted(build, body, index, boxes) - BORDER_TOLERANCE

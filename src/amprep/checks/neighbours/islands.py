@@ -40,7 +40,7 @@ def check_islands(build: Build, stop: Stop, solids: KnownSolids | None = None) -
     found: list[Violation] = []
     solids = solids or KnownSolids()
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             return found
         of_solids = all(build.parts[part].part.is_solid for part in body.parts)
         if not body.surface and body.lattice is None and of_solids and len(body.mesh.triangles):

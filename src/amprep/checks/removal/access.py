@@ -35,7 +35,7 @@ def check_access(build: Build, stop: Stop) -> list[Violation]:
     """Return the supports with contacts that no straight line from outside reaches."""
     found = []
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             break
         hidden, judged = hidden_contacts(build, body)
         if len(hidden):

@@ -26,7 +26,7 @@ def check_powder(build: Build, stop: Stop) -> list[Violation]:
     """
     found = []
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             break
         if body.surface or not len(body.mesh.triangles):
             continue

@@ -64,7 +64,7 @@ def check_bodies(build: Build, stop: Stop, solids: KnownSolids | None = None) ->
             continue
         found += [*_inside(body, build.settings.space), *_standing(body, build)]
         for index in np.flatnonzero(_may_enter(body, low, high)).tolist():
-            if stop.cancelled.is_set():
+            if stop():
                 return found
             found += _penetration(body, build.parts[index], build.settings, holds=index in body.support.parts)
     return found

@@ -55,7 +55,7 @@ def check_drift(build: Build, stop: Stop) -> list[Violation]:
         return found
     targets: dict[int, Floats] = {}
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             return found
         if not all(build.parts[part].part.is_solid for part in body.parts):
             continue

@@ -105,7 +105,7 @@ def check_least_section(
         return found, sections
     judge = _SectionJudge(build, solids or KnownSolids())
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             break
         if body.lattice is not None and len(body.lattice.radii):
             found += _thin_beams(body.name, body.lattice, build.settings)

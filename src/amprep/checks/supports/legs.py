@@ -64,7 +64,7 @@ def check_legs(build: Build, stop: Stop, solids: KnownSolids | None = None) -> l
     solids = solids or KnownSolids()
     found: list[Violation] = []
     for body in build.supports:
-        if stop.cancelled.is_set() or limit <= 0.0:
+        if stop() or limit <= 0.0:
             return found
         legs = [] if body.surface else legs_above(body, build, limit, solids)
         if legs:

@@ -44,7 +44,7 @@ def check_territory(build: Build, stop: Stop, solids: KnownSolids | None = None)
     shadows = shadows_of(build.parts)
     solids = solids or KnownSolids()
     for body in build.supports:
-        if stop.cancelled.is_set():
+        if stop():
             return found
         found += _judged(body, shadows, build, solids)
     return found

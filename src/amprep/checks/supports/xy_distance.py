@@ -38,7 +38,7 @@ def check_xy_distance(build: Build, stop: Stop) -> list[Violation]:
     found: list[Violation] = []
     for placed in build.parts:
         for body in build.supports:
-            if stop.cancelled.is_set():
+            if stop():
                 return found
             if not body.surface and body.lattice is None:
                 found += _too_near(body, placed, build)

@@ -24,8 +24,7 @@ from amprep.pipeline.verifying.extents import extents_of, removal_extents
 from amprep.pipeline.verifying.nearby import nearby
 from amprep.workers import share_out
 
-PROMISES = (
-    as_recorded.PROMISE,
+_OF_PARTS = (
     "inside build volume",
     "outside forbidden zones",
     "no intersection",
@@ -35,10 +34,13 @@ PROMISES = (
     "part unchanged",
     unchanged.PROMISE,
     unchanged.RECORD,
-    cells.CLOSED,
-    cells.INSIDE,
-    cells.STANDING,
-    cells.PENETRATION,
+)
+_OF_BODIES = (cells.CLOSED, cells.INSIDE, cells.STANDING, cells.PENETRATION, xy_distance.PROMISE)
+
+PROMISES = (
+    as_recorded.PROMISE,
+    *_OF_PARTS,
+    *_OF_BODIES[:-1],
     islands.PROMISE,
     *apart.PROMISES,
     xy_distance.PROMISE,
@@ -108,16 +110,16 @@ def verify_build(
         Parts whose supports and overhangs are judged, those that share supports with them included; None for all. The
         places of all parts, and the distances of all supports, are judged in any case.
     stop
-        Ends the check of parts and supports early.
+        Ends the judges early. A promise that was not judged to the end before the deadline counts as broken.
     progress
         Called before each group of judges.
     """
     stop = stop or Stop()
     judges = _judges(build, only, stop, removability=removability)
     judged = share_out(
-        lambda number: judges[number].judge(),
+        lambda number: judges[number].judge()._replace(is_late=stop()),
         [each.work for each in judges],
-        is_cancelled=stop.cancelled.is_set,
+        is_cancelled=stop,
         done=lambda count: progress(
             count / (len(judges) + 1), f"{count} of {len(judges)} groups of promises judged"
         ),
@@ -125,6 +127,8 @@ def verify_build(
     seen = [] if printed is None else as_recorded.check_as_printed(build, printed)
     progress(1.0, "verified")
     found = [violation for each in judged for violation in each.violations]
+    late = [each for number, each in enumerate(judges) if number >= len(judged) or judged[number].is_late]
+    found += [_not_judged(build, promise) for each in late for promise in each.promises]
     pairs = sum((each.pairs for each in judged), PairCounts())
     own = {promise: words for each in judged for promise, words in (each.extent or {}).items()}
     extent = extents_of(build, pairs, printed) | own | removal_extents(removability)
@@ -137,13 +141,20 @@ class _Judged(NamedTuple):
     violations: list[Violation]
     pairs: PairCounts = PairCounts()
     extent: Mapping[str, str] | None = None
+    is_late: bool = False
 
 
 class _Judge(NamedTuple):
-    """A judge, which needs no other one, and its estimated work in triangles."""
+    """A judge, which needs no other one, its promises, and its estimated work in triangles."""
 
     work: float
+    promises: tuple[str, ...]
     judge: Callable[[], _Judged]
+
+
+def _not_judged(build: Build, promise: str) -> Violation:
+    message = "it was not judged to the end within the time limit; verify the file"
+    return Violation(promise, build.settings.build_id, message)
 
 
 def _judges(build: Build, only: Collection[int] | None, stop: Stop, *, removability: bool) -> list[_Judge]:
@@ -174,10 +185,15 @@ def _judges(build: Build, only: Collection[int] | None, stop: Stop, *, removabil
         found = limits.check_limits(chosen, stop, solids)
         return _Judged(found.violations, extent=found.extent)
 
-    judges = [_Judge(parts, placed), _Judge(2.0 * supports + parts, bodies), _Judge(supports, neighbours)]
-    judges += [_Judge(supports + parts, covered)]
-    judges += [_Judge(8.0 * supports, removal)] if removability else []
-    return [*judges, _Judge(4.0 * supports, limited)]
+    judges = [
+        _Judge(parts, _OF_PARTS, placed),
+        _Judge(2.0 * supports + parts, _OF_BODIES, bodies),
+        _Judge(supports, (islands.PROMISE, *apart.PROMISES), neighbours),
+        _Judge(supports + parts, (coverage.PROMISE, free_below.PROMISE), covered),
+    ]
+    if removability:
+        judges += [_Judge(8.0 * supports, (powder.PROMISE, access.PROMISE), removal)]
+    return [*judges, _Judge(4.0 * supports, limits.PROMISES, limited)]
 
 
 def _listed_of(build: Build, parts: Collection[int]) -> tuple[Unsupported, ...]:

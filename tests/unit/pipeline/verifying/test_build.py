@@ -7,6 +7,7 @@ from tests.shared.supported import box, build_of, table
 
 from amprep import workers
 from amprep.checks.supports.limits import NOT_JUDGED, PROMISES
+from amprep.model import Stop
 from amprep.model.supports.sizes import SupportSizes
 from amprep.pipeline.verifying.build import PROMISES as ALL_PROMISES
 from amprep.pipeline.verifying.build import verify_build
@@ -83,3 +84,12 @@ def test_two_processes_judge_as_one_does(monkeypatch):
         alone.pairs,
         alone.extent,
     )
+
+
+def test_what_was_not_judged_before_the_deadline_counts_as_broken():
+    build = ledge_build(3.0, supported=True)
+    late = verify_build(build, stop=Stop.after(0.0))
+    of_other_judges = {"printed as planned", "powder can leave", "contacts can be reached"}
+    assert {each.promise for each in late.violations} == set(ALL_PROMISES) - of_other_judges
+    assert all("not judged to the end" in each.message for each in late.violations)
+    assert verify_build(build, stop=Stop.after(1000.0)).ok
