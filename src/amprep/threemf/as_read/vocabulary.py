@@ -52,7 +52,7 @@ _WRITTEN: Mapping[str, frozenset[str]] = {
 """Element -> attributes that amprep writes, and `printable`, which the readers judge."""
 
 
-class _Words:
+class _ForeignMarkup:
     """Collects elements, attributes and values that are not in `_WRITTEN`."""
 
     def __init__(self) -> None:
@@ -97,12 +97,12 @@ def foreign_words(model: bytes) -> tuple[str, ...]:
     ValueError
         If the model is not well-formed.
     """
-    words = _Words()
+    markup = _ForeignMarkup()
     try:
-        words.read(model)
+        markup.read(model)
     except (expat.ExpatError, LookupError) as error:
         raise ValueError(str(error)) from None
-    return tuple(words.found)
+    return tuple(markup.found)
 
 
 def _short(name: str) -> str:
