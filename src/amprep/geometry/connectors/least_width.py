@@ -1,5 +1,6 @@
 """Find the surfaces in columns that are wide enough for connectors, and the posts that hold those that are not."""
 
+import hashlib
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -64,7 +65,9 @@ class Posts(NamedTuple):
     top: Floats
 
 
-def find_wide(patches: Patches, columns: ConnectorColumns, least: LeastSection) -> Bools:
+def find_wide(
+    patches: Patches, columns: ConnectorColumns, least: LeastSection, known: dict[bytes, Bools] | None = None
+) -> Bools:
     """Tell which patches are, in their column, part of a footprint that is wide enough, ``(n,)``.
 
     Parameters
@@ -75,7 +78,10 @@ def find_wide(patches: Patches, columns: ConnectorColumns, least: LeastSection) 
         Columns above the red squares; those that begin at one height have a common footprint.
     least
         Least section of a footprint.
+    known
+        Answers for footprints, which are used and added to; None for none.
     """
+    known = {} if known is None else known
     level = np.unique(columns.lo[:, 2], return_inverse=True)[1]
     label = label_surfaces(patches, level[patches.owner[:, 0]])
     order = np.argsort(label, kind="stable")
@@ -83,8 +89,19 @@ def find_wide(patches: Patches, columns: ConnectorColumns, least: LeastSection) 
     area = areas_in_plan(patches)[0]
     wide = np.zeros(len(label), np.bool_)
     for own in groups:
-        wide[own] = _is_wide(patches, own, area, columns, least)
+        key = _key_of(patches, own)
+        if key not in known:
+            known[key] = _is_wide(patches, own, area, columns, least)
+        wide[own] = known[key]
     return wide
+
+
+def _key_of(patches: Patches, own: Int64s) -> bytes:
+    """Return a digest of the patches of a footprint and of the columns that they are in."""
+    digest = hashlib.sha256(np.ascontiguousarray(patches.owner[own, 0]).tobytes())
+    for each in own.tolist():
+        digest.update(patches.points[patches.start[each] : patches.start[each + 1]].tobytes() + b",")
+    return digest.digest()
 
 
 def _is_wide(

@@ -24,6 +24,10 @@ _DIP = 0.05
 """Length (mm) by which shapes extend below the base and above the top of the connectors, which then clip them."""
 
 
+_SAME = 1e-9
+"""Length (mm) by which prisms may differ that become one."""
+
+
 class TipProfile(NamedTuple):
     """Section of a tip: from the width of its cell it tapers to `width` over `height`, and then continues upwards.
 
@@ -86,19 +90,32 @@ def make_tips(
 def grid_prisms(square: Int64s, lo: Floats, hi: Floats, bottom: Floats, top: Floats) -> "Manifold":
     """Return the union of upright prisms of various heights over squares of a grid.
 
-    Walls of neighbouring prisms coincide, and a mesh with coincident walls is not a valid solid. Therefore four meshes
-    are united, each of which has no two neighbouring squares.
+    Neighbours of equal height in a row become one prism. Walls of neighbouring prisms coincide, and a mesh with
+    coincident walls is not a valid solid. Therefore four meshes are united, each of which has no two neighbours.
 
     Parameters
     ----------
     square
         ``(n, 2)`` indices y, x of the squares in the grid.
     lo, hi
-        ``(n, 2)`` mm, corners of the squares in plan.
+        ``(n, 2)`` mm, corners of the prisms in plan, in their squares or a little wider.
     bottom, top
         ``(n,)`` mm, heights at which the prisms begin and end.
     """
-    colour = square[:, 0] % 2 * 2 + square[:, 1] % 2
+    order = np.lexsort([square[:, 1], square[:, 0]])
+    square, lo, hi = square[order], lo[order], hi[order]
+    bottom, top = bottom[order], top[order]
+    begins = np.ones(len(square) + 1, np.bool_)
+    begins[1:-1] = ~(
+        (np.diff(square[:, 0]) == 0)
+        & (np.diff(square[:, 1]) == 1)
+        & (lo[1:, 0] <= hi[:-1, 0] + _SAME)
+        & (np.abs(np.diff(np.column_stack([lo[:, 1], hi[:, 1], bottom, top]), axis=0)) <= _SAME).all(axis=1)
+    )
+    first, last = np.flatnonzero(begins[:-1]), np.flatnonzero(begins[1:])
+    square, lo, hi, bottom, top = square[first], lo[first], hi[last], bottom[first], top[first]
+    in_row = np.arange(len(square)) - np.searchsorted(square[:, 0], square[:, 0])
+    colour = square[:, 0] % 2 * 2 + in_row % 2
     solids = []
     for each in np.unique(colour):
         own = colour == each

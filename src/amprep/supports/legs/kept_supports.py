@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amprep.arrays import Bools
 from amprep.cells.instances import CellInstances
 from amprep.model import SupportBody
 from amprep.supports.layout import SupportLayout
@@ -49,10 +50,13 @@ class KeptSupports:
         Solid of each key, None for a group of which nothing is left.
     bodies
         Bodies of each key, of groups without a base.
+    wide
+        In which columns footprints are wide enough, see `amprep.geometry.connectors.least_width.find_wide`.
     """
 
     solids: "dict[Key, Manifold | None]" = field(default_factory=dict)
     bodies: dict[Key, list[SupportBody]] = field(default_factory=dict)
+    wide: dict[bytes, Bools] = field(default_factory=dict)
 
     def solid(self, key: Key, make: "Callable[[], Manifold | None]") -> "Manifold | None":
         """Return the solid of a key; it is made once."""

@@ -146,7 +146,7 @@ def build_supports(
     meshes = tuple(part.mesh for part in parts)
     surfaces, posts = find_column_surfaces(layout), None
     if rules.least is not None:
-        layout, surfaces, posts = without_narrow(layout, surfaces, rules.least)
+        layout, surfaces, posts = without_narrow(layout, surfaces, rules.least, around.kept.wide)
         if not layout.connected.any():
             return ()
 

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def without_narrow(
-    layout: SupportLayout, surfaces: ColumnSurfaces, least: LeastSection
+    layout: SupportLayout,
+    surfaces: ColumnSurfaces,
+    least: LeastSection,
+    known: dict[bytes, Bools] | None = None,
 ) -> tuple[SupportLayout, ColumnSurfaces, Posts]:
     """Return a layout and its surfaces without the columns in which connectors would be narrower than a least section.
 
@@ -34,8 +37,10 @@ def without_narrow(
         Surfaces of the parts in the columns above red squares.
     least
         Least section of connectors.
+    known
+        Answers of `find_wide` for columns of the same grid and rules.
     """
-    wide = find_wide(surfaces.supported, surfaces.columns, least)
+    wide = find_wide(surfaces.supported, surfaces.columns, least, known)
     posts = find_posts(surfaces.supported, wide, surfaces.columns, least)
     held = np.zeros(len(layout.connected), np.bool_)
     held[surfaces.supported.owner[wide, 0]] = True

@@ -99,3 +99,16 @@ def test_a_rectangle_is_kept_if_both_sides_are_as_wide_as_the_least_wall_and_els
     enough = min(sides) > LEAST.width and np.prod(sides) > LEAST.area
     assert bool(kept.any()) == enough
     assert bool(len(find_posts(patches, kept, where, LEAST).column)) != enough
+
+
+def test_known_footprints_are_not_measured_again():
+    """Of two footprints one is as before, and one has lost a square."""
+    where = columns()
+    patches = clipped(where, ((0.0, 0.0), (4.1, 8.0)), ((8.1, 0.0), (12.0, 8.0)))
+    known: dict[bytes, np.ndarray] = {}
+    before = find_wide(patches, where, LEAST, known)
+    assert len(known) == 2
+    assert (before == find_wide(patches, where, LEAST)).all()
+    fewer = patches.chosen(patches.owner[:, 0] != patches.owner[-1, 0])
+    assert (find_wide(fewer, where, LEAST, known) == find_wide(fewer, where, LEAST)).all()
+    assert len(known) == 3

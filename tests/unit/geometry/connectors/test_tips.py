@@ -65,6 +65,21 @@ def test_prisms_over_a_grid_have_the_sum_of_their_volumes():
     assert solid.volume() == pytest.approx((SIDE / 3) ** 2 * top.sum())
 
 
+@pytest.mark.parametrize("wider", [0.0, 2e-3])
+def test_prisms_of_equal_height_in_a_row_become_one(wider):
+    """Five squares in two rows, with a gap in one of them; `wider` prisms overlap."""
+    square = np.array([[0, 0], [0, 1], [0, 3], [1, 0], [1, 1]])
+    lo = square[:, ::-1] * 1.0
+    top = np.array([2.0, 2.0, 2.0, 2.0, 3.0])
+    solid = grid_prisms(square, lo - wider, lo + 1.0 + wider, np.zeros(5), top)
+    assert solid.volume() == pytest.approx(top.sum(), rel=8.0 * wider + 1e-9)
+    assert [solid.slice(height).area() for height in (1.0, 2.5)] == pytest.approx(
+        [5.0, 1.0], rel=8.0 * wider + 1e-9
+    )
+    flat = grid_prisms(square, lo - wider, lo + 1.0 + wider, np.zeros(5), np.full(5, 2.0))
+    assert flat.num_tri() <= 36, "three boxes: two of two squares, and one of one"
+
+
 def columns(count):
     x = np.arange(count)
     lo = np.column_stack([x * SIDE, 0 * x, 0 * x]).astype(float)
