@@ -38,9 +38,13 @@ class _TriangleBoxes(NamedTuple):
     low: Floats
     high: Floats
 
+    def meet(self, low: Floats, high: Floats) -> Bools:
+        """Tell which of them meet a box in plan."""
+        return np.asarray(((self.low[:, :2] < high[:2]) & (self.high[:, :2] > low[:2])).all(axis=1))
+
     def within(self, low: Floats, high: Floats) -> "_TriangleBoxes":
         """Return those that meet a box in plan."""
-        near = ((self.low[:, :2] < high[:2]) & (self.high[:, :2] > low[:2])).all(axis=1)
+        near = self.meet(low, high)
         return _TriangleBoxes(self.low[near], self.high[near])
 
 
@@ -97,9 +101,10 @@ class _FreeColumns:
     def __init__(self, build: Build, half: float, step: float) -> None:
         meshes = [placed.mesh for placed in build.parts] + [body.mesh for body in build.supports]
         corners = [mesh.vertices[mesh.triangles] for mesh in meshes if len(mesh.triangles)]
-        self._obstacles = _TriangleBoxes(
-            np.concatenate([each.min(axis=1) for each in corners]),
-            np.concatenate([each.max(axis=1) for each in corners]),
+        self._obstacles = [_TriangleBoxes(each.min(axis=1), each.max(axis=1)) for each in corners]
+        self._bounds = _TriangleBoxes(
+            np.array([each.low.min(axis=0) for each in self._obstacles]).reshape(-1, 3),
+            np.array([each.high.max(axis=0) for each in self._obstacles]).reshape(-1, 3),
         )
         self._space, self._half, self._step = build.settings.space, half, step
         self._work = 0.0
@@ -111,12 +116,23 @@ class _FreeColumns:
         points = points[self._is_inside(points) & (points[:, 2] > 2.0 * self._step)]
         if not len(points):
             return points
-        self._work += len(self._obstacles.low)
-        near = self._obstacles.within(points.min(axis=0) - self._half, points.max(axis=0) + self._half)
+        near = self._obstacles_in(points.min(axis=0) - self._half, points.max(axis=0) + self._half)
         self._work += len(points) * len(near.low)
         if self._work > _MOST_WORK:
             return points[:0]
         return points[[self._is_free(point, near) for point in points]]
+
+    def _obstacles_in(self, low: Floats, high: Floats) -> _TriangleBoxes:
+        """Return the triangles of parts and supports that meet a box in plan."""
+        found = []
+        for number in np.flatnonzero(self._bounds.meet(low, high)).tolist():
+            self._work += len(self._obstacles[number].low)
+            found.append(self._obstacles[number].within(low, high))
+        none = np.empty((0, 3))
+        return _TriangleBoxes(
+            np.concatenate([none, *(each.low for each in found)]),
+            np.concatenate([none, *(each.high for each in found)]),
+        )
 
     def _is_free(self, point: Floats, near: _TriangleBoxes) -> bool:
         """Tell whether nothing is in the column below a point, from one step below it."""
