@@ -14,7 +14,7 @@ from amprep.batch.digest import with_digest
 from amprep.batch.finished import finished_before, json_object, note_finished
 from amprep.batch.records import BatchJob, JobFigures, JobOutcome, State
 from amprep.errors import AmprepError
-from amprep.pipeline.outputs import safe_name
+from amprep.pipeline.outputs import REPORTS, safe_name
 from amprep.supervision import INCOMPLETE, WRONG
 
 _LONGEST_MESSAGE = 500
@@ -151,5 +151,5 @@ def _files(job: BatchJob, report: dict[str, Any]) -> list[str]:
     builds, name = report.get("builds", []), safe_name(str(report.get("job", "")))
     names = [build.get(key) for build in builds for key in ("file", "picture")]
     names += [stl for build in builds for stl in build.get("stl_files", [])]
-    names += [f"{name}.{suffix}" for suffix in ("report.html", "report.json", "placements.csv")]
+    names += [f"{name}.{suffix}" for suffix in REPORTS]
     return [each for each in names if each and (job.folder / each).is_file()]

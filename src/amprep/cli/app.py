@@ -15,7 +15,7 @@ from amprep.cli.catalogues import cells, materials, plugins, printers
 from amprep.cli.jobs import batch, orient, run, support
 from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
-from amprep.cli.setup import demo, doctor, init, schema
+from amprep.cli.setup import demo, doctor, init, schema, warm_up
 
 
 class FilesOrCommand(TyperGroup):
@@ -60,6 +60,7 @@ app.command("init")(init.init)
 app.command("schema")(schema.schema)
 app.command("demo")(demo.demo)
 app.command("doctor")(doctor.doctor)
+app.command("warm-up")(warm_up.warm_up)
 app.add_typer(plugins.app, name="plugins")
 app.add_typer(cells.app, name="cells")
 app.add_typer(printers.app, name="printers")

@@ -12,6 +12,9 @@ from amprep.errors import InputError
 from amprep.files import make_temporary_folder, remove_abandoned, taking_turns
 from amprep.interruption import clean_with, files_appeared, held
 
+REPORTS = ("report.html", "report.json", "placements.csv")
+"""The reports of a run; their names begin with that of the job."""
+
 _ATTEMPTS = 5
 """Another run that ends in between may remove the new folder, because it is empty."""
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from amprep.job import Job
 from amprep.model import Build, Stop
-from amprep.pipeline.outputs import OutputFolder, safe_name
+from amprep.pipeline.outputs import REPORTS, OutputFolder, safe_name
 from amprep.pipeline.record import build_record
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.supporting import SupportedBuild
@@ -15,10 +15,6 @@ from amprep.sealing.seal import file_digest
 
 if TYPE_CHECKING:
     from amprep.threemf import BuildFile
-
-
-REPORTS = ("report.html", "report.json", "placements.csv")
-"""The reports of a run."""
 
 
 def finish_build(

@@ -8,13 +8,13 @@ import shutil
 import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, requires, version
-from pathlib import Path
 from typing import Any
 
 import typer
 
 from amprep import __version__
 from amprep.cli.options import AsJson
+from amprep.cli.setup.kernels import compiled_kernels
 
 _SLICERS = {
     "PrusaSlicer": ("prusa-slicer", "PrusaSlicer", "prusa-slicer-console"),
@@ -25,9 +25,6 @@ _SLICERS = {
     "CuraEngine": ("CuraEngine", "curaengine"),
 }
 """Programs by the names that their commands have."""
-
-_KERNEL = re.compile(r"@(?:kernel|njit\([^)]*cache=True[^)]*\))\s+def (\w+)")
-"""Definition of a function whose compiled code is kept; other compiled functions are part of those that call them."""
 
 _WAIT_S = 5.0
 """Longest time for a program to state its version."""
@@ -59,7 +56,7 @@ def _findings() -> dict[str, dict[str, Any]]:
         "slicers": {name: _program(commands) for name, commands in _SLICERS.items()},
         "plugins": _plugins(),
         "profiles": _profiles(),
-        "kernels": {"compiled": _kernels()},
+        "kernels": {"compiled": compiled_kernels()},
     }
 
 
@@ -127,21 +124,3 @@ def _profiles() -> dict[str, str]:
         found[kind] = f"{len(profiles)}, {own} of them your own (in {folder})"
         found |= {f"warning about {kind} {number}": text for number, text in enumerate(warnings, 1)}
     return found
-
-
-def _kernels() -> str:
-    """Return how many kernels are compiled for this Python, as their cache says."""
-    from amprep import kernels
-
-    folder = Path(kernels.__file__).parent
-    names = {
-        f"{path.stem}.{name}"
-        for path in folder.rglob("*.py")
-        for name in _KERNEL.findall(path.read_text(encoding="utf-8"))
-    }
-    tag = f"py{sys.version_info.major}{sys.version_info.minor}"
-    cached = {
-        ".".join(path.name.partition("-")[0].split(".")[:2])
-        for path in folder.rglob(f"__pycache__/*.{tag}.nbi")
-    }
-    return f"{len(names & cached)} of {len(names)}; the others are compiled when they are first needed"
