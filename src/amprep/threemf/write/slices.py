@@ -7,7 +7,6 @@ no item is transformed: the extension allows slices no other rotations than thos
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -25,6 +24,9 @@ _DECIMALS = 4
 _VERTEX = (b'<s:vertex x="', b'" y="', b'"/>\n')
 _SEGMENT = (b'<s:segment v2="', b'"/>')
 _POLYGON = (b'<s:polygon startv="', b'">\n', b"</s:polygon>\n")
+_ESCAPED = str.maketrans(dict.fromkeys("&<>\"'", "_"))
+"""lib3mf 2.5.0 fails on an escaped character at the end of its buffer, so that names have none."""
+
 _LARGEST = 2**33
 """Bytes; an upper bound of the text of the model, which makes the package one for large entries."""
 
@@ -89,9 +91,9 @@ def _model_text(objects: Iterable[ObjectWithSlices], thickness: float) -> Iterat
             for layer in range(block.first_layer, block.first_layer + block.layers):
                 yield from _slice_text(block, layer, thickness)
         yield b"</s:slicestack>\n"
-        name = quoteattr(xml_text(each.object.name))
+        name = xml_text(each.object.name).translate(_ESCAPED)
         yield (
-            f'<object id="{stack + 1}" type="{each.object.type}" name={name} '
+            f'<object id="{stack + 1}" type="{each.object.type}" name="{name}" '
             f's:slicestackid="{stack}" s:meshresolution="fullres">'
         ).encode()
         yield from mesh_text(each.object, None)
