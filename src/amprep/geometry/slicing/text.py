@@ -8,7 +8,7 @@ import numpy as np
 from amprep.arrays import Int64s
 
 if TYPE_CHECKING:
-    from amprep.kernels.slicing.decimals import Words
+    from amprep.kernels.slicing.decimals import JoinedWords
 
 _MOST_DIGITS = 22
 """Bytes of a number of 64 bits with sign and decimal point."""
@@ -61,9 +61,9 @@ def rows_text(rows: Int64s, decimals: int, words: Sequence[bytes]) -> bytes:
     )
 
 
-def _words(words: Sequence[bytes]) -> "Words":
-    from amprep.kernels.slicing.decimals import Words
+def _words(words: Sequence[bytes]) -> "JoinedWords":
+    from amprep.kernels.slicing.decimals import JoinedWords
 
     first = np.zeros(len(words) + 1, np.int64)
     np.cumsum([len(word) for word in words], out=first[1:])
-    return Words(np.array(bytearray(b"".join(words)), np.uint8), first)
+    return JoinedWords(np.array(bytearray(b"".join(words)), np.uint8), first)

@@ -8,15 +8,15 @@ from amprep.kernels.helper import kernel, uncounted
 _MINUS, _POINT, _ZERO = 45, 46, 48
 
 
-class Words(NamedTuple):
-    """Words in ASCII, one behind the other, and the first byte of each with the end of the last."""
+class JoinedWords(NamedTuple):
+    """JoinedWords in ASCII, one behind the other, and the first byte of each with the end of the last."""
 
     text: Bytes
     first: Int64s
 
 
 @uncounted
-def _put_word(words: Words, which: int, text: Bytes, size: int) -> int:
+def _put_word(words: JoinedWords, which: int, text: Bytes, size: int) -> int:
     """Write a word and return the new length of the text."""
     for at in range(words.first[which], words.first[which + 1]):
         text[size] = words.text[at]
@@ -49,10 +49,10 @@ def _put_number(value: int, decimals: int, digits: Bytes, text: Bytes, size: int
 @kernel
 def write_groups(
     heads: Int64s,
-    head_words: Words,
+    head_words: JoinedWords,
     rows: Int64s,
     first: Int64s,
-    row_words: Words,
+    row_words: JoinedWords,
     decimals: int,
     digits: Bytes,
     text: Bytes,
