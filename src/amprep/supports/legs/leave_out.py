@@ -18,6 +18,9 @@ from amprep.supports.legs.shorten import LegRules, LongLeg, long_leg, shorten_le
 _BRACED = 0.95
 """Fraction of the leg ratio from which legs are divided, because finished legs are a little longer and narrower."""
 
+MUCH_ADDED = 0.25
+"""Fraction of edges that bracing adds above which a note proposes wider supports."""
+
 _ATTEMPTS = 3
 """Number of times that legs are left out and the remaining ones divided again; then they are only left out."""
 
@@ -35,6 +38,8 @@ class ShortLegs(NamedTuple):
         Numbers of legs that struts or further columns divide, and that are wider in their lower part.
     left_out
         The legs that are left out.
+    added
+        Edges of struts, further columns and thicker feet, as a fraction of the routed edges that stay.
     """
 
     edges: SupportEdges
@@ -42,6 +47,7 @@ class ShortLegs(NamedTuple):
     divided: int
     thickened: int
     left_out: tuple[LongLeg, ...]
+    added: float
 
 
 def keep_legs_short(
@@ -69,7 +75,7 @@ def keep_legs_short(
     opened
         Returns the voxels that the supports of a part may use.
     """
-    red, feet = held
+    red, feet, routed = *held, edges
     braced = rules._replace(ratio=max(1.0, _BRACED * rules.ratio))
     lost = np.zeros(len(red), np.bool_)
     divided = thickened = 0
@@ -88,7 +94,15 @@ def keep_legs_short(
             break
         left_out += [long_leg(leg, sections, grid) for leg in legs]
         edges, lost = without_edges(edges, _edges_of(legs, sections, edges), red, lost, feet)
-    return ShortLegs(edges, lost, divided, thickened, tuple(left_out))
+    return ShortLegs(edges, lost, divided, thickened, tuple(left_out), _added(edges, routed))
+
+
+def _added(edges: SupportEdges, routed: SupportEdges) -> float:
+    """Return the number of edges that are not routed ones, as a fraction of the routed ones among them."""
+    own, before = (np.column_stack([each.upper, each.lower, each.part]) for each in (edges, routed))
+    distinct = len(np.unique(np.concatenate([own, before]), axis=0))
+    added = distinct - len(np.unique(before, axis=0))
+    return added / max(len(np.unique(own, axis=0)) - added, 1)
 
 
 def _edges_of(legs: list[RoutedLeg], sections: Sections, edges: SupportEdges) -> Bools:
@@ -154,6 +168,9 @@ def words_of(legs: ShortLegs, ratio: float) -> tuple[str, ...]:
         done.append(f"struts and columns divide {counted(legs.divided, 'leg')}")
     if legs.thickened:
         done.append(f"{counted(legs.thickened, 'leg')} made thicker below")
+    if done:
+        more = "; a wider cell or a larger pitch would need less" if legs.added > MUCH_ADDED else ""
+        done.append(f"this adds {100 * legs.added:.0f} % to the supports{more}")
     if legs.left_out:
         worst = max(legs.left_out)
         x, y, z = worst.position_mm

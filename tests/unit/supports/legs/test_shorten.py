@@ -240,3 +240,18 @@ def test_columns_in_open_space_can_always_be_mended():
         columns = [(2 * int(s // 13) + 1, 2 * int(s % 13) + 2, int(rng.integers(12, 50))) for s in spots]
         edges = SupportEdges.from_rows([row for y, x, top in columns for row in column(y, x, top)])
         assert shorten(grid, voxels, edges, [(top, y, x) for y, x, top in columns]).left == ()
+
+
+@pytest.mark.parametrize(("walls", "is_much"), [(1, True), (20, False)])
+def test_the_note_states_how_much_bracing_adds_and_proposes_wider_supports_above_a_quarter(walls, is_much):
+    grid, voxels = empty_grid()
+    wall = [row for y in range(walls) for x in (22, 23, 24) for row in column(y, x, 9)]
+    routed = SupportEdges.from_rows(column(7, 7, 19) + wall)
+    red = [(19, 7, 7), *((9, y, x) for y in range(walls) for x in (22, 23, 24))]
+    legs = kept_short(grid, voxels, routed, red)
+    assert not legs.lost.any()
+    assert len(legs.edges) == pytest.approx((1 + legs.added) * len(routed))
+    assert (legs.added > 0.25) == is_much
+    (words,) = words_of(legs, 10.0)
+    assert f"this adds {100 * (len(legs.edges) / len(routed) - 1):.0f} % to the supports" in words
+    assert ("wider cell" in words) == is_much
