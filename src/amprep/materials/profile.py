@@ -23,6 +23,10 @@ class MaterialProfile(OverhangRules, SectionRules):
         Time (s) for one layer apart from the scanning.
     scan_mm2_s
         Area (mm2) that is scanned in a second.
+    heating_h, cooling_h
+        Hours before the first and after the last layer.
+    hour_price, powder_price_kg
+        Price of an hour of the machine, and of a kilogram of powder, in any currency; None if unknown.
     source
         Public sources of the figures.
     """
@@ -34,6 +38,10 @@ class MaterialProfile(OverhangRules, SectionRules):
     density_g_cm3: float | None = None
     recoating_s: float = 10.0
     scan_mm2_s: float = 60.0
+    heating_h: float = 0.0
+    cooling_h: float = 0.0
+    hour_price: float | None = None
+    powder_price_kg: float | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -41,7 +49,8 @@ class MaterialProfile(OverhangRules, SectionRules):
         SectionRules.__post_init__(self)
         self.require_noncritical()
         require_bounds(self, "density_g_cm3", "scan_mm2_s", above=0)
-        require_bounds(self, "recoating_s", at_least=0)
+        require_bounds(self, "recoating_s", "hour_price", "powder_price_kg", at_least=0)
+        require_bounds(self, "heating_h", "cooling_h", at_least=0, at_most=1000)
 
     @property
     def support_defaults(self) -> dict[str, Any]:

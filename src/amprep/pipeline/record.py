@@ -14,7 +14,7 @@ from amprep.measures.height_profile import measure_profile
 from amprep.measures.legs import measure_legs
 from amprep.measures.objective import objective_reached
 from amprep.measures.printing.blade_edges import measure_blade_edges
-from amprep.measures.printing.estimate import PrintingEstimate, PrintingSpeed, estimate_printing
+from amprep.measures.printing.estimate import PrintingEstimate, PrintingRates, estimate_printing
 from amprep.measures.removal_order import measure_removal_order
 from amprep.model import Stop, Unsupported
 from amprep.overhangs.unsupported import region_name
@@ -64,10 +64,18 @@ def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord
 
 
 def _printing(supported: SupportedBuild, job: Job) -> PrintingEstimate:
-    """Return mass, use of the plate and hours of a build, from the job's material and the materials of the parts."""
+    """Return mass, use of the plate, hours and cost of a build, from the materials of the job and of its parts."""
     material, build = job.material, supported.build
-    speed = PrintingSpeed(job.supports.layer_mm, material.recoating_s, material.scan_mm2_s)
-    return estimate_printing(build, part_densities(job, build), supported.removal, speed)
+    rates = PrintingRates(
+        job.supports.layer_mm,
+        material.recoating_s,
+        material.scan_mm2_s,
+        material.heating_h,
+        material.cooling_h,
+        material.hour_price,
+        material.powder_price_kg,
+    )
+    return estimate_printing(build, part_densities(job, build), supported.removal, rates)
 
 
 def run_record(

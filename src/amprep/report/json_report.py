@@ -9,7 +9,7 @@ from amprep.measures.height_profile import HeightProfile
 from amprep.measures.legs import BodyLegs
 from amprep.measures.printing.blade_edges import BladeEdge
 from amprep.measures.removability import Removal, totals
-from amprep.model import Build, PlacedPart, Unsupported
+from amprep.model import Build, Unsupported
 from amprep.model.packing import PackingStep
 from amprep.report.json_values import plain, pockets_json, stages_json, violations_json, write_json_file
 from amprep.report.objective import gap_of, total_value
@@ -98,7 +98,7 @@ def _build(entry: BuildRecord, fill: bool) -> dict[str, Any]:
         "height_mm": entry.height_mm,
         "printing": printing_json(entry.printing),
         "blade_edges": [_blade_edge(edge, build) for edge in entry.blade_edges],
-        "parts": [_part(placed, fill) for placed in build.parts],
+        "parts": [_part(entry, number, fill) for number in range(len(build.parts))],
         "supports": _supports(entry),
         "height_profile": _profile(entry.profile),
         "removal_order": removal_order_json(entry),
@@ -124,8 +124,10 @@ def _profile(profile: HeightProfile) -> dict[str, Any]:
     }
 
 
-def _part(placed: PlacedPart, fill: bool) -> dict[str, Any]:
+def _part(entry: BuildRecord, number: int, fill: bool) -> dict[str, Any]:
+    placed, printing = entry.build.parts[number], entry.printing
     low, high = placed.mesh.bounds
+    share = printing.shares[number] if printing.shares else None
     return {
         "name": placed.label,
         "part": placed.part.name,
@@ -134,6 +136,8 @@ def _part(placed: PlacedPart, fill: bool) -> dict[str, Any]:
         "source_sha256": placed.part.source_sha256,
         "transform": placed.matrix,
         "volume_mm3": part_volume(placed),
+        "hours": None if share is None else share * printing.hours,
+        "cost": None if share is None or printing.cost is None else share * printing.cost,
         "value": placed.part.fill_value if fill else None,
         "low_mm": low,
         "high_mm": high,

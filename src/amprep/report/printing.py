@@ -17,15 +17,31 @@ def printing_words(estimates: Sequence[PrintingEstimate]) -> str:
     if not estimates:
         return ""
     layers = sum(each.layers for each in estimates)
-    recoating, scanning = (
-        sum(hours) for hours in zip(*((e.recoating_h, e.scanning_h) for e in estimates), strict=True)
+    recoating, scanning, thermal = (
+        sum(hours)
+        for hours in zip(
+            *((e.recoating_h, e.scanning_h, e.heating_h + e.cooling_h) for e in estimates), strict=True
+        )
     )
     use = sum(each.plate_use for each in estimates) / len(estimates)
     return (
         f"{'mean ' if len(estimates) > 1 else ''}plate use {100 * use:.1f} %, {_masses(estimates)}, "
-        f"{counted(layers, 'layer')}, about {hours_words(recoating + scanning)} "
-        f"(recoating {recoating:.1f}, scanning {scanning:.1f})"
+        f"{counted(layers, 'layer')}, about {hours_words(recoating + scanning + thermal)} "
+        f"(recoating {recoating:.1f}, scanning {scanning:.1f}"
+        f"{f', heating and cooling {thermal:.1f}' if thermal else ''}){_cost_words(estimates)}"
     )
+
+
+def total_cost(estimates: Iterable[PrintingEstimate]) -> float | None:
+    """Return the cost of all builds; None if that of one is unknown."""
+    costs = [each.cost for each in estimates]
+    known = [cost for cost in costs if cost is not None]
+    return sum(known) if len(known) == len(costs) else None
+
+
+def _cost_words(estimates: Sequence[PrintingEstimate]) -> str:
+    total = total_cost(estimates)
+    return "" if total is None else f", cost {total:,.2f}"
 
 
 def total_mass_g(estimates: Iterable[PrintingEstimate]) -> float | None:
@@ -56,7 +72,10 @@ def printing_json(estimate: PrintingEstimate) -> dict[str, Any]:
         "layers": estimate.layers,
         "recoating_h": estimate.recoating_h,
         "scanning_h": estimate.scanning_h,
+        "heating_h": estimate.heating_h,
+        "cooling_h": estimate.cooling_h,
         "hours": estimate.hours,
+        "cost": estimate.cost,
     }
 
 

@@ -56,6 +56,7 @@ DIFFERENT = {
     "--json": "the report of a run, or another result",
     "--job": "what a build is verified against, or by what it is planned again",
     "--report": "as --job",
+    "--name": "of a job, or of a profile",
     "--workers": "processes of a run, or jobs of a batch",
     "--quiet": "`verify` has no progress to hide",
     "-q": "as --quiet",

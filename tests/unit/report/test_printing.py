@@ -1,9 +1,18 @@
 """Plate use, mass and hours in words: totals over all builds, with the unit that fits."""
 
+from dataclasses import replace
+
 import pytest
 
 from amprep.measures.printing.estimate import PrintingEstimate
-from amprep.report.printing import hours_words, mass_words, printing_json, printing_words, total_mass_g
+from amprep.report.printing import (
+    hours_words,
+    mass_words,
+    printing_json,
+    printing_words,
+    total_cost,
+    total_mass_g,
+)
 
 ONE = PrintingEstimate(800.0, 40.0, 0.25, 0.1, 500, 1.4, 3.0)
 
@@ -46,3 +55,13 @@ def test_durations_are_in_minutes_below_an_hour(hours, words):
 
 def test_the_report_has_the_sum_of_the_hours():
     assert printing_json(ONE)["hours"] == pytest.approx(4.4)
+
+
+def test_heating_cooling_and_cost_are_told_where_they_are_known():
+    whole = replace(ONE, heating_h=1.0, cooling_h=0.6, cost=1234.5)
+    assert printing_words([whole, whole]).endswith(
+        "about 12.0 h (recoating 2.8, scanning 6.0, heating and cooling 3.2), cost 2,469.00"
+    )
+    assert total_cost([whole, ONE]) is None
+    assert "cost" not in printing_words([whole, ONE])
+    assert printing_json(whole)["cost"] == 1234.5

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from amprep.cli.catalogues.fitted_material import fit
 from amprep.cli.catalogues.imported_printers import import_printers
 from amprep.cli.catalogues.profiles import ProfileCommands
 
@@ -73,3 +74,4 @@ app = ProfileCommands(
     print_table=_print_table,
 ).app()
 app.command("import")(import_printers)
+app.command("fit")(fit)

@@ -9,7 +9,7 @@ _MINUS, _POINT, _ZERO = 45, 46, 48
 
 
 class JoinedWords(NamedTuple):
-    """JoinedWords in ASCII, one behind the other, and the first byte of each with the end of the last."""
+    """Words in ASCII, one behind the other, and the first byte of each with the end of the last."""
 
     text: Bytes
     first: Int64s

@@ -1,7 +1,7 @@
-"""Estimate what a build takes: mass, use of the plate, and hours of printing."""
+"""Estimate what a build takes: mass, use of the plate, hours of printing, and cost."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -18,8 +18,8 @@ _ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
-class PrintingSpeed:
-    """What the duration of a build depends on; the material profile states it.
+class PrintingRates:
+    """What duration and cost of a build depend on; the material profile states it.
 
     Attributes
     ----------
@@ -29,16 +29,24 @@ class PrintingSpeed:
         Seconds for each layer apart from the scanning.
     scan_mm2_s
         Area (mm2) that is scanned in a second.
+    heating_h, cooling_h
+        Hours before the first and after the last layer.
+    hour_price, powder_price_kg
+        Price of an hour of the machine and of a kilogram of powder; None if unknown.
     """
 
     layer_mm: float
     recoating_s: float
     scan_mm2_s: float
+    heating_h: float = 0.0
+    cooling_h: float = 0.0
+    hour_price: float | None = None
+    powder_price_kg: float | None = None
 
 
 @dataclass(frozen=True)
 class PrintingEstimate:
-    """Mass, use of the plate and duration of a build.
+    """Mass, use of the plate, duration and cost of a build.
 
     Attributes
     ----------
@@ -54,6 +62,13 @@ class PrintingEstimate:
         Hours for all layers apart from the scanning.
     scanning_h
         Hours in which the cross-sections of parts and supports are scanned.
+    heating_h, cooling_h
+        Hours before the first and after the last layer.
+    cost
+        Price of the hours and of the powder that is melted; None if a price or the mass is unknown.
+    shares
+        For each part the fraction of the volume of the build that it has with its supports; hours and cost of a part
+        are these fractions of those of the build.
     """
 
     parts_g: float | None = None
@@ -63,11 +78,15 @@ class PrintingEstimate:
     layers: int = 0
     recoating_h: float = 0.0
     scanning_h: float = 0.0
+    heating_h: float = 0.0
+    cooling_h: float = 0.0
+    cost: float | None = None
+    shares: tuple[float, ...] = ()
 
     @property
     def hours(self) -> float:
-        """Hours for recoating and scanning; warming up and cooling down are not included."""
-        return self.recoating_h + self.scanning_h
+        """Hours for heating, recoating, scanning and cooling."""
+        return self.heating_h + self.recoating_h + self.scanning_h + self.cooling_h
 
     @property
     def mass_g(self) -> float | None:
@@ -76,7 +95,7 @@ class PrintingEstimate:
 
 
 def estimate_printing(
-    build: Build, densities: Sequence[float | None], removal: Sequence[Removal], speed: PrintingSpeed
+    build: Build, densities: Sequence[float | None], removal: Sequence[Removal], rates: PrintingRates
 ) -> PrintingEstimate:
     """Return the estimate for a build.
 
@@ -90,21 +109,41 @@ def estimate_printing(
         Density (g/cm3) of each part; None if unknown.
     removal
         Figures of each support body, which contain its mass.
-    speed
-        Layer height and speed of the printer.
+    rates
+        Layer height, speed and prices.
     """
     volumes = [part_volume(placed) for placed in build.parts]
-    layers = max(ceil(build_height(build) / speed.layer_mm - _ROUNDING), 0)
-    scanned = (sum(volumes) + support_volume(build)) / speed.layer_mm
-    return PrintingEstimate(
+    layers = max(ceil(build_height(build) / rates.layer_mm - _ROUNDING), 0)
+    scanned = (sum(volumes) + support_volume(build)) / rates.layer_mm
+    estimate = PrintingEstimate(
         parts_g=_mass(volumes, densities),
         supports_g=totals(tuple(removal))["mass_g"],
         plate_use=plate_use(build),
         density=build_density(build),
         layers=layers,
-        recoating_h=layers * speed.recoating_s / 3600.0,
-        scanning_h=scanned / speed.scan_mm2_s / 3600.0,
+        recoating_h=layers * rates.recoating_s / 3600.0,
+        scanning_h=scanned / rates.scan_mm2_s / 3600.0,
+        heating_h=rates.heating_h if build.parts else 0.0,
+        cooling_h=rates.cooling_h if build.parts else 0.0,
+        shares=_shares(build, volumes),
     )
+    return replace(estimate, cost=_cost(estimate, rates))
+
+
+def _shares(build: Build, volumes: Sequence[float]) -> tuple[float, ...]:
+    """Return the fraction of the volume that each part has with its supports; shared ones count in equal parts."""
+    own = list(volumes)
+    for body in build.supports:
+        for part in body.parts if not body.surface else ():
+            own[part] += abs(body.mesh.signed_volume) / len(body.parts)
+    whole = sum(own)
+    return tuple(each / whole if whole else 0.0 for each in own)
+
+
+def _cost(estimate: PrintingEstimate, rates: PrintingRates) -> float | None:
+    if rates.hour_price is None or rates.powder_price_kg is None or estimate.mass_g is None:
+        return None
+    return estimate.hours * rates.hour_price + estimate.mass_g / 1000.0 * rates.powder_price_kg
 
 
 def plate_use(build: Build) -> float:

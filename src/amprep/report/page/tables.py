@@ -18,7 +18,7 @@ from amprep.report.page.findings import MOST_ROWS, chips, finding_sections
 from amprep.report.page.packing import objective_figures, packing_section, values_section
 from amprep.report.page.profile_chart import profile_chart
 from amprep.report.picture.colours import part_colours
-from amprep.report.printing import HOW_TO_GET_MASS, hours_words, mass_words, total_mass_g
+from amprep.report.printing import HOW_TO_GET_MASS, hours_words, mass_words, total_cost, total_mass_g
 from amprep.report.record import BuildRecord, RunRecord
 from amprep.report.removal_order import hindrances_of, removal_rows, removal_summary
 from amprep.report.triage.findings import findings_of
@@ -116,6 +116,7 @@ def _figures(record: RunRecord) -> list[tuple[str, str, bool]]:
         ("Plate use" if len(builds) == 1 else "Mean plate use", f"{100 * use:.1f} <small>%</small>", False),
         ("Mass", " ".join((mass, f"<small>{unit or HOW_TO_GET_MASS}</small>")), False),
         ("Printing time", f"{number} <small>{hours_unit}</small>", False),
+        *([] if (cost := total_cost(printing)) is None else [("Cost", f"{cost:,.2f}", False)]),
         ("Build height", f"{max((e.height_mm for e in builds), default=0.0):.1f} <small>mm</small>", False),
         ("Support volume", f"{volume:.2f} <small>cm³</small>", False),
         ("Unsupported area", f"{area:.1f} <small>mm²</small>", area > 0.0),

@@ -1,16 +1,18 @@
 """Mass, use of the plate and hours of builds are those of solids whose figures are known by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from manifold3d import Manifold
 from tests.shared.builds import box_mesh
 from tests.shared.solids import mesh_of
 
-from amprep.measures.printing.estimate import PrintingSpeed, estimate_printing, plate_use
+from amprep.measures.printing.estimate import PrintingRates, estimate_printing, plate_use
 from amprep.measures.removability import RemovalRules, measure_removal
 from amprep.model import Build, BuildSettings, BuildVolume, Part, PlacedPart, SupportBody
 
-SPEED = PrintingSpeed(layer_mm=0.05, recoating_s=9.0, scan_mm2_s=40.0)
+RATES = PrintingRates(layer_mm=0.05, recoating_s=9.0, scan_mm2_s=40.0)
 
 
 def placed(mesh, *place, degrees=0.0, label="part"):
@@ -29,9 +31,9 @@ def build_of(*parts, supports=(), shape="box"):
 CUBE = box_mesh((0, 0, 0), (10, 10, 10))
 
 
-def estimate(build, densities):
+def estimate(build, densities, rates=RATES):
     known = tuple(densities)
-    return estimate_printing(build, known, measure_removal(build, RemovalRules(0.05, known)), SPEED)
+    return estimate_printing(build, known, measure_removal(build, RemovalRules(0.05, known)), rates)
 
 
 def test_two_cubes_and_a_support_have_the_mass_and_hours_of_their_volume():
@@ -80,3 +82,17 @@ def test_the_plate_use_of_turned_parts_is_what_samples_of_the_plate_say():
 def test_an_empty_build_takes_nothing():
     found = estimate(build_of(), [])
     assert (found.mass_g, found.layers, found.hours, found.plate_use, found.density) == (0, 0, 0, 0, 0)
+
+
+def test_cost_is_that_of_hours_and_powder_and_parts_share_it_by_volume():
+    support = SupportBody("support", box_mesh((0, 0, 0), (10, 10, 3)), (0,))
+    shared = SupportBody("shared", box_mesh((0, 0, 0), (10, 10, 2)), (0, 1))
+    build = build_of(placed(CUBE, 0, 0, 3), placed(CUBE, 20, 0, 3), supports=[support, shared])
+    rates = replace(RATES, heating_h=2.0, cooling_h=3.0, hour_price=50.0, powder_price_kg=80.0)
+    found = estimate(build, [8.0, 8.0], rates)
+    assert found.shares == pytest.approx((1400 / 2500, 1100 / 2500))
+    assert found.hours == pytest.approx(5.0 + found.recoating_h + found.scanning_h)
+    assert found.cost == pytest.approx(found.hours * 50.0 + 0.020 * 80.0)
+    assert estimate(build, [8.0, None], rates).cost is None, "the mass is unknown"
+    assert estimate(build, [8.0, 8.0], replace(rates, hour_price=None)).cost is None
+    assert estimate(build_of(), [], rates).cost == 0.0
