@@ -73,7 +73,9 @@ class JudgedOverhangs(NamedTuple):
     samples: JudgedSamples
 
 
-def judged_overhangs(placed: PlacedPart, rules: OverhangRules, spacing: float) -> JudgedOverhangs:
+def judged_overhangs(
+    placed: PlacedPart, rules: OverhangRules, spacing: float, grant_deg: float = GRANT_DEG
+) -> JudgedOverhangs:
     """Return the overhangs of a placed part with sample points on them.
 
     Parameters
@@ -84,10 +86,13 @@ def judged_overhangs(placed: PlacedPart, rules: OverhangRules, spacing: float) -
         Overhang angle, smallest area and smallest length; with limits no overhang is left out.
     spacing
         Distance of the points, mm.
+    grant_deg
+        Faces and edges this close to the overhang angle are no overhangs; with a negative value, those that are steeper
+        by its amount are overhangs too.
     """
     regions, own, mesh = placed.part.regions, placed.part.overrides, placed.mesh
     angle = rules.overhang_angle_deg if own.overhang_angle_deg is None else own.overhang_angle_deg
-    angle = float(np.radians(max(angle - GRANT_DEG, 0.0)))
+    angle = float(np.radians(max(angle - grant_deg, 0.0)))
     surface = surface_of(mesh)
     if own.supports is False or not len(mesh.triangles):
         return JudgedOverhangs(surface, angle, _none(), _no_samples())

@@ -5,7 +5,7 @@ import numpy as np
 from amprep.arrays import Floats, Int64s
 from amprep.checks.overhangs.modifiers import border_of
 from amprep.checks.overhangs.needs import are_needed
-from amprep.checks.overhangs.samples import judged_overhangs
+from amprep.checks.overhangs.samples import GRANT_DEG, judged_overhangs
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.sampling import sample_segments
 from amprep.model.build import Build, PlacedPart, SupportBody
@@ -86,11 +86,18 @@ def _close_targets(placed: PlacedPart, build: Build, below: Floats, beside: floa
 
     rules, mesh = build.settings.rules, placed.mesh
     extent = np.ptp(mesh.vertices[:, :2], axis=0)
-    found = judged_overhangs(placed, rules, max(_FINE, float(np.sqrt(extent.prod() / _MOST_SAMPLES))))
-    points = found.samples.points
-    away, _ = KDTree(below[:, :2]).query(points[:, :2], distance_upper_bound=beside)
-    rows = np.flatnonzero(np.isfinite(away) & (points[:, 2] > lowest))
-    return points[rows[are_needed(found, rules, rows, strict=True)]]
+    spacing, tree = max(_FINE, float(np.sqrt(extent.prod() / _MOST_SAMPLES))), KDTree(below[:, :2])
+    targets = []
+    for grant in (
+        GRANT_DEG,
+        -GRANT_DEG,
+    ):  # the planner may support faces this close to the overhang angle, or not
+        found = judged_overhangs(placed, rules, spacing, grant)
+        points = found.samples.points
+        away, _ = tree.query(points[:, :2], distance_upper_bound=beside)
+        rows = np.flatnonzero(np.isfinite(away) & (points[:, 2] > lowest))
+        targets.append(points[rows[are_needed(found, rules, rows, strict=True)]])
+    return np.concatenate(targets)
 
 
 def _judged(body: SupportBody, above: Floats, build: Build, uncertain: float) -> list[Violation]:

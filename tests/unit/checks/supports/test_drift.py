@@ -1,9 +1,10 @@
 """Drift: supports below the overhangs that they carry keep the promise; those that wander away do not."""
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from manifold3d import Manifold, OpType
+from manifold3d import CrossSection, Manifold, OpType
 from tests.shared.examples import examples
 from tests.shared.supported import box, build_of, table
 
@@ -92,3 +93,12 @@ def test_a_base_may_reach_farther_by_its_margin():
 @pytest.mark.parametrize("rules", [{"territory": "shared"}, {"drift_ratio": 0.0, "drift_mm": 0.0}])
 def test_without_a_limit_nothing_is_judged(rules):
     assert judged(table(10), box((1, 1, 5), (40, 40, 0)), **rules) == []
+
+
+@pytest.mark.parametrize(("angle", "carried"), [(44.99, True), (45.01, True), (45.1, False)])
+def test_faces_that_rounding_may_make_overhangs_may_be_supported(angle, carried):
+    rise = 20.0 * np.tan(np.radians(angle))
+    wall = CrossSection([[(-5, 0), (0, 0), (0, 10), (20, 10 + rise), (20, 40), (-5, 40)]])
+    part = wall.extrude(10).rotate((90, 0, 0)).translate((0, 10, 0))
+    found = judged(part, box((1, 1, 8 + 0.7 * rise), (14, 5, 0)))
+    assert (found == []) == carried
