@@ -141,9 +141,14 @@ def read_json(path: Path, what: str, largest: int) -> Any:
     """
     try:
         if path.stat().st_size > largest:
-            raise InputError(f"{path}: expected {what}, but the file is larger than {largest / 2**20:g} MiB")
+            raise InputError(f"{path}: expected {what}, but the file is larger than {_size_words(largest)}")
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: expected {what}, but the file is not JSON") from error
+
+
+def _size_words(size: int) -> str:
+    """Return a size in bytes as text."""
+    return f"{size >> 20} MiB" if size >= 1 << 20 else f"{size >> 10} KiB"

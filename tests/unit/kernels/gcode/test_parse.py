@@ -48,7 +48,7 @@ OTHERS = st.sampled_from(
     ]
 )
 PROGRAMS = st.lists(st.one_of(MOVES, MOVES, OTHERS), max_size=40)
-BEGIN = ["; printing object one (x) id:0 copy 0", ";TYPE:External perimeter"]
+BEGIN = ["G90", "; printing object one (x) id:0 copy 0", ";TYPE:External perimeter"]
 
 
 @settings(max_examples=40)
