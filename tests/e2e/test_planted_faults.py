@@ -1,10 +1,10 @@
 """`amprep verify` finds what is wrong in a build file, whichever entry of the package was changed."""
 
 import pytest
+from tests.shared.faults import FAULTS
 from tests.shared.planted import (
     BEAMS,
     DIALECTS,
-    FAULTS,
     as_before,
     bracket_build,
     write_entries,

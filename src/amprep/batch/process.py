@@ -35,14 +35,23 @@ class JobProcess:
         The job.
     workers
         Largest number of processes that it may use itself.
+
+    Raises
+    ------
+    OSError
+        If the system starts no process.
     """
 
     def __init__(self, job: BatchJob, workers: int) -> None:
         self.job, self._begin = job, time.monotonic()
         self._answer, self._errors = TemporaryFile(), TemporaryFile()  # noqa: SIM115 - closed by `outcome` and `end`
-        self._process = subprocess.Popen(  # noqa: S603 - our own command; no shell
-            command_of(job, workers), stdin=subprocess.DEVNULL, stdout=self._answer, stderr=self._errors
-        )
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 - our own command; no shell
+                command_of(job, workers), stdin=subprocess.DEVNULL, stdout=self._answer, stderr=self._errors
+            )
+        except OSError:
+            self._close()
+            raise
 
     @property
     def ended(self) -> bool:
@@ -74,6 +83,9 @@ class JobProcess:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
+        self._close()
+
+    def _close(self) -> None:
         self._answer.close()
         self._errors.close()
 

@@ -84,14 +84,18 @@ class LocalQueue:
         self._processes.clear()
 
     def _begin(self) -> list[JobOutcome]:
-        """Begin jobs while there is room; return those that an earlier batch finished."""
-        earlier = []
+        """Begin jobs while there is room; return those that an earlier batch finished, or that cannot begin."""
+        ended = []
         while self._waiting and len(self._processes) < self._count:
             job = with_digest(self._waiting.popleft())
             found = None if self._again else finished_before(job)
             if found is not None:
-                earlier.append(found)
+                ended.append(found)
                 continue
             side_by_side = min(self._count, len(self._waiting) + len(self._processes) + 1)
-            self._processes.append(JobProcess(job, max(1, workers.available() // side_by_side)))
-        return earlier
+            try:
+                self._processes.append(JobProcess(job, max(1, workers.available() // side_by_side)))
+            except OSError as error:
+                message = f"its process cannot be started: {error.strerror or error}"
+                ended.append(JobOutcome(job.name, job.source, job.folder, "crashed", message))
+        return ended

@@ -1,8 +1,11 @@
 """Measure volumes, height and density of a build on the original meshes."""
 
-from math import pi
+from math import ceil, pi
 
 from amprep.model import Build, PlacedPart
+
+_ROUNDING = 1e-6
+"""Fraction of a layer that rounding may add to the height of a build."""
 
 
 def part_volume(placed: PlacedPart) -> float:
@@ -14,6 +17,11 @@ def build_height(build: Build) -> float:
     """Return the greatest height of parts and supports, mm; 0 for an empty build."""
     meshes = [placed.mesh for placed in build.parts] + [body.mesh for body in build.supports]
     return max((float(mesh.bounds[1][2]) for mesh in meshes if len(mesh.vertices)), default=0.0)
+
+
+def layer_count(build: Build, thickness: float) -> int:
+    """Return the number of layers of a thickness (mm) from the plate to the highest point of a build."""
+    return max(ceil(build_height(build) / thickness - _ROUNDING), 0)
 
 
 def build_density(build: Build) -> float:

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil
 
 from amprep.geometry.slicing.layers import LayerContours, LayeredBody
-from amprep.measures.density import build_height, part_volume
+from amprep.measures.density import part_volume
 from amprep.model.build import Build
 from amprep.model.mesh import Mesh
 
@@ -13,9 +12,6 @@ _ROWS = 1_000_000
 """Pairs of a triangle and a plane that are in memory, for all bodies; each needs about 100 bytes."""
 
 _LEAST_ROWS = 10_000
-
-_ROUNDING = 1e-6
-"""Fraction of a layer that rounding may add to the height of a build."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +85,6 @@ def bodies_of(build: Build) -> tuple[SliceBody, ...]:
         for body in build.supports
     ]
     return tuple(each for each in parts + supports if len(each.mesh.triangles))
-
-
-def layer_count(build: Build, thickness: float) -> int:
-    """Return the number of layers from the plate to the highest point of a build."""
-    return max(ceil(build_height(build) / thickness - _ROUNDING), 0)
 
 
 def cut_layers(bodies: Sequence[SliceBody], thickness: float, layers: int) -> Iterator[Layer]:

@@ -3,8 +3,10 @@
 import sys
 from pathlib import Path
 
+import pytest
 from tests.unit.batch.conftest import DONE, Plan
 
+from amprep.batch import process
 from amprep.batch.finished import FILE
 from amprep.batch.queue import LocalQueue
 from amprep.batch.records import JobOutcome
@@ -72,6 +74,18 @@ def test_finished_jobs_are_not_run_again_and_all_others_are(plan: Plan, tmp_path
     fourth = run(plan({"a": [DONE, "0"], "b": [DONE, "0"], "c": [DONE, "0"]}), again=True)
     assert not any(each.earlier for each in fourth.values())
     assert all((tmp_path / "out" / name / FILE).is_file() for name in "abc")
+
+
+def test_a_job_whose_process_cannot_be_started_is_told(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    jobs = plan({"a": [DONE, "0"], "b": [DONE, "0"]})
+    command = process.command_of
+    missing = [str(jobs[0].folder / "no such program")]
+    monkeypatch.setattr(
+        process, "command_of", lambda job, count: missing if job.name == "a" else command(job, count)
+    )
+    found = run(jobs)
+    assert [found[name].state for name in "ab"] == ["crashed", "done"]
+    assert "cannot be started" in found["a"].message
 
 
 def test_jobs_that_run_are_ended_and_the_others_do_not_begin(plan: Plan) -> None:

@@ -2,19 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil
 from typing import TYPE_CHECKING
 
 from amprep.geometry.plates.shadow import shadow_of
-from amprep.measures.density import build_density, build_height, part_volume, plate_area, support_volume
+from amprep.measures.density import build_density, layer_count, part_volume, plate_area, support_volume
 from amprep.measures.removability import Removal, totals
 from amprep.model import Build, PlacedPart
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
-
-_ROUNDING = 1e-6
-"""Fraction of a layer that rounding may add to the height of a build."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,7 @@ def estimate_printing(
         Layer height, speed and prices.
     """
     volumes = [part_volume(placed) for placed in build.parts]
-    layers = max(ceil(build_height(build) / rates.layer_mm - _ROUNDING), 0)
+    layers = layer_count(build, rates.layer_mm)
     scanned = (sum(volumes) + support_volume(build)) / rates.layer_mm
     estimate = PrintingEstimate(
         parts_g=_mass(volumes, densities),

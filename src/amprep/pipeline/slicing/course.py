@@ -9,10 +9,11 @@ import numpy as np
 from amprep.errors import AmprepError, InputError
 from amprep.files import replacing
 from amprep.geometry.slicing.layers import LayerContours
+from amprep.measures.density import layer_count
 from amprep.model.build import Build
 from amprep.model.control import Progress, Stop, silent
 from amprep.report.slices.record import FORMS, SlicedBodyRecord, SliceRecord
-from amprep.slices.bodies import Layer, SliceBody, bodies_of, cut_layers, layer_count, layered
+from amprep.slices.bodies import Layer, SliceBody, bodies_of, cut_layers, layered
 from amprep.slices.cli_file import CliFile
 from amprep.slices.svg_file import layer_svg
 
