@@ -170,7 +170,7 @@ def words_of(legs: ShortLegs, ratio: float) -> tuple[str, ...]:
         done.append(f"{counted(legs.thickened, 'leg')} made thicker below")
     if done:
         more = "; a wider cell or a larger pitch would need less" if legs.added > MUCH_ADDED else ""
-        done.append(f"this adds {100 * legs.added:.0f} % to the supports{more}")
+        done.append(f"this adds {100 * legs.added:.0f} % to the edges of the supports{more}")
     if legs.left_out:
         worst = max(legs.left_out)
         x, y, z = worst.position_mm

@@ -253,5 +253,7 @@ def test_the_note_states_how_much_bracing_adds_and_proposes_wider_supports_above
     assert len(legs.edges) == pytest.approx((1 + legs.added) * len(routed))
     assert (legs.added > 0.25) == is_much
     (words,) = words_of(legs, 10.0)
-    assert f"this adds {100 * (len(legs.edges) / len(routed) - 1):.0f} % to the supports" in words
+    assert (
+        f"this adds {100 * (len(legs.edges) / len(routed) - 1):.0f} % to the edges of the supports" in words
+    )
     assert ("wider cell" in words) == is_much
