@@ -75,7 +75,9 @@ class Catalogue(Generic[T]):
         profiles, warnings = self.listed()
         known = {normalised(profile.name): profile.name for profile in profiles}
         close = get_close_matches(wanted, known, n=1)
-        hint = f" (did you mean {known[close[0]]!r}?)" if close else f"; 'amprep {self.kind}s' lists them"
+        hint = (
+            f" (did you mean {known[close[0]]!r}?)" if close else f"; 'amprep {self.kind}s list' lists them"
+        )
         raise JobError("; ".join([f"no {self.kind} is called {name!r}{hint}", *warnings]))
 
     def listed(self) -> tuple[list[T], list[str]]:

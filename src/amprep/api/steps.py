@@ -177,7 +177,7 @@ def plan_supports(
     --------
     >>> planned = amprep.plan_supports(packed.builds[0], pitch_mm=2)
     >>> print(planned)
-    bracket.build-1: 412 of 412 red squares connected, pitch 2 mm
+    bracket.build-1: 412 of 412 demand squares connected, pitch 2 mm
     """
     advice = "pass one of the builds of pack, or the result of load"
     require_record(build, (PackedBuild, LoadedParts), "plan_supports", advice)

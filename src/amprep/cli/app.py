@@ -17,9 +17,21 @@ from amprep.cli.jobs import infill as lattice
 from amprep.cli.jobs import inspect as inspection
 from amprep.cli.setup import demo, doctor, init, schema, warm_up
 
+_HELP_OPTIONS = ["-h", "--help"]
+
 
 class FilesOrCommand(TyperGroup):
     """A group of commands whose arguments may also be files alone, as a file manager passes them: it runs the job."""
+
+    def __init__(self, *args: Any, **named: Any) -> None:
+        """Make the group; help shows no type beside options that take no value."""
+        super().__init__(*args, **named)
+        for each in self.commands.values():
+            _hide_types_of_flags(each)
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the options of the group; typer adds some of them after the group was made."""
+        return _without_types_of_flags(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # typer may bring a click of its own
         """Parse arguments; those that begin with an existing file or folder, and no command, belong to `run`."""
@@ -34,12 +46,26 @@ def _exists(text: str) -> bool:
     return False
 
 
+def _hide_types_of_flags(command: Any) -> None:
+    """Hide the word ``<bool>``, by which ``--stl`` would seem to need a value, in the help of a command and below."""
+    _without_types_of_flags(command.get_params(typer.Context(command, help_option_names=_HELP_OPTIONS)))
+    for below in getattr(command, "commands", {}).values():
+        _hide_types_of_flags(below)
+
+
+def _without_types_of_flags(params: list[Any]) -> list[Any]:
+    for each in params:
+        if getattr(each, "is_flag", False):
+            each.metavar = ""
+    return params
+
+
 app = typer.Typer(
     name="amprep",
     cls=FilesOrCommand,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": _HELP_OPTIONS},
     help="Prepare builds for additive manufacturing: pack parts, plan supports that stand on the plate, "
     "and write one 3MF build job per printing run.",
 )

@@ -79,6 +79,7 @@ Printer = Annotated[
     str | None,
     job_option(
         "--printer",
+        metavar="NAME",
         help="Printer by name or profile file; see 'amprep printers list'.",
         autocompletion=completion.printers,
     ),
@@ -87,8 +88,35 @@ Material = Annotated[
     str | None,
     job_option(
         "--material",
+        metavar="NAME",
         help="Material by name or profile file; see 'amprep materials list'.",
         autocompletion=completion.materials,
+    ),
+]
+Packer = Annotated[
+    str | None,
+    job_option(
+        "--packer",
+        metavar="NAME",
+        help="Packer by name; see 'amprep plugins list'.",
+        autocompletion=completion.packers,
+    ),
+]
+Cell = Annotated[
+    str | None,
+    job_option(
+        "--cell",
+        metavar="NAME",
+        help="Lattice cell by name, or a file that declares one; see 'amprep cells list'.",
+        autocompletion=completion.cells,
+    ),
+]
+Target = Annotated[
+    str | None,
+    job_option(
+        "--for",
+        metavar="TARGET",
+        help="Program that will open the build jobs: generic, prusaslicer or cura.",
     ),
 ]
 Sets = Annotated[
@@ -112,7 +140,7 @@ ProgressForm = Annotated[
     output_option(
         "--progress",
         metavar="FORM",
-        help="Show progress as bars, or for programs as lines of JSON on standard error.",
+        help="Show progress as bars, or as lines: JSON for programs, on standard error.",
     ),
 ]
 LogFile = Annotated[
@@ -147,14 +175,7 @@ class ReadingOptions:
 class JobOptions(ReadingOptions):
     """Options of every command that takes a job: `run`, `support` and `lattice`."""
 
-    cell: Annotated[
-        str | None,
-        job_option(
-            "--cell",
-            help="Lattice cell by name, or a file that declares one.",
-            autocompletion=completion.cells,
-        ),
-    ] = None
+    cell: Cell = None
     lattice: Annotated[
         str | None,
         job_option(
@@ -163,25 +184,21 @@ class JobOptions(ReadingOptions):
             help="Write struts of cells as beams (generic files only) or as mesh; default: as the cell says.",
         ),
     ] = None
-    target: Annotated[
-        str | None,
-        job_option(
-            "--for",
-            metavar="TARGET",
-            help="Program that will open the build jobs: generic, prusaslicer or cura.",
-        ),
-    ] = None
+    target: Target = None
     sets: Sets = None
     name: Annotated[
         str | None,
         output_option(
             "--name",
+            metavar="NAME",
             help="Name of the job and its files; default: the job file, the only input, or the folder of all inputs.",
         ),
     ] = None
     output: Annotated[
         Path | None,
-        output_option("-o", "--output", help="Output folder; default: the folder of the first input."),
+        output_option(
+            "-o", "--output", metavar="FOLDER", help="Output folder; default: the folder of the first input."
+        ),
     ] = None
     stl: Annotated[bool, output_option("--stl", help="Write STL files as well.")] = False
     dry_run: DryRun = False
@@ -215,12 +232,19 @@ class BuildOptions(JobOptions):
     labels: Annotated[
         str | None,
         job_option(
-            "--labels", metavar="FILE.csv", help="List of texts to engrave into copies of parts, or raise."
+            "--labels",
+            metavar="FILE.csv",
+            help="List of texts that are engraved into copies of parts, or raised from them.",
         ),
     ] = None
     router: Annotated[
         str | None,
-        job_option("--router", help="Support router by name.", autocompletion=completion.routers),
+        job_option(
+            "--router",
+            metavar="NAME",
+            help="Support router by name; see 'amprep plugins list'.",
+            autocompletion=completion.routers,
+        ),
     ] = None
     connector: Annotated[
         str | None,
@@ -241,15 +265,17 @@ class BuildOptions(JobOptions):
         ),
     ] = None
     open_report: OpenReport = False
-    seed: Annotated[int | None, job_option("--seed", help="Seed of the random numbers; default 0.")] = None
+    seed: Annotated[
+        int | None, job_option("--seed", metavar="N", help="Seed of the random numbers; default 0.")
+    ] = None
     time_limit: Annotated[
         float | None,
         job_option(
             "--time-limit",
             min=0.0,
             metavar="SECONDS",
-            help="Stop packing and routing after this time, leave out supports not finished after twice this time, and "
-            "end verification after three times.",
+            help="Stop packing and routing after this time, leave out supports that are not finished after twice as "
+            "long, and end verification after three times as long.",
         ),
     ] = None
     allow_surface: Annotated[

@@ -35,7 +35,7 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
     if rules.pitch_mm is None and choose_pitch(build.parts, job.printer.space, rules) > usual:
         yield (
             f"the pitch of the support grid was raised from {usual:g} to {pitch:g} mm, so that the grid fits into "
-            f"supports.memory_mb = {rules.memory_mb}"
+            f"{rules.memory_mb} MB (supports.memory_mb)"
         )
     counts = Counter(each.reason for each in build.unsupported if not each.minor)
     narrow = counts[NO_FREE_VOXEL_BELOW] + counts[CONNECTOR_BLOCKED]
@@ -61,7 +61,10 @@ def advice_for(job: Job, build: Build, pitch: float) -> Iterator[str]:
             "without room for a strut; choose a wider cell or a larger pitch, or allow them: --set supports.leg_ratio=0"
         )
     if counts[CAPACITY]:
-        yield f"{_have(counts[CAPACITY])} too little capacity; let it grow: --set supports.escalation=cut"
+        yield (
+            f"{_have(counts[CAPACITY])} a path that other supports use up already; allow more supports to share it: "
+            "--set supports.escalation=cut"
+        )
     if counts[OUT_OF_TIME]:
         yield f"{_have(counts[OUT_OF_TIME])} no support yet, because the time ended; allow a longer time limit"
 

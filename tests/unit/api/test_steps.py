@@ -165,7 +165,7 @@ def test_a_plan_without_time_leaves_every_square_unconnected_and_says_so():
     planned = amprep.plan_supports(packed.builds[0], stop=Stop.after(0.0), cell="prism", **COARSE)
     assert (
         str(planned)
-        == f"table.build-1: 0 of {len(present(planned.layout).red.square)} red squares connected, pitch 4 mm"
+        == f"table.build-1: 0 of {len(present(planned.layout).red.square)} demand squares connected, pitch 4 mm"
     )
     supported = amprep.emit_cells(planned)
     assert "time limit" in {region.reason for region in supported.build.unsupported}

@@ -4,6 +4,8 @@ import inspect
 
 import pytest
 import typer
+from rich.text import Text
+from typer.testing import CliRunner
 
 from amprep.cli.app import app
 
@@ -66,3 +68,16 @@ DIFFERENT = {
     "--volumes": "the volume maker of a run, or the makers to compare",
 }
 """Option -> why its help differs."""
+
+
+@pytest.mark.parametrize("command", [command for _, command in COMMANDS], ids=NAMES)
+def test_no_word_of_help_is_lost_as_markup(command):
+    texts = [command.help, *(each.help for each in command.params if each.help)]
+    assert [text for text in texts if Text.from_markup(text).plain != text] == []
+
+
+@pytest.mark.parametrize("command", [[], ["run"], ["plugins", "list"]])
+def test_help_shows_no_type_beside_options_without_a_value(command):
+    shown = CliRunner().invoke(app, [*command, "--help"]).output
+    assert "--help" in shown
+    assert "<bool>" not in shown

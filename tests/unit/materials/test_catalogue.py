@@ -77,7 +77,7 @@ def test_profiles_that_are_based_on_each_other_are_refused(places):
 def test_an_unknown_material_is_refused_with_the_nearest(places):
     with pytest.raises(JobError, match=r"no material is called 'metall' \(did you mean 'metal'\?\)"):
         find_material("metall", *places)
-    with pytest.raises(JobError, match="'amprep materials' lists them"):
+    with pytest.raises(JobError, match="'amprep materials list' lists them"):
         find_material("xyzzy", *places)
 
 

@@ -15,7 +15,7 @@ ADVICE = {
     "no free voxel below": "1 region has no free voxel below it at a pitch of 2 mm; .* --set supports.pitch_mm=1",
     "connector blocked": "--set supports.pitch_mm=1",
     "enclosed": "no path to the build plate; .* --set supports.grounding=anywhere",
-    "capacity": "too little capacity; .* --set supports.escalation=cut",
+    "capacity": "a path that other supports use up already; .* --set supports.escalation=cut",
     "time limit": "allow a longer time limit",
     "slender": "leg of more than .* to 1 .* --set supports.leg_ratio=0",
     "territory": "outside the territory of the part .*grounding=anywhere; .* --set supports.territory=shared",

@@ -123,7 +123,7 @@ def test_recoater_and_gas_flow_have_the_usual_directions_unless_the_profile_stat
 def test_an_unknown_printer_is_refused_with_the_nearest(places):
     with pytest.raises(JobError, match=r"no printer is called 'Prusa MK5' \(did you mean 'Prusa MK4'\?\)"):
         find_printer("Prusa MK5", *places)
-    with pytest.raises(JobError, match="'amprep printers' lists them"):
+    with pytest.raises(JobError, match="'amprep printers list' lists them"):
         find_printer("xyzzy", *places)
     with pytest.raises(JobError, match="expected a printer file, found nothing"):
         find_printer("nowhere.toml", *places)

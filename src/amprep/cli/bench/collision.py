@@ -12,7 +12,9 @@ from amprep.errors import InputError
 def collision(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Mesh files; the first and the last part are used. Default: two made parts."),
+        typer.Argument(
+            metavar="FILE", help="Mesh files; the first and the last part are used. Default: two made parts."
+        ),
     ] = None,
     poses: Annotated[int, typer.Option("--poses", metavar="N", min=1, help="Number of poses.")] = 1000,
     margin: Annotated[

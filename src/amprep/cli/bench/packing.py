@@ -75,7 +75,7 @@ def container_loading(
 def esicup(
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE...", help="JSON files of instances: base, meshes, demands."),
+        typer.Argument(metavar="FILE", help="JSON files of instances: base, meshes, demands."),
     ],
     packer: PackerName = "separation",
     time_limit: TimeLimit = 60.0,

@@ -17,7 +17,7 @@ COMPARED = ("plates", "extreme-points")
 
 
 def plates(
-    files: Annotated[list[Path], typer.Argument(metavar="PARTS...", help="Mesh files, 3MF jobs or folders.")],
+    files: Annotated[list[Path], typer.Argument(metavar="PARTS", help="Mesh files, 3MF jobs or folders.")],
     size: Annotated[
         str, typer.Option("--size", metavar="XxY", help="Sides of the plate, mm, for example 250x210.")
     ] = "250x250",

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 def support_volume(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Mesh files to support as well; each part is moved onto the plate."),
+        typer.Argument(
+            metavar="FILE", help="Mesh files to support as well; each part is moved onto the plate."
+        ),
     ] = None,
     routers: Annotated[
         list[str] | None,

@@ -13,7 +13,7 @@ from amprep.errors import JobError
 def compare(
     reports: Annotated[
         list[Path],
-        typer.Argument(metavar="REPORT...", help="JSON reports of two runs or more (NAME.report.json)."),
+        typer.Argument(metavar="REPORT", help="JSON reports of two runs or more (NAME.report.json)."),
     ],
     output: Annotated[
         Path | None,

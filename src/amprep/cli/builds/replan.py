@@ -58,7 +58,10 @@ class ReplanningOptions:
         ),
     ] = None
     output: Annotated[
-        Path | None, output_option("-o", "--output", help="Output folder; default: the folder of the file.")
+        Path | None,
+        output_option(
+            "-o", "--output", metavar="FOLDER", help="Output folder; default: the folder of the file."
+        ),
     ] = None
     html: Annotated[
         bool, output_option("--html", help="Write the page with a 3D view, too; --open implies it.")

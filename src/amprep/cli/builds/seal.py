@@ -8,7 +8,7 @@ import typer
 
 
 def seal(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Build files, or any other files.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", help="Build files, or any other files.")],
     key: Annotated[
         Path | None,
         typer.Option(

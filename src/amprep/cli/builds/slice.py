@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from amprep.cli.options import AsJson, Debug, ProgressForm, Quiet
+from amprep.cli.log import logging_to
+from amprep.cli.options import Debug, LogFile, ProgressForm, Quiet, ResultAsJson, output_option
 
 
 def slice_(
@@ -26,7 +27,9 @@ def slice_(
     ] = "cli",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Output folder; default: the folder of the build file."),
+        output_option(
+            "-o", "--output", metavar="FOLDER", help="Output folder; default: the folder of the build file."
+        ),
     ] = None,
     time_limit: Annotated[
         float | None,
@@ -34,9 +37,10 @@ def slice_(
             "--time-limit", min=0.0, metavar="SECONDS", help="Give up after this time and write nothing."
         ),
     ] = None,
-    as_json: AsJson = False,
+    as_json: ResultAsJson = False,
     quiet: Quiet = False,
     progress: ProgressForm = "bars",
+    log: LogFile = None,
     debug: Debug = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
     """Write the contours of a build, layer by layer.
@@ -55,7 +59,8 @@ def slice_(
 
     console = Console(stderr=True, quiet=quiet or progress == "lines")
     with (
-        Lines() if progress == "lines" and not quiet else Bars(console) as bars,
+        logging_to(log) as note,
+        Lines(note) if progress == "lines" and not quiet else Bars(console, note) as bars,
         bars.stage("slices") as show,
     ):
         from amprep import api

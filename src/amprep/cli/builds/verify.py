@@ -19,7 +19,7 @@ _AGAINST = "What the builds are verified against"
 def verify(
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE...", help="Build files that amprep wrote (.3mf, any target)."),
+        typer.Argument(metavar="FILE", help="Build files that amprep wrote (.3mf, any target)."),
     ],
     job: Annotated[
         Path | None,
@@ -28,7 +28,9 @@ def verify(
     printer: Annotated[
         str | None,
         typer.Option(
-            help="Printer by name or profile file; see 'amprep printers list'.", rich_help_panel=_AGAINST
+            metavar="NAME",
+            help="Printer by name or profile file; see 'amprep printers list'.",
+            rich_help_panel=_AGAINST,
         ),
     ] = None,
     report: Annotated[

@@ -29,7 +29,12 @@ def import_printers(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder for the profiles; default: your configuration folder."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="Folder for the profiles; default: your configuration folder.",
+        ),
     ] = None,
     force: Force = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="List the printers, but write nothing.")] = False,

@@ -22,7 +22,7 @@ Modules = Annotated[
     ),
 ]
 
-app = typer.Typer(no_args_is_help=True, help="List all offers, check a plugin, or start a new plugin.")
+app = typer.Typer(no_args_is_help=True, help="List what plugins offer, check a plugin, or start a new one.")
 
 
 @app.command("list")
@@ -31,7 +31,7 @@ def list_all(
     modules: Modules = None,
     no_plugins: Annotated[bool, typer.Option("--no-plugins", help="Use the built-in plugins only.")] = False,
 ) -> None:
-    """List every offer with the plugin that provides it."""
+    """List all packers, volume makers, support routers, lattice cells and mesh readers, with their plugins."""
     supervise_plugins(modules, without_plugins=no_plugins)
     from amprep.host import Host
 
@@ -85,7 +85,9 @@ def new(
     kind: Annotated[
         str, typer.Option(metavar="KIND", help="Kind of the offer: packer, cell, router, volume or reader.")
     ] = "packer",
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the new package.")] = Path(),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FOLDER", help="Folder for the new package.")
+    ] = Path(),
 ) -> None:
     """Start a plugin: make a package with an offer that works and tests that pass."""
     from amprep.host.scaffold import make_plugin

@@ -72,6 +72,7 @@ app = ProfileCommands(
     record=_record,
     unstated=("origin",),
     print_table=_print_table,
+    more="show one, import those of a slicer, or fit one to the log of a build",
 ).app()
 app.command("import")(import_printers)
 app.command("fit")(fit)

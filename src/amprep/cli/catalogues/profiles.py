@@ -32,6 +32,8 @@ class ProfileCommands(Generic[T]):
         Keys of the record that are no keys of a profile file.
     print_table
         Prints profiles for the terminal.
+    more
+        What else the commands do.
     """
 
     kind: str
@@ -41,11 +43,12 @@ class ProfileCommands(Generic[T]):
     record: Callable[[T], dict[str, Any]]
     unstated: tuple[str, ...]
     print_table: Callable[[list[T]], None]
+    more: str = "show one of them"
 
     def app(self) -> typer.Typer:
         """Return the application with the two commands; without a command it lists the profiles."""
         kind = self.kind
-        app = typer.Typer(help=f"List the {kind}s that a job can name, or show one of them.")
+        app = typer.Typer(help=f"List the {kind}s that a job can name, or {self.more}.")
         name = typer.Argument(metavar=kind.upper(), help=f"Name of a {kind}, or path of a profile (.toml).")
 
         @app.callback(invoke_without_command=True)

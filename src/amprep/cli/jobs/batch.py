@@ -52,6 +52,7 @@ class BatchOptions:
         output_option(
             "-o",
             "--output",
+            metavar="FOLDER",
             help="Folder with a folder for each job; default: the folder 'prepared' in the first folder given, "
             "or in the current one.",
         ),
@@ -70,7 +71,7 @@ class BatchOptions:
         output_option(
             "--scheduler",
             metavar="ADDRESS",
-            help="Run the jobs on a Dask cluster, for example tcp://host:8786; needs amprep[cluster].",
+            help="Run the jobs on a Dask cluster, for example tcp://host:8786; needs the package distributed.",
         ),
     ] = None
     again: Annotated[
@@ -99,7 +100,7 @@ def batch(
     inputs: Annotated[
         list[Path],
         typer.Argument(
-            metavar="JOB...",
+            metavar="JOB",
             help="Job files (.toml), 3MF files, and folders with them; each file is a job.",
             show_default=False,
         ),

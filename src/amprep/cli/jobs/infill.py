@@ -19,6 +19,7 @@ class FillOptions(JobOptions):
         typer.Option(
             "-o",
             "--output",
+            metavar="PATH",
             help="Output folder or file (.3mf); default: the folder of the first input.",
             rich_help_panel="Output",
         ),
@@ -30,7 +31,7 @@ def lattice(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="FILE...",
+            metavar="FILE",
             help="3MF files whose parts have modifiers, mesh files with --region or --shell, or a job file (.toml).",
             show_default=False,
         ),

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from amprep.cli.jobs.reporting import finish
+from amprep.cli.log import logging_to
 from amprep.cli.options import (
     Debug,
+    LogFile,
     NoPlugins,
     Plugins,
     Printer,
@@ -21,6 +23,7 @@ from amprep.cli.options import (
     supervise_plugins,
     with_options,
 )
+from amprep.cli.stated import stated_job
 
 if TYPE_CHECKING:
     from amprep.report.inspection.record import InspectionRecord
@@ -43,10 +46,16 @@ class InspectionOptions(ReadingOptions):
     ] = None
     output: Annotated[
         Path | None,
-        output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
+        output_option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="Folder for a page, a JSON report and pictures; default: none.",
+        ),
     ] = None
     as_json: ResultAsJson = False
     quiet: Quiet = False
+    log: LogFile = None
     plugins: Plugins = None
     no_plugins: NoPlugins = False
     debug: Debug = False
@@ -57,7 +66,7 @@ def inspect(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="PART...",
+            metavar="PART",
             help="Mesh files, 3MF files and folders, or a job file (.toml).",
             show_default=False,
         ),
@@ -105,12 +114,10 @@ def _inspected(inputs: list[str], volumes: list[str], options: InspectionOptions
 
     from amprep.cli.progress import Bars
     from amprep.host import Host
-    from amprep.job import apply_sets, job_of, override
 
-    job = apply_sets(
-        override(job_of(inputs), {"printer": options.printer, **options.reading}), options.sets or []
-    )
-    with Bars(Console(stderr=True, quiet=options.quiet)) as bars:
+    job = stated_job(inputs, {"printer": options.printer, **options.reading}, options.sets)
+    console = Console(stderr=True, quiet=options.quiet)
+    with logging_to(options.log) as log, Bars(console, log) as bars:
         with bars.stage("start"):
             from amprep import api
 

@@ -46,7 +46,12 @@ class OrientationOptions(ReadingOptions):
     ] = None
     output: Annotated[
         Path | None,
-        output_option("-o", "--output", help="Folder for a page, a JSON report and pictures; default: none."),
+        output_option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="Folder for a page, a JSON report and pictures; default: none.",
+        ),
     ] = None
     as_json: ResultAsJson = False
     quiet: Quiet = False
@@ -68,7 +73,7 @@ def orient(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="PART...",
+            metavar="PART",
             help="Mesh files, 3MF files and folders, or a job file (.toml).",
             show_default=False,
         ),

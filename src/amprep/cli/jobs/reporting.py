@@ -11,6 +11,7 @@ import typer
 from amprep import cli, workers
 from amprep.cli.log import logging_to
 from amprep.cli.options import BuildOptions, JobOptions, supervise_plugins
+from amprep.cli.stated import stated_job
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -64,10 +65,9 @@ def call_api(
 
     from amprep.cli.progress import Bars, Lines
     from amprep.host import Host
-    from amprep.job import apply_sets, job_of, override
     from amprep.job.user_settings import with_user_settings
 
-    stated = apply_sets(override(job_of(inputs), {**options.changes, **changes}), options.sets or [])
+    stated = stated_job(inputs, {**options.changes, **changes}, options.sets)
     job, taken, settings = with_user_settings(stated)
     as_lines = options.progress == "lines" and not options.quiet
     console = Console(stderr=True, quiet=options.quiet or as_lines)

@@ -4,9 +4,8 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.completion import packers
 from amprep.cli.jobs.reporting import build_and_report
-from amprep.cli.options import BuildOptions, with_options
+from amprep.cli.options import BuildOptions, Packer, job_option, with_options
 
 
 @with_options(BuildOptions)
@@ -14,38 +13,30 @@ def run(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="INPUT...",
+            metavar="INPUT",
             help="A job file (.toml), or 3MF files, mesh files and folders; NAME:4 prints four copies.",
             show_default=False,
         ),
     ],
-    packer: Annotated[
-        str | None,
-        typer.Option(
-            help="Packer by name; see 'amprep plugins list'.",
-            rich_help_panel="Settings of the job",
-            autocompletion=packers,
-        ),
-    ] = None,
+    packer: Packer = None,
     volumes: Annotated[
         str | None,
-        typer.Option(
-            help="Volume maker by name, or several as A,B: B bounds the solid that A makes.",
-            rich_help_panel="Settings of the job",
+        job_option(
+            "--volumes",
+            metavar="NAME",
+            help="Volume maker by name, or several as A,B: B bounds the solid that A makes; see 'amprep plugins list'.",
         ),
     ] = None,
     effort: Annotated[
         str | None,
-        typer.Option(
-            metavar="LEVEL",
-            help="How long the packer works: fast, normal or thorough.",
-            rich_help_panel="Settings of the job",
-        ),
+        job_option("--effort", metavar="LEVEL", help="How long the packer works: fast, normal or thorough."),
     ] = None,
     *,
     options: BuildOptions,
 ) -> None:
     """Pack parts, plan their supports and write build jobs, one 3MF file per printing run.
+
+    For example: amprep run bracket.stl:4 parts/ --printer "Prusa MK4"
 
     It writes NAME.build-1.3mf and so on, NAME.report.html with a 3D view,
     NAME.report.json, and a picture of each build.

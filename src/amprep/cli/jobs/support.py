@@ -13,7 +13,7 @@ def support(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="FILE...",
+            metavar="FILE",
             help="A job file (.toml), or 3MF files and mesh files.",
             show_default=False,
         ),
@@ -33,8 +33,8 @@ def support(
         str | None,
         typer.Option(
             metavar="PART",
-            help="List the overhang regions of a part (* and ? as in file names) with their verdicts and the "
-            "[[rule]] of the job that takes each; plan and write nothing.",
+            help="List the overhang regions of a part (* and ? as in file names), with their verdicts and the number "
+            "of the job's rule that takes each; plan and write nothing.",
         ),
     ] = None,
     *,

@@ -31,7 +31,7 @@ _WAIT_S = 5.0
 
 
 def doctor(as_json: AsJson = False) -> None:
-    """Say what is installed: packages, slicers, plugins, profiles, compiled kernels.
+    """Say what is installed: packages, slicers, plugins, profiles, compiled code.
 
     Add the output to a report of a fault.
     """
@@ -56,7 +56,7 @@ def _findings() -> dict[str, dict[str, Any]]:
         "slicers": {name: _program(commands) for name, commands in _SLICERS.items()},
         "plugins": _plugins(),
         "profiles": _profiles(),
-        "kernels": {"compiled": compiled_kernels()},
+        "numeric code": {"compiled functions": compiled_kernels()},
     }
 
 

@@ -7,59 +7,43 @@ from typing import Annotated
 
 import typer
 
-from amprep.cli.completion import cells, materials, packers, printers
-from amprep.cli.options import Force
+from amprep.cli.options import Cell, Force, Material, Packer, Printer, Target
+from amprep.cli.stated import options_named
 
 
 def init(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="INPUT...",
+            metavar="INPUT",
             help="Files and folders of the job; NAME:4 prints four copies.",
             show_default=False,
         ),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="The job file.")] = Path("job.toml"),
-    printer: Annotated[
-        str | None,
-        typer.Option(
-            help="Printer by name or profile file; see 'amprep printers list'.", autocompletion=printers
-        ),
-    ] = None,
-    material: Annotated[
-        str | None,
-        typer.Option(
-            help="Material by name or profile file; see 'amprep materials list'.", autocompletion=materials
-        ),
-    ] = None,
-    packer: Annotated[
-        str | None, typer.Option(help="Packer by name; see 'amprep plugins list'.", autocompletion=packers)
-    ] = None,
-    cell: Annotated[
-        str | None,
-        typer.Option(help="Lattice cell by name, or a file that declares one.", autocompletion=cells),
-    ] = None,
-    target: Annotated[
-        str | None,
-        typer.Option(
-            "--for",
-            metavar="TARGET",
-            help="Program that will open the build jobs: generic, prusaslicer or cura.",
-        ),
-    ] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.toml", help="The job file.")] = Path(
+        "job.toml"
+    ),
+    printer: Printer = None,
+    material: Material = None,
+    packer: Packer = None,
+    cell: Cell = None,
+    target: Target = None,
     force: Force = False,
 ) -> None:
     """Write a job file for these inputs, with every other key as a comment.
 
     Edit it, and run it with 'amprep run job.toml'. 'amprep schema' gives
     your editor the keys to complete and check.
+
+    Exit codes: 0 if done, 2 if the job could not run: an input does not exist
+    or has no file to read, or an option has a wrong value (nothing written).
     """
     from amprep.errors import AmprepError
     from amprep.files import replacing
     from amprep.host import Host
     from amprep.job import make_job
     from amprep.job.reference.template import template
+    from amprep.pipeline.reading import expand_inputs
 
     if not str(output).isprintable():
         raise AmprepError(f"{str(output)[:80]!r} is not a usable file name")
@@ -80,9 +64,11 @@ def init(
         "cells.strategy": _seen_from(folder, cell),
     }
     text = template(output.name, here, stated)
-    make_job(
-        tomllib.loads(text), name=output.stem, folder=folder, source=str(output)
-    )  # raises for a wrong name
+    with options_named(stated, str(output)):
+        job = make_job(tomllib.loads(text), name=output.stem, folder=folder, source=str(output))
+    expand_inputs(
+        [(each.path, each.quantity) for each in job.inputs], host.suffixes
+    )  # raises if nothing can be read
     with replacing(output) as temporary:
         temporary.write_text(text, encoding="utf-8")
     typer.echo(f"wrote {output}; run it by: amprep run {output}")

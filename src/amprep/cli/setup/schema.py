@@ -9,7 +9,8 @@ import typer
 
 def schema(
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="File to write; default: standard output.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="File to write; default: standard output."),
     ] = None,
 ) -> None:
     """Print the JSON schema of job files, by which editors complete and check keys.

@@ -13,7 +13,7 @@ def warm_up(
     no_plugins: NoPlugins = False,
     debug: Debug = False,  # noqa: ARG001 - `main` reads it
 ) -> None:
-    """Compile kernels now, so that usual jobs do not wait for that.
+    """Compile the numeric code for this machine now, so that usual jobs do not wait for that.
 
     It solves small problems with every packer, volume maker, router and cell.
 
@@ -39,5 +39,5 @@ def warm_up(
             host = Host.load(modules=plugins or [], plugins_enabled=not no_plugins)
         compile_all(plugins=host, watcher=bars)
     if not quiet:
-        typer.echo(f"kernels compiled: {compiled_kernels()}")
+        typer.echo(f"compiled functions: {compiled_kernels()}")
     raise typer.Exit(cli.DONE)

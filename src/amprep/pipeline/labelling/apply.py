@@ -106,7 +106,7 @@ def _written(part: Part, text: str, row: LabelSettings, where: str) -> Part:
         x, y, z = (round(float(value), 2) for value in face.normal)
         note = (
             f"label {text!r} {row.kind} by {row.depth_mm:g} mm on the face with the normal ({x:g}, {y:g}, {z:g}); "
-            "digests are those of the labelled part"
+            "the SHA-256 of the part is that with its label"
         )
         mesh = Mesh(*arrays_of(made))
         return replace(part, mesh=mesh, volume_mm3=float(made.volume()), notes=(*part.notes, note))

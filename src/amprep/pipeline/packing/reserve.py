@@ -122,7 +122,7 @@ def room_notes(parts: Sequence[Part], reserves: Mapping[int, Reserve], *, kept: 
         return ()
     names = [f"{parts[number].name} {reserves[number].margin:.1f} mm" for number in sorted(reserves)]
     if kept:
-        return (f"room beside parts for their supports, in which others have none: {', '.join(names)}",)
+        return (f"no other part may stand in the room that supports need beside parts: {', '.join(names)}",)
     return (
         f"supports need more room than there is beside parts, but with it fewer parts would fit: {', '.join(names)}",
     )

@@ -90,7 +90,5 @@ class PlannedBuild(Summarised):
             return f"{self.build.build_id}: no supports"
         connected = sum(int(layout.connected.sum()) for layout in self.layouts)
         pitches = ", ".join(f"{pitch:g}" for pitch in dict.fromkeys(each.pitch_mm for each in self.passes))
-        return (
-            f"{self.build.build_id}: {connected} of {sum(len(each.red.square) for each in self.layouts)} red squares "
-            f"connected, pitch {pitches} mm"
-        )
+        count = sum(len(each.red.square) for each in self.layouts)
+        return f"{self.build.build_id}: {connected} of {count} demand squares connected, pitch {pitches} mm"

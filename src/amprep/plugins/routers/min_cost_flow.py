@@ -124,7 +124,7 @@ class _PrimalDual:
             self.connected[left] = False
             if stop():
                 return stop.reason
-            progress(1.0 - left.size / self.connected.size, "connecting red squares")
+            progress(1.0 - left.size / self.connected.size, "connecting demand squares")
         return "finished"
 
     def exchange(self, stop: Stop, progress: Progress) -> str:
@@ -140,7 +140,7 @@ class _PrimalDual:
             if stop():
                 self.flow = before
                 return stop.reason
-            progress(1.0 - left.size / count, "choosing red squares to leave out")
+            progress(1.0 - left.size / count, "choosing demand squares to leave out")
         self.connected = self.task.reachable & (exits.state[self.task.start] == 1)
         return "finished"
 

@@ -1,7 +1,7 @@
 """State the rules that a build was judged by in one line."""
 
 from amprep.model import BuildSettings
-from amprep.model.supports.rules import SupportRules
+from amprep.model.supports.rules import LARGEST_LIMIT, SupportRules
 from amprep.report.record import RunRecord
 
 
@@ -12,7 +12,7 @@ def rules_of(record: RunRecord) -> list[str]:
 
 
 def rules_words(settings: BuildSettings, material: str, distances: bool = True) -> str:
-    """Return material, limits, territory and distances, for example ``material metal: ledge 1, bridge 2, bore 8 mm``.
+    """Return material, limits, territory and distances in words.
 
     Parameters
     ----------
@@ -33,15 +33,22 @@ def rules_words(settings: BuildSettings, material: str, distances: bool = True) 
 def _limits(rules: SupportRules) -> str:
     angle = f"{rules.overhang_angle_deg:g} degrees"
     if not rules.has_limits:
-        return f"rules of the thesis, {angle}"
+        return f"rules of the thesis: all faces flatter than {angle} need support"
     noncritical = (
-        f", not critical up to {rules.noncritical_angle_deg:g}" if rules.noncritical_angle_deg else ""
+        f" ({rules.overhang_angle_deg:g} to {rules.noncritical_angle_deg:g} degrees not critical)"
+        if rules.noncritical_angle_deg
+        else ""
     )
-    sizes = f"ledge {rules.ledge_mm:g}, bridge {rules.bridge_mm:g}, bore {rules.bore_mm:g} mm"
-    return f"{sizes}, {angle}{noncritical}"
+    kinds = {"ledges": rules.ledge_mm, "bridges": rules.bridge_mm, "bores": rules.bore_mm}
+    sizes = ", ".join(f"{kind} {_size(size)}" for kind, size in kinds.items())
+    return f"faces flatter than {angle} need support{noncritical}, but not {sizes}"
+
+
+def _size(limit_mm: float) -> str:
+    return "of any size" if limit_mm >= LARGEST_LIMIT else f"up to {limit_mm:g} mm"
 
 
 def _territory(rules: SupportRules) -> str:
     if rules.territory == "shared":
-        return "territory shared"
-    return f"territory own with a margin of {rules.territory_margin_mm:g} mm"
+        return "supports may stand anywhere on the plate"
+    return f"supports stay within {rules.territory_margin_mm:g} mm of the shadow of their part"

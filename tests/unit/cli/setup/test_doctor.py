@@ -23,7 +23,7 @@ def test_packages_slicers_plugins_profiles_and_kernels_are_named(monkeypatch, tm
     assert found["slicers"]["PrusaSlicer"] == f"2.5.0 ({slicer})"
     assert "extreme-points" in found["plugins"]["built-in"]
     assert found["profiles"]["printers"].endswith("printers)")
-    done, _, total = found["kernels"]["compiled"].partition(";")[0].partition(" of ")
+    done, _, total = found["numeric code"]["compiled functions"].partition(";")[0].partition(" of ")
     assert 0 <= int(done) <= int(total)
     assert int(total) > 100
     assert f"version: {__version__}" in CliRunner().invoke(app, ["doctor"]).stdout

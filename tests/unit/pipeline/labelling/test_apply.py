@@ -35,7 +35,7 @@ def test_a_text_for_all_copies_leaves_them_one_part(write):
     assert (made.name, made.quantity) == ("block", 3)
     assert 0.0 < 3600.0 - made.volume_mm3 < 12.0
     assert made.volume_mm3 == pytest.approx(made.mesh.signed_volume)
-    assert "digests are those of the labelled part" in made.notes[-1]
+    assert "the SHA-256 of the part is that with its label" in made.notes[-1]
 
 
 def test_copies_with_their_own_texts_become_parts_at_their_own_places(write):

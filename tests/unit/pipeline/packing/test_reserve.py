@@ -43,7 +43,7 @@ def test_parts_whose_supports_stand_below_them_are_packed_as_ever():
 def test_parts_get_room_for_supports_that_stand_beside_them(packer):
     given = packed(BLOCK_BELOW, packer)
     (note,) = given.notes
-    assert note.startswith("room beside parts for their supports, in which others have none: part ")
+    assert note.startswith("no other part may stand in the room that supports need beside parts: part ")
     (margin,) = {placed.part.overrides.territory_margin_mm for placed in given.builds[0].parts}
     assert margin > 2.0
     assert min(distances(given.builds[0])) >= 4.0 + 2.0 * (margin - 2.0) - 0.3

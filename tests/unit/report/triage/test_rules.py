@@ -15,16 +15,21 @@ SETTINGS = BuildSettings("job.build-1", BuildVolume((10, 10, 10)), rules=METAL, 
 
 def test_the_line_has_material_limits_angle_territory_lift_and_distance():
     assert rules_words(SETTINGS, "metal") == (
-        "material metal: ledge 1, bridge 2, bore 8 mm, 45 degrees; territory shared; lift 3 mm, part distance 5 mm"
+        "material metal: faces flatter than 45 degrees need support, but not ledges up to 1 mm, bridges up to 2 mm, "
+        "bores up to 8 mm; supports may stand anywhere on the plate; lift 3 mm, part distance 5 mm"
     )
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"rules": "thesis"}, "rules of the thesis, 45 degrees"),
-        ({"noncritical_angle_deg": 50.0}, "45 degrees, not critical up to 50"),
-        ({"territory": "own", "territory_margin_mm": 2.5}, "territory own with a margin of 2.5 mm"),
+        ({"rules": "thesis"}, "rules of the thesis: all faces flatter than 45 degrees need support"),
+        ({"bore_mm": 1000.0}, "bores of any size"),
+        ({"noncritical_angle_deg": 50.0}, "need support (45 to 50 degrees not critical)"),
+        (
+            {"territory": "own", "territory_margin_mm": 2.5},
+            "supports stay within 2.5 mm of the shadow of their part",
+        ),
     ],
 )
 def test_other_rules_are_stated(changes, words):
@@ -33,7 +38,9 @@ def test_other_rules_are_stated(changes, words):
 
 def test_positions_of_the_user_have_no_distances_and_an_unknown_material_no_name():
     given = replace(SETTINGS, lift=0.0, clearance=0.0)
-    assert rules_words(given, "") == "ledge 1, bridge 2, bore 8 mm, 45 degrees; territory shared"
+    words = rules_words(given, "")
+    assert words.startswith("faces flatter than 45 degrees")
+    assert words.endswith("anywhere on the plate")
 
 
 def test_a_run_states_its_rules_once_and_distances_that_are_stated_as_defaults_not_again(make_build):
