@@ -15,6 +15,9 @@ from amprep.model import Build, Mesh, SupportBody
 _OFFSET = 0.31
 """Height of a plane above a plane of the support grid, in slab thicknesses: cells end at the planes of the grid."""
 
+_ROUNDING = 1e-5
+"""Relative excess of a ratio that counts as rounding: files keep coordinates as float32."""
+
 
 class MeasuredLeg(NamedTuple):
     """A leg, or the stretch of it that is narrowest for its length.
@@ -100,7 +103,7 @@ def legs_of(mesh: Mesh, thickness: float, limit: float, parts: Sequence[Mesh] = 
         The parts that the solid holds; ends inside of them divide a leg.
     """
     legs = sorted((leg for leg, _ in _measured_legs(mesh, thickness, parts)[1]), reverse=True)
-    too_long = tuple(leg for leg in legs if 0.0 < limit * (1 + 1e-9) < leg.ratio)
+    too_long = tuple(leg for leg in legs if 0.0 < limit * (1 + _ROUNDING) < leg.ratio)
     return BodyLegs(len(legs), legs[0] if legs else None, too_long)
 
 
@@ -115,7 +118,7 @@ def long_stretches(mesh: Mesh, thickness: float, limit: float, parts: Sequence[M
     pieces, legs = _measured_legs(mesh, thickness, parts)
     half = np.column_stack([pieces.size / 2, np.full(len(pieces.size), thickness / 2)])
     boxes = np.stack([pieces.centre - half, pieces.centre + half], axis=1)
-    return [boxes[chain] for leg, chain in legs if leg.ratio > limit * (1 + 1e-9)]
+    return [boxes[chain] for leg, chain in legs if leg.ratio > limit * (1 + _ROUNDING)]
 
 
 def _measured_legs(

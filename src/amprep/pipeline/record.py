@@ -1,6 +1,6 @@
 """Collect the results of the stages in the records from which reports are made."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from amprep.measures.printing.blade_edges import measure_blade_edges
 from amprep.measures.printing.estimate import PrintingEstimate, PrintingRates, estimate_printing
 from amprep.measures.removal_order import measure_removal_order
 from amprep.model import Stop, Unsupported
+from amprep.model.counting import counted
 from amprep.overhangs.unsupported import region_name
 from amprep.pipeline.outputs import OutputFolder
 from amprep.pipeline.packing import PackedParts
@@ -58,9 +59,20 @@ def build_record(supported: SupportedBuild, job: Job, stop: Stop) -> BuildRecord
         demand_squares=sum(len(layout.red.square) for layout in layouts),
         unconnected=tuple(each for layout in layouts for each in _unconnected(supported, layout)),
         shared_supports=tuple(words for layout in layouts for words in layout.shared),
-        notes=tuple(words for layout in layouts for words in layout.notes),
+        notes=(*_copy_notes(supported), *(words for layout in layouts for words in layout.notes)),
         rules=supported.rules,
     )
+
+
+def _copy_notes(supported: SupportedBuild) -> Iterator[str]:
+    """Yield a sentence on copies that have the supports of others."""
+    copies = supported.copies
+    if copies is not None:
+        count = len(copies.parts) - len(copies.planned)
+        yield (
+            f"{counted(count, 'copy', 'copies')} of parts, in the same rotation and at the same height as another one, "
+            "got its supports, moved; the notes on supports count them once"
+        )
 
 
 def _printing(supported: SupportedBuild, job: Job) -> PrintingEstimate:
@@ -180,7 +192,7 @@ def _overhangs(supported: SupportedBuild) -> tuple[OverhangRecord, ...]:
     for part, (placed, (_, found)) in enumerate(zip(build.parts, supported.overhangs, strict=bool(layouts))):
         squares, connected = np.zeros((2, len(found.regions)), np.int64)
         for layout in layouts:
-            own = layout.red.part == part
+            own = layout.red.part == (part if supported.copies is None else supported.copies.like[part])
             squares += np.bincount(layout.red.region[own], minlength=len(found.regions))
             connected += np.bincount(layout.red.region[own & layout.connected], minlength=len(found.regions))
         own_angle = placed.part.overrides.overhang_angle_deg
@@ -212,22 +224,16 @@ def _overhang(
     )
 
 
-def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> tuple[UnconnectedSquare, ...]:
-    grid, records = layout.grid, []
+def _unconnected(supported: SupportedBuild, layout: SupportLayout) -> Iterator[UnconnectedSquare]:
+    """Yield the unconnected red squares of all parts; those of copies have the place of the square that was planned."""
+    grid, copies = layout.grid, supported.copies
     for index in (~layout.connected).nonzero()[0].tolist():
         plane, y, x = (int(value) for value in layout.red.square[index])
-        label = supported.build.parts[int(layout.red.part[index])].label
-        records.append(
-            UnconnectedSquare(
-                label,
-                region_name(int(layout.red.region[index]), label),
-                layout.reasons[index],
-                (plane, y, x),
-                (
-                    float(grid.origin[0] + (x + 0.5) * grid.pitch),
-                    float(grid.origin[1] + (y + 0.5) * grid.pitch),
-                    float(grid.origin[2] + plane * grid.step),
-                ),
+        part, region = int(layout.red.part[index]), int(layout.red.region[index])
+        alone = [(supported.build.parts[part].label, np.zeros(3))]
+        place = grid.origin + np.array([(x + 0.5) * grid.pitch, (y + 0.5) * grid.pitch, plane * grid.step])
+        for label, shift in alone if copies is None else copies.of(part):
+            x_mm, y_mm, z_mm = (place + shift).tolist()
+            yield UnconnectedSquare(
+                label, region_name(region, label), layout.reasons[index], (plane, y, x), (x_mm, y_mm, z_mm)
             )
-        )
-    return tuple(records)

@@ -49,7 +49,7 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
     JobError
         When the supports need more memory than this machine has.
     """
-    parts, resolved = planned.build.parts, planned.build.resolved
+    parts, resolved, copies = planned.parts, planned.build.resolved, planned.copies
     job = resolved.job
     settings = [
         build_settings(resolved.for_rule(each.rules[0]).job, planned.build.build_id, each.pitch_mm)
@@ -72,19 +72,21 @@ def emit_supports(planned: PlannedBuild, clock: Clock, stop: Stop) -> SupportedB
         unsupported = _unsupported(planned, taken, bodies, settings)
         build = Build(settings[0], parts, tuple(bodies), unsupported)
         removal = removal_of(job, build)
-    advice = [
-        *advice_for(job, build, planned.pitch_mm),
-        *(words for each in planned.passes for words in _wall_advice(resolved.for_rule(each.rules[0]), each)),
-    ]
-    found, rules = taken.overhangs, frozenset(taken.used)
-    return SupportedBuild(build, planned.layouts, found, tuple(dict.fromkeys(advice)), removal, rules)
+        advice = list(advice_for(job, build, planned.pitch_mm))
+        if copies is not None:
+            build, removal = copies.expand(build, removal)
+    for each in planned.passes:
+        advice += _wall_advice(resolved.for_rule(each.rules[0]), each)
+    found = taken.overhangs if copies is None else copies.all_overhangs(taken.overhangs)
+    told, rules = tuple(dict.fromkeys(advice)), frozenset(taken.used)
+    return SupportedBuild(build, planned.layouts, found, told, removal, rules, copies)
 
 
 def _built(
     planned: PlannedBuild, number: int, earlier: Sequence[SupportBody], stop: Stop, progress: Progress
 ) -> BuiltSupports:
     """Return the supports of one pass, whose bodies keep out of the bodies of earlier passes."""
-    own, parts = planned.passes[number], planned.build.parts
+    own, parts = planned.passes[number], planned.parts
     resolved = planned.build.resolved.for_rule(own.rules[0])
     job = resolved.job
     rules = SolidRules(
@@ -127,7 +129,7 @@ def _unsupported(
     settings: Sequence[BuildSettings],
 ) -> tuple[Unsupported, ...]:
     """List the unsupported overhangs of every pass, and those that a rule excepts, which are no fault."""
-    parts = planned.build.parts
+    parts = planned.parts
     found: list[Unsupported] = []
     for each, rules in zip(planned.passes, settings, strict=True):
         layout = each.layout

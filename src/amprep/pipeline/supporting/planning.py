@@ -15,6 +15,7 @@ from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import PlannedPass, passes_of, plan_in_order, take_regions
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
+from amprep.pipeline.supporting.copies import find_equal_copies
 from amprep.pipeline.supporting.records import PlannedBuild
 from amprep.supports.grid.sizing import choose_pitch
 from amprep.supports.legs.cell import CellProperties, measure_cell
@@ -23,7 +24,7 @@ from amprep.supports.solids.thin_cells import suitable_pitch
 
 
 def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
-    """Plan the supports of a build on the support grid.
+    """Plan the supports of a build on the support grid; those of equal copies with nothing else near are planned once.
 
     Parameters
     ----------
@@ -45,12 +46,14 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
     if not job.supports.enabled:
         return PlannedBuild(build)
     with clock.stage("route") as progress:
-        taken = take_regions(build.resolved, build.parts, build.overhangs)
+        copies = find_equal_copies(build)
+        parts = build.parts if copies is None else copies.planned_parts
+        taken = take_regions(build.resolved, parts, build.overhangs)
         divided, excepted = passes_of(build.resolved, taken)
 
         def plan(number: int, earlier: Sequence[PlannedPass]) -> PlannedPass:
             each = divided[number]
-            own = replace(build, resolved=each.resolved)
+            own = replace(build, resolved=each.resolved, parts=parts)
             pitch = pitch_of(each.resolved, build.parts)
             taking = taken.chosen(each.rules, excepted)
             shown = part_of(progress, number, len(divided))
@@ -58,7 +61,7 @@ def plan_build(build: PackedBuild, clock: Clock, stop: Stop) -> PlannedBuild:
             return PlannedPass(each.rules, pitch, layout)
 
         planned = plan_in_order(len(divided), plan)
-    return PlannedBuild(build, planned, taken)
+    return PlannedBuild(build, planned, taken, copies)
 
 
 def pitch_of(resolved: ResolvedJob, parts: Sequence[PlacedPart]) -> float:

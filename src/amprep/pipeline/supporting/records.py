@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 from amprep.measures.removability import Removal
-from amprep.model import (
-    Build,
-)
+from amprep.model import Build, PlacedPart
 from amprep.model.summary import Summarised
 from amprep.overhangs.of_part import PartOverhangs
 from amprep.pipeline.packing import PackedBuild
 from amprep.pipeline.passes import PlannedPass, TakenRegions
+from amprep.pipeline.supporting.copies import EqualCopies
 from amprep.supports.plan import SupportLayout
 
 
@@ -22,7 +21,8 @@ class SupportedBuild(Summarised):
     build
         Parts, supports, unsupported regions, and the rules they were made under.
     layouts
-        Layouts of the supports, one for each pass of planning; empty when the job has no supports.
+        Layouts of the supports, one for each pass of planning; empty when the job has no supports. Their parts are
+        those that were planned.
     overhangs
         The overhangs of each part; empty when the job has no supports.
     advice
@@ -31,6 +31,8 @@ class SupportedBuild(Summarised):
         Figures on the removal of each support body.
     rules
         Numbers of the ``[[rule]]`` entries that take a region, from 1; 0 if one is left to the settings of the job.
+    copies
+        Which parts have the supports that were planned for another one; None where each was planned by itself.
     """
 
     build: Build
@@ -39,6 +41,7 @@ class SupportedBuild(Summarised):
     advice: tuple[str, ...] = ()
     removal: tuple[Removal, ...] = ()
     rules: frozenset[int] = frozenset()
+    copies: EqualCopies | None = None
 
     def __str__(self) -> str:
         """Summary in one line."""
@@ -62,12 +65,20 @@ class PlannedBuild(Summarised):
         The passes of planning, each with its settings and its layout; the first has the settings of the job. Empty
         when the job has no supports.
     taken
-        The overhangs of the parts, and the rules that take them; None when the job has no supports.
+        The overhangs of the planned parts, and the rules that take them; None when the job has no supports.
+    copies
+        Which parts get the supports that are planned for another one; None where each is planned by itself.
     """
 
     build: PackedBuild
     passes: tuple[PlannedPass, ...] = ()
     taken: TakenRegions | None = None
+    copies: EqualCopies | None = None
+
+    @property
+    def parts(self) -> tuple[PlacedPart, ...]:
+        """The parts for which supports are planned."""
+        return self.build.parts if self.copies is None else self.copies.planned_parts
 
     @property
     def layout(self) -> SupportLayout | None:

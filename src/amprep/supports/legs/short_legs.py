@@ -1,7 +1,8 @@
-"""Leave out supports whose finished solids have legs that are too long for their width.
+"""Divide or leave out legs of finished solids that are too long for their width.
 
 Planning knows the squares that supports use, but not what territories, walls and holes cut from the finished solids. So
-the solids are measured as well: what they show of legs above the limit goes, and with it what only those carry.
+the solids are measured as well. Legs above the limit are divided by struts or further columns; those that are there
+after that go, and with them what only they carry.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,17 +11,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats
+from amprep.arrays import Bools
 from amprep.measures.legs import long_stretches
 from amprep.model import Mesh, PlacedPart, Stop, SupportBody
 from amprep.model.supports import SLENDER
 from amprep.model.supports.edges import square_keys
 from amprep.supports.layout import SupportLayout
+from amprep.supports.legs.divide_finished import FinishedLeg, divide_finished
 from amprep.supports.legs.leave_out import without_edges
 from amprep.workers import share_out
 
 _BESIDE = 0.25
 """Distance (in pitches) from the box around a leg up to which axes of edges belong to it."""
+
+_ROUNDS_OF_STRUTS = 2
+"""Number of rounds that divide legs; further ones leave them out."""
 
 _MOST_ROUNDS = 40
 """Largest number of rounds; the distance grows by a pitch in each in which nothing goes."""
@@ -40,7 +45,7 @@ def without_long_legs(
     ratio: float,
     stop: Stop | None = None,
 ) -> BuiltSupports:
-    """Build supports, and again without those whose legs are too long, until there is none.
+    """Build supports, and again with legs divided or left out that are too long, until there is none.
 
     Parameters
     ----------
@@ -63,13 +68,18 @@ def without_long_legs(
     meshes = [placed.mesh for placed in parts]
     measured: dict[int, _MeasuredBody] = {}
     beside = _BESIDE * layout.grid.pitch
-    for _ in range(_MOST_ROUNDS * (ratio > 0.0)):
+    for number in range(_MOST_ROUNDS * (ratio > 0.0)):
         if stop is not None and stop():
             break
         measured = _all_measured(bodies, measured, layout, meshes, ratio)
         legs = [leg for each in measured.values() for leg in each.legs]
         if not legs:
             break
+        if number < _ROUNDS_OF_STRUTS:
+            divided = divide_finished(layout, legs, ratio)
+            if divided is not layout:
+                layout, bodies = divided, build(divided)
+                continue
         reduced = _reduced(layout, legs, beside)
         if len(reduced.edges) == len(layout.edges) and (reduced.connected == layout.connected).all():
             beside += layout.grid.pitch
@@ -78,18 +88,11 @@ def without_long_legs(
     return BuiltSupports(bodies, layout)
 
 
-class _FinishedLeg(NamedTuple):
-    """The support group of a leg that is too long, and the box ``(2, 3)`` mm around the piece in its middle."""
-
-    group: int
-    box: Floats
-
-
 class _MeasuredBody(NamedTuple):
     """A body, and its legs that are too long; the reference keeps its identity from being used again."""
 
     body: SupportBody
-    legs: list[_FinishedLeg]
+    legs: list[FinishedLeg]
 
 
 def _all_measured(
@@ -109,20 +112,20 @@ def _all_measured(
 
 def _long_legs_of(
     body: SupportBody, layout: SupportLayout, meshes: Sequence[Mesh], ratio: float
-) -> list[_FinishedLeg]:
+) -> list[FinishedLeg]:
     """Return the legs of a body that are too long."""
     if body.surface or not len(body.mesh.triangles):
         return []
     group = layout.group_parts.index(body.parts)
     held = [meshes[part] for part in body.parts]
     found = long_stretches(body.mesh, layout.grid.step, ratio, held)
-    return [_FinishedLeg(group, boxes[len(boxes) // 2]) for boxes in found]
+    return [FinishedLeg(group, boxes) for boxes in found]
 
 
-def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:
+def _cross(layout: SupportLayout, leg: FinishedLeg, beside: float) -> Bools:
     """Tell which edges of its group ``(n,)`` cross the box in the middle of a leg, grown by a distance (mm)."""
     grid, edges = layout.grid, layout.edges
-    low, high = leg.box
+    low, high = leg.middle
     middle = (low[2] + high[2]) / 2.0
     top = grid.origin[2] + edges.plane * grid.step
     fraction = np.clip((top - middle) / grid.step, 0.0, 1.0)[:, None]
@@ -133,16 +136,16 @@ def _cross(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:
     return np.asarray(inside & at_height & (edges.group == leg.group))
 
 
-def _end_on_plate(layout: SupportLayout, leg: _FinishedLeg, beside: float) -> Bools:
+def _end_on_plate(layout: SupportLayout, leg: FinishedLeg, beside: float) -> Bools:
     """Tell which red squares on the plate ``(m,)``, below which there is no edge, are in its box, grown (mm)."""
     grid, square = layout.grid, layout.red.square
     axis = grid.origin[:2] + (square[:, :0:-1] + 0.5) * grid.pitch
-    inside = ((axis >= leg.box[0, :2] - beside) & (axis <= leg.box[1, :2] + beside)).all(axis=1)
-    low_enough = leg.box[0, 2] <= (layout.red.rise + 1) * grid.step
+    inside = ((axis >= leg.middle[0, :2] - beside) & (axis <= leg.middle[1, :2] + beside)).all(axis=1)
+    low_enough = leg.middle[0, 2] <= (layout.red.rise + 1) * grid.step
     return np.asarray(inside & low_enough & (square[:, 0] == 0) & (layout.red_group == leg.group))
 
 
-def _reduced(layout: SupportLayout, legs: Sequence[_FinishedLeg], beside: float) -> SupportLayout:
+def _reduced(layout: SupportLayout, legs: Sequence[FinishedLeg], beside: float) -> SupportLayout:
     """Return a layout without the edges near legs (mm), and without what only they carry."""
     removed = np.logical_or.reduce([_cross(layout, leg, beside) for leg in legs])
     gone = np.logical_or.reduce([_end_on_plate(layout, leg, beside) for leg in legs])

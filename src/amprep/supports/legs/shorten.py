@@ -92,7 +92,7 @@ def shorten_legs(
         Returns the voxels that the supports of a part may use.
     """
     ratio, touching = rules.ratio, TOUCHING * grid.step / grid.pitch
-    longest = _longest_strut(grid, ratio * float(rules.cell.min()))
+    longest = longest_strut(grid, ratio * float(rules.cell.min()))
     rows: list[list[int]] = []
     divided = thickened = 0
     whole = edges
@@ -118,7 +118,7 @@ def shorten_legs(
     return ShortenedLegs(SupportEdges.from_rows(rows), divided, thickened, left)
 
 
-def _longest_strut(grid: Grid, longest_leg: float) -> int:
+def longest_strut(grid: Grid, longest_leg: float) -> int:
     """Return the largest number of layers of a strut, which must not be too long a leg itself."""
     return max(1, min(int(LONGEST_STRUT / grid.pitch), int(longest_leg / np.hypot(grid.pitch, grid.step))))
 
