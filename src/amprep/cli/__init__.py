@@ -4,10 +4,17 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import NoReturn
 
 DONE, INCOMPLETE, WRONG, INTERRUPTED = 0, 1, 2, 130
 """Exit codes: done; done, but something is unplaced, unsupported or broken; wrong input or usage; ended by Ctrl-C."""
+
+
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
+"""Numbers of settings of malloc in glibc: how much free memory is kept, and the size of what is never kept."""
+
+_KEPT_BYTES = 1 << 30
 
 
 def _say(line: str) -> None:
@@ -49,6 +56,20 @@ def _say_late() -> None:
         _say(f"{signal.Signals(late).name} came when the files appeared; all of them are complete")
 
 
+def _keep_freed_memory() -> None:
+    """Let the C library keep what is freed, where it is glibc.
+
+    The system clears each page that it gives out, and solids and arrays of many megabytes come and go all the time.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        with suppress(AttributeError, OSError):
+            library = ctypes.CDLL(None)
+            library.mallopt(_TRIM_THRESHOLD, _KEPT_BYTES)
+            library.mallopt(_MMAP_THRESHOLD, _KEPT_BYTES)
+
+
 def main() -> NoReturn:
     """Run the command line; a mistake of the user is reported in one line with exit code 2, without a traceback."""
     # until `watch`, because imports that are interrupted print tracebacks
@@ -74,6 +95,7 @@ def _run() -> NoReturn:
     interruption.watch(_end_at_once)
     # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _keep_freed_memory()
     try:
         from amprep.cli.app import app
 
