@@ -72,10 +72,16 @@ def allowed(count: int) -> Iterator[None]:
         _ALLOWED.reset(before)
 
 
+def usable(tasks: int) -> int:
+    """Return how many processes may do so many tasks, this one included if it does them alone."""
+    return min(_ALLOWED.get(), tasks, _MOST_WORKERS) if sys.platform == "linux" else 1
+
+
 def share_out(
     task: Callable[[int], Result],
     work: Sequence[float],
     *,
+    all_long: bool = False,
     is_cancelled: Callable[[], bool] = lambda: False,
     done: Callable[[int], None] = lambda _: None,
 ) -> list[Result]:
@@ -87,8 +93,10 @@ def share_out(
         Does the task of a number. It depends on nothing but that, calls no plugin, and returns what pickle can store.
     work
         Estimated work of each task, in triangles.
+    all_long
+        Whether no task is short enough to be done before the others, to load kernels for them.
     is_cancelled
-        Tells whether to end early; it is asked between tasks.
+        Tells whether to end early; it is asked between tasks, and every 0.1 s while processes work.
     done
         Called with the number of tasks that are done.
 
@@ -97,21 +105,17 @@ def share_out(
     Exception
         What a task raises.
     """
-    workers = min(_ALLOWED.get(), len(work) - 1, _MOST_WORKERS)
+    workers = usable(len(work) if all_long else len(work) - 1)
     too_small = sum(work) - max(work, default=0.0) < _WORTH_IT
     numbers = range(len(work))
     results: dict[int, Result] = {}
-    if (
-        workers > 1
-        and not too_small
-        and len(work) <= _LARGEST_QUEUE
-        and sys.platform == "linux"
-        and not is_cancelled()
-    ):
+    if workers > 1 and not too_small and len(work) <= _LARGEST_QUEUE and not is_cancelled():
         order = sorted(numbers, key=lambda number: (-work[number], number))
-        with suppress(Exception):  # it is done again, in its order
-            results[order[-1]] = task(order[-1])
-        with _pool(task, order[:-1], workers) as pool:
+        if not all_long:
+            with suppress(Exception):  # it is done again, in its order
+                last = order.pop()
+                results[last] = task(last)
+        with _pool(task, order, workers) as pool:
             for number, found in pool.results(is_cancelled):
                 results[number] = found
                 done(len(results))
@@ -231,6 +235,7 @@ def _work(task: Callable[[int], Any], queue: int, answers: int, parent: int) -> 
         for number in interruption.SIGNALS:
             signal.signal(number, signal.SIG_IGN)
         interruption.end_with(parent, 1)
+        _ALLOWED.set(1)
         gc.disable()  # a collection would copy memory that is shared with the other processes
         while len(taken := os.read(queue, 4)) == 4:
             (number,) = struct.unpack("=i", taken)

@@ -17,6 +17,7 @@ from amprep.plugins.packers.params import (
     SweepParams,
     TabuParams,
 )
+from amprep.plugins.packers.starts import with_starts
 
 amprep_api = 1
 
@@ -50,7 +51,7 @@ def _heuristics_for_boxes() -> Iterable[Packer]:
     yield Packer(
         name="extreme-points",
         summary="The best of many orderings, each item at its best extreme point (Crainic, Perboli, Tadei).",
-        run=later("amprep.plugins.packers.extreme_points:pack_extreme_points"),
+        run=with_starts(later("amprep.plugins.packers.extreme_points:pack_extreme_points")),
         accepts=_ALL,
         params=ExtremePointsParams,
         efforts={"fast": {"work": 20.0}, "thorough": {"restarts": 2000, "work": 2000.0}},
@@ -58,7 +59,7 @@ def _heuristics_for_boxes() -> Iterable[Packer]:
     yield Packer(
         name="auto",
         summary="Enclosing boxes at once, then the true shapes; of boxes alone, few builds with a proven bound.",
-        run=later("amprep.plugins.packers.auto:pack_auto"),
+        run=with_starts(later("amprep.plugins.packers.auto:pack_auto")),
         accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z"}),
         params=AutoParams,
         efforts={
@@ -122,7 +123,7 @@ def _packers_of_shapes() -> Iterable[Packer]:
     yield Packer(
         name="separation",
         summary="True shapes: overlapping layouts are separated by guided local search on no-fit solids.",
-        run=later("amprep.plugins.packers.separation:pack_separation"),
+        run=with_starts(later("amprep.plugins.packers.separation:pack_separation")),
         accepts=replace(_SHAPES, stacking=frozenset({True})),
         params=SeparationParams,
         efforts={"fast": {"work": 600.0}, "thorough": {"work": 60_000.0}},
@@ -131,7 +132,7 @@ def _packers_of_shapes() -> Iterable[Packer]:
     yield Packer(
         name="plates",
         summary="True shadows of parts side by side, without stacking, by guided local search.",
-        run=later("amprep.plugins.packers.plates:pack_plates"),
+        run=with_starts(later("amprep.plugins.packers.plates:pack_plates")),
         accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z"}, stacking=frozenset({False})),
         params=PlatesParams,
         efforts={"fast": {"work": 3000.0}, "thorough": {"work": 300_000.0}},
@@ -140,7 +141,7 @@ def _packers_of_shapes() -> Iterable[Packer]:
     yield Packer(
         name="annealing",
         summary="Simulated annealing of the meshes themselves, which never intersect (thesis 2.6).",
-        run=later("amprep.plugins.packers.annealing.pack:pack_annealing"),
+        run=with_starts(later("amprep.plugins.packers.annealing.pack:pack_annealing")),
         accepts=replace(_SHAPES, orientations=_ANY_LIST | {"about-z", "free"}),
         params=AnnealingParams,
         efforts={"fast": {"moves": 400}, "thorough": {"moves": 20_000}},

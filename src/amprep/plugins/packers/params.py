@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from amprep.validation import require, require_bounds
 
+MOST_STARTS = 1000
+"""Largest number of searches of one packer."""
+
 
 @dataclass(frozen=True)
 class ExtremePointsParams:
@@ -20,14 +23,19 @@ class ExtremePointsParams:
         Greatest distance by which a restart moves an item in the ordering, as a fraction of the number of items.
     work
         Millions of comparisons of boxes and points after which no further pass is begun; some 200 per second.
+    starts
+        Number of searches, each with random numbers of its own; the best packing counts.
     """
 
     orderings: int = 0
     restarts: int = 0
     disturbance: float = 0.1
     work: float = 200.0
+    starts: int = 1
 
     def __post_init__(self) -> None:
+        require_bounds(self, "starts", at_least=1, at_most=MOST_STARTS)
+        require(self.starts == 1 or self.restarts > 0, "starts must be 1 without restarts", self.starts)
         require_bounds(self, "orderings", "restarts", "work", at_least=0)
         require_bounds(self, "disturbance", above=0, at_most=1)
 
@@ -93,6 +101,8 @@ class AutoParams:
         Millions of field values that `separation` reads, with stacking; some 300 to 1000 per second. 0: boxes alone.
     plates
         Millions of field values that `plates` reads, without stacking; some 500 to 1000 per second. 0: boxes alone.
+    starts
+        Number of searches, each with random numbers of its own; the best packing counts.
     """
 
     ruin_size: int = 3
@@ -103,8 +113,10 @@ class AutoParams:
     boxes: float = 0.2
     separation: float = 2500.0
     plates: float = 8000.0
+    starts: int = 1
 
     def __post_init__(self) -> None:
+        require_bounds(self, "starts", at_least=1, at_most=MOST_STARTS)
         require_bounds(self, "ruin_size", at_least=1)
         require_bounds(self, "temperature", "patience", "work", "proof", at_least=0)
         require_bounds(self, "separation", "plates", at_least=0)
@@ -276,6 +288,8 @@ class SeparationParams:
     work
         Millions of field values read by all workers after which the search ends; some 300 to 1000 per second and
         worker. Computing the fields does not count. Without a value, a time limit is used up, or the work is 6000.
+    starts
+        Number of searches, each with random numbers of its own; the best packing counts.
     """
 
     step: float = 0.06
@@ -286,8 +300,10 @@ class SeparationParams:
     workers: int = 2
     failures: int | None = None
     work: float | None = None
+    starts: int = 1
 
     def __post_init__(self) -> None:
+        require_bounds(self, "starts", at_least=1, at_most=MOST_STARTS)
         require_bounds(self, "step", above=0, at_most=0.5)
         require_bounds(self, "scan_chance", "failures", "work", at_least=0)
         require_bounds(self, "workers", at_least=1, at_most=64)
@@ -321,6 +337,8 @@ class PlatesParams:
         Layouts given up one after another at which the search ends.
     work
         Millions of field values read or computed after which the search ends; some 500 to 1000 per second.
+    starts
+        Number of searches, each with random numbers of its own; the best packing counts.
     """
 
     step: float = 0.035
@@ -333,8 +351,10 @@ class PlatesParams:
     persistence: int = 30
     failures: int = 200
     work: float = 30000.0
+    starts: int = 1
 
     def __post_init__(self) -> None:
+        require_bounds(self, "starts", at_least=1, at_most=MOST_STARTS)
         require_bounds(self, "step", above=0, at_most=0.5)
         require_bounds(self, "angle_step_deg", above=0, at_most=360)
         require_bounds(self, "tolerance", "support_margin_mm", "scan_chance", "work", "failures", at_least=0)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from amprep.plugins.packers.params import MOST_STARTS
 from amprep.validation import require, require_bounds
 
 SCHEDULES = ("geometric", "linear", "adaptive")
@@ -48,6 +49,8 @@ class AnnealingParams:
     collision
         Collision engine: ``boxes`` (exact for boxes), ``trees`` (OBB trees of meshes) or ``pieces`` (convex pieces);
         ``any`` takes the first of them that can handle the volumes, the pieces only if all volumes are convex pieces.
+    starts
+        Number of searches, each with random numbers of its own; the best packing counts.
     """
 
     start: str = "separation"
@@ -64,8 +67,10 @@ class AnnealingParams:
     sinks: float = 0.5
     shrink: float = 0.002
     collision: str = "any"
+    starts: int = 1
 
     def __post_init__(self) -> None:
+        require_bounds(self, "starts", at_least=1, at_most=MOST_STARTS)
         for name, known in (("start", STARTS), ("schedule", SCHEDULES), ("collision", COLLISIONS)):
             value = getattr(self, name)
             require(value in known, f"{name} must be one of {', '.join(known)}", repr(value))
