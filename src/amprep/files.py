@@ -122,6 +122,44 @@ def taking_turns(folder: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
+@contextmanager
+def held_alone(path: Path) -> Iterator[bool]:
+    """Hold a lock by a file, which exists in the block only, and yield whether no other process holds it.
+
+    The lock ends with the process, however that ends. Where locks do not exist, all processes get it.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be made.
+    """
+    descriptor, is_alone = _open_locked(path)
+    try:
+        yield is_alone
+    finally:
+        if is_alone:
+            path.unlink(missing_ok=True)
+        os.close(descriptor)
+
+
+def _open_locked(path: Path) -> tuple[int, bool]:
+    """Return a descriptor of a file, and whether its lock is now held; make the file if it does not exist."""
+    while True:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        try:
+            import fcntl
+
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return descriptor, False
+        except (ImportError, OSError):  # a system or a file system without locks
+            return descriptor, True
+        with suppress(FileNotFoundError):  # whoever held it may have removed it in between
+            if os.path.samestat(path.stat(), os.fstat(descriptor)):
+                return descriptor, True
+        os.close(descriptor)
+
+
 def read_json(path: Path, what: str, largest: int) -> Any:
     """Return the value in a JSON file of a limited size.
 

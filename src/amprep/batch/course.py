@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from amprep import __version__
@@ -10,8 +10,10 @@ from amprep.batch.queue import JobQueue
 from amprep.batch.records import BatchJob, BatchRecord, JobOutcome
 from amprep.batch.summary import write_summary
 from amprep.errors import AmprepError, Interrupted
+from amprep.files import held_alone
 from amprep.model.control import Progress
 
+_LOCK = ".amprep-batch"
 _WAIT_S = 0.2
 _BETWEEN_SUMMARIES_S = 2.0
 
@@ -45,17 +47,16 @@ def run_batch(
     Raises
     ------
     AmprepError
-        If the summary cannot be written.
+        If the summary cannot be written, or another batch writes to the output folder.
     Interrupted
         After a signal; the jobs that ran are ended, and the summary is written.
     """
-    make_output(output)
     begin, written, found = time.monotonic(), 0.0, dict[str, JobOutcome]()
 
     def so_far() -> BatchRecord:
         return write_summary(_record(jobs, found, begin), output)
 
-    with ending(queue, so_far):
+    with alone_in(output), ending(queue, so_far):
         for job in jobs:
             queue.add(job)
         while queue.left:
@@ -67,7 +68,7 @@ def run_batch(
             if time.monotonic() - written > _BETWEEN_SUMMARIES_S:
                 so_far()
                 written = time.monotonic()
-    return so_far()
+        return so_far()
 
 
 @contextmanager
@@ -108,15 +109,25 @@ def _record(jobs: Sequence[BatchJob], found: dict[str, JobOutcome], begin: float
     return BatchRecord(__version__, outcomes, time.monotonic() - begin)
 
 
-def make_output(folder: Path) -> None:
-    """Make the output folder.
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Make the output folder, and let no other batch write to it in the block: both would run each job.
 
     Raises
     ------
     AmprepError
-        If that is not possible.
+        If that is not possible, or another batch writes to the folder.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise AmprepError(f"cannot write to the output folder {folder}: {error.strerror or error}") from error
+    with ExitStack() as held:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            is_alone = held.enter_context(held_alone(folder / _LOCK))
+        except OSError as error:
+            raise AmprepError(
+                f"cannot write to the output folder {folder}: {error.strerror or error}"
+            ) from error
+        if not is_alone:
+            raise AmprepError(
+                f"another batch writes to {folder}; wait until it has ended, or choose another folder by -o"
+            )
+        yield

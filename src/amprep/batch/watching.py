@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from amprep import __version__
-from amprep.batch.course import ending, line_of, make_output
+from amprep.batch.course import alone_in, ending, line_of
 from amprep.batch.digest import files_of
 from amprep.batch.find import find_jobs
 from amprep.batch.queue import JobQueue
@@ -105,15 +105,14 @@ def watch_folder(
     Raises
     ------
     AmprepError
-        If the summary cannot be written.
+        If the summary cannot be written, or another batch writes to the output folder.
     Interrupted
         After a signal; the jobs that ran are ended.
     """
-    make_output(output)
     begin = busy = time.monotonic()
     found: dict[str, JobOutcome] = {}
     waiting: dict[str, BatchJob] = {}
-    with ending(queue, lambda: write_summary(_record(found, begin), output)):
+    with alone_in(output), ending(queue, lambda: write_summary(_record(found, begin), output)):
         while queue.left or idle_s is None or time.monotonic() - busy < idle_s:
             for job in watch.arrived(time.monotonic()):
                 if job.name not in waiting:
@@ -127,7 +126,7 @@ def watch_folder(
                 tell(f"{outcome.name}: done" if outcome.state == "done" else line_of(outcome))
                 write_summary(_record(found, begin), output)
             busy = time.monotonic() if queue.left else busy
-    return write_summary(_record(found, begin), output)
+        return write_summary(_record(found, begin), output)
 
 
 def _waited(queue: JobQueue) -> list[JobOutcome]:

@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 from tests.unit.batch.conftest import DONE, Plan
 
-from amprep.batch.course import run_batch
+from amprep.batch.course import alone_in, run_batch
 from amprep.batch.queue import LocalQueue
-from amprep.errors import Interrupted
+from amprep.errors import AmprepError, Interrupted
+from amprep.files import held_alone
 
 
 def read(folder: Path) -> dict[str, str]:
@@ -49,3 +50,33 @@ def test_a_signal_ends_the_batch_with_a_summary(plan: Plan, tmp_path: Path) -> N
     with pytest.raises(Interrupted, match="1 of 3 jobs have ended"):
         run_batch(jobs, LocalQueue(1, again=False), tmp_path / "out", progress=interrupt, tell=lambda _: None)
     assert read(tmp_path / "out") == {"a": "done", "b": "not run", "c": "not run"}
+
+
+def test_a_second_batch_into_the_same_folder_is_refused_while_the_first_runs(
+    plan: Plan, tmp_path: Path
+) -> None:
+    jobs, out = plan({"a": [DONE, "0"]}), tmp_path / "out"
+    with (
+        alone_in(out),
+        pytest.raises(AmprepError, match=r"another batch writes to .*out; wait until it has ended"),
+    ):
+        run_batch(jobs, LocalQueue(1, again=False), out, progress=lambda *_: None, tell=lambda _: None)
+    assert not list(out.iterdir())
+    run_batch(jobs, LocalQueue(1, again=False), out, progress=lambda *_: None, tell=lambda _: None)
+    assert read(out) == {"a": "done"}
+    assert not list(out.glob(".*"))
+
+
+def test_the_lock_of_a_batch_that_was_killed_holds_no_other_off(tmp_path: Path) -> None:
+    (tmp_path / ".amprep-batch").touch()
+    with held_alone(tmp_path / ".amprep-batch") as is_alone:
+        assert is_alone
+
+
+def test_an_output_folder_below_a_file_is_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with (
+        pytest.raises(AmprepError, match="cannot write to the output folder"),
+        alone_in(tmp_path / "file" / "out"),
+    ):
+        pass
