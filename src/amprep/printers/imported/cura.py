@@ -89,18 +89,24 @@ def _chain(path: Path, read: Callable[[Path], Any]) -> list[Mapping[str, Any]]:
 
 
 def _value(chain: list[Mapping[str, Any]], key: str, usual: Any) -> Any:
-    """Return a setting of the nearest definition that states it; formulas count as their default values."""
-    for own in chain:
-        overrides = own.get("overrides")
-        stated = overrides.get(key) if isinstance(overrides, dict) else None
-        stated = stated or _in_tree(own.get("settings"), key)
-        if isinstance(stated, dict):
-            value = stated.get("value")
-            if value is not None and (not isinstance(value, str) or _is_number(value)):
-                return value
-            if "default_value" in stated:
-                return stated["default_value"]
-    return usual
+    """Return a setting: the nearest ``value``, or else the nearest ``default_value``; formulas do not count.
+
+    In Cura a value hides all default values, also those of definitions that inherit it.
+    """
+    stated = [each for own in chain for each in _stated(own, key)]
+    for each in stated:
+        value = each.get("value")
+        if value is not None and (not isinstance(value, str) or _is_number(value)):
+            return value
+    return next((each["default_value"] for each in stated if "default_value" in each), usual)
+
+
+def _stated(own: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    """Return what a definition says about a setting: nothing, or one table."""
+    overrides = own.get("overrides")
+    stated = overrides.get(key) if isinstance(overrides, dict) else None
+    stated = stated or _in_tree(own.get("settings"), key)
+    return [stated] if isinstance(stated, dict) else []
 
 
 def _in_tree(settings: Any, key: str) -> Any:

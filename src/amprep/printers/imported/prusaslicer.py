@@ -91,6 +91,8 @@ def _with_parents(
 def _profile(name: str, own: Section, source: str) -> PrinterProfile:
     stated = {key: own.get(key) or usual for key, usual in _USUAL.items()}
     height = number_of(stated["max_print_height"], name, "height")
+    if not own.get("bed_shape"):
+        source += " (it states no bed: the one that PrusaSlicer takes)"
     return profile_of_bed(name, outline_of(stated["bed_shape"], name), height, source)
 
 

@@ -222,3 +222,19 @@ def test_folders_of_too_many_files_and_profiles_too_large_are_refused(tmp_path, 
     monkeypatch.setattr(read, "LARGEST_JSON", 10)
     with pytest.raises(InputError, match=r"expected a profile, but the file is larger than"):
         read_printers(saved(tmp_path, "machine.json", {"type": "machine"}))
+
+
+def test_a_value_of_an_inherited_cura_definition_hides_a_default_value(tmp_path):
+    sizes = {"machine_width": {"value": 120}, "machine_depth": {"default_value": 90}}
+    saved(tmp_path, "parent.def.json", {"name": "Parent", "overrides": sizes})
+    own = {"machine_width": {"default_value": 300}, "machine_depth": {"default_value": 300}}
+    path = saved(tmp_path, "own.def.json", {"name": "Own", "inherits": "parent", "overrides": own})
+    ((printer,), _) = read_printers(path)
+    assert list(printer.size_mm) == [120, 300, 100]
+
+
+def test_the_bed_that_prusaslicer_takes_where_a_printer_states_none_is_told(tmp_path):
+    path = saved(tmp_path, "bundle.ini", "[printer:A]\nmax_print_height = 250\n")
+    ((printer,), _) = read_printers(path)
+    assert list(printer.size_mm) == [200, 200, 250]
+    assert "states no bed" in printer.source
