@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -59,7 +60,7 @@ class OutputFolder:
     def __init__(self, folder: Path, stem: str, *, numbered: bool = True) -> None:
         _refuse_unusable(folder)
         self.folder, self.stem, self.numbered = folder, safe_name(stem), numbered
-        self._names: list[str] = []
+        self._names: dict[str, None] = {}
 
     def __enter__(self) -> Self:
         self._made: list[Path] = []
@@ -94,8 +95,12 @@ class OutputFolder:
 
     def named(self, name: str) -> Path:
         """Return the path at which to write a file of any name; it will be published."""
-        self._names.append(name)
+        self._names[name] = None
         return self._staging / name
+
+    def add(self, names: Iterable[str]) -> None:
+        """Publish files, too, that another process wrote at their paths."""
+        self._names.update(dict.fromkeys(names))
 
     def staged(self, suffix: str) -> Path:
         """Return the path of the file ``STEM.suffix`` before it is published."""

@@ -11,7 +11,7 @@ from amprep.pipeline.record import run_record
 from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock, SupportStops, Watcher
 from amprep.pipeline.supporting import support_build
-from amprep.pipeline.writing import finish_build, write_reports
+from amprep.pipeline.writing import finish_builds, write_reports
 from amprep.report.record import RunRecord
 
 
@@ -94,12 +94,15 @@ def make_builds(
     """
     with outputs:
         supported = [support_build(build, clock, stops.routing, stops.building) for build in packed.builds]
-        records = [
-            finish_build(
-                each, loaded.resolved.job, number, outputs, options.dry_run, options.stl, clock, stops.judging
-            )
-            for number, each in enumerate(supported, start=1)
-        ]
+        records = finish_builds(
+            supported,
+            loaded.resolved.job,
+            outputs,
+            dry_run=options.dry_run,
+            stl=options.stl,
+            clock=clock,
+            stop=stops.judging,
+        )
         record = run_record(loaded, packed, records, outputs)
         if options.dry_run:
             return replace(record, stages=clock.times)
