@@ -18,7 +18,10 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 1 << 30
 
 _OBJECTS_PER_SEARCH = 20_000
-"""New objects after which Python searches for unreachable ones."""
+"""New objects after which Python searches for unreachable ones among them."""
+
+_SEARCHES_PER_WIDER_SEARCH = 50, 100
+"""Searches after which older objects are searched, too, and wider searches after which all are."""
 
 
 def _say(line: str) -> None:
@@ -97,8 +100,9 @@ def _run() -> NoReturn:
 
     debug = "--debug" in sys.argv
     interruption.watch(_end_at_once)
-    # imports make many objects and no garbage: searching for it as often as usual takes a sixth of the start
-    gc.set_threshold(_OBJECTS_PER_SEARCH)
+    # imports make many objects and no garbage: searching for it as often as usual takes a sixth of the start,
+    # and a tenth of the time of compiling kernels
+    gc.set_threshold(_OBJECTS_PER_SEARCH, *_SEARCHES_PER_WIDER_SEARCH)
     # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_freed_memory()

@@ -68,7 +68,10 @@ class SlicedMesh:
         points, corners = vertices, np.asarray(triangles, np.int64)
         if merge:
             points, corners = merge_equal_vertices(points, corners)
-        points, corners = np.ascontiguousarray(points), np.ascontiguousarray(corners)
+        points, corners = np.ascontiguousarray(points).view(), np.ascontiguousarray(corners)
+        points.flags.writeable = (
+            False  # arrays that may be written to are another type, for which all is compiled again
+        )
         order, twin = np.empty(corners.size, np.int64), np.empty(corners.size, np.int64)
         order_edges(corners, np.empty(len(points) + 1, np.int64), twin, order)
         if pair_edges(corners, order, twin):

@@ -127,7 +127,7 @@ def clip_to_columns(corners: Floats, index: ColumnIndex, slack: float, out: Patc
                     low, high = lo[column, 2] - slack, hi[column, 2] + slack
                     if bottom > high or top < low:
                         continue
-                    n, now = 3, 0
+                    n, now = len(triangle), 0  # a number here would compile what it is handed to twice
                     for i in range(3):
                         for k in range(3):
                             work[0, i, k] = triangle[i, k]

@@ -97,7 +97,7 @@ def mark_elements(
                     for c in range(3):
                         band[i, c] = whole[i, c]
             else:
-                count = clip_to_half_space(whole, 3, 1, bottom, 1.0, spare)
+                count = clip_to_half_space(whole, len(whole), 1, bottom, 1.0, spare)
                 count = clip_to_half_space(spare, count, 1, top, -1.0, band)
             if count == 0:
                 continue
