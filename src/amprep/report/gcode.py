@@ -8,10 +8,22 @@ import numpy as np
 
 from amprep import __version__
 from amprep.arrays import Floats
+from amprep.checks.gcode import bed, judge, slicing
 from amprep.checks.gcode.found import SlicedObject, SlicedPlate
 from amprep.checks.gcode.judge import NOT_JUDGED, PROMISES, SlicedVerdict
 from amprep.model.counting import counted
 from amprep.report.json_values import violations_json
+
+_REMEDIES = {
+    judge.NUMBER: "open the build file again and delete, copy or split nothing",
+    judge.POSITION: "open the build file again, and let the slicer neither arrange objects nor drop them onto the bed",
+    judge.SIZE: "open the build file again and scale nothing",
+    judge.SHAPE: "open the build file again, and turn, mirror or cut nothing",
+    bed.PROMISE: "choose the printer for which the build was prepared",
+    slicing.OWN_SUPPORTS: "turn off the slicer's own supports, and in Cura 'Drop Down Support Mesh'",
+    slicing.LAYER_HEIGHT: "choose thinner layers in the slicer, or prepare the build for these",
+}
+"""What the user of a slicer can do about a broken promise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +89,9 @@ def refusal_lines(record: GcodeRecord) -> list[str]:
     if record.verdict is None:
         return [f"{record.name} was not compared with a build: {record.build_words}"]
     lines = [f"{record.name} does not print what was prepared ({record.build_title}):"]
-    return lines + [str(violation) for violation in record.verdict.violations]
+    broken = dict.fromkeys(violation.promise for violation in record.verdict.violations)
+    advice = [f"remedy: {_REMEDIES[promise]}" for promise in broken if promise in _REMEDIES]
+    return lines + [str(violation) for violation in record.verdict.violations] + advice
 
 
 def gcode_json(record: GcodeRecord) -> dict[str, Any]:

@@ -39,9 +39,7 @@ def check_own_supports(
             fraction = _fraction_beside(supports, build, origin)
             length *= fraction if fraction > _MOST_BESIDE else 0.0
         if length > _STRAY_MM:
-            message = (
-                f"the slicer added {length / 1000.0:.2f} m of supports of its own; turn its supports off"
-            )
+            message = f"the slicer added {length / 1000.0:.2f} m of supports of its own"
             found.append(Violation(OWN_SUPPORTS, label, message))
     return found
 

@@ -42,6 +42,8 @@ def test_strict_refuses_other_g_code_on_standard_error_and_writes_nothing(build,
     assert ended.exit_code == 1
     assert "a.gcode does not print what was prepared" in ended.stderr
     assert "position: bracket: it is moved by (9, 0) mm" in ended.stderr
+    (remedy,) = [line for line in ended.stderr.splitlines() if "remedy" in line]
+    assert "neither arrange objects" in remedy
     assert (tmp_path / "a.gcode").read_text(encoding="utf-8") == text
     assert not (tmp_path / "a.amprep.json").exists()
 
