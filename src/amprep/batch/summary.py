@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 from amprep.batch.records import STATES, BatchRecord, JobOutcome
 from amprep.files import replacing
+from amprep.model.counting import counted
 from amprep.report.json_values import write_json_file
 from amprep.report.page.cells import Cell, table
 from amprep.report.page.html import static_page
@@ -83,12 +84,13 @@ def page_text(record: BatchRecord, output: Path) -> str:
         Folder of the page, to which its links are relative.
     """
     words = ", ".join(f"{count} {state}" for state, count in record.counts.items())
+    count = counted(len(record.outcomes), "job")
     rows = (tuple(_row(each, output)) for each in record.outcomes)
     body = (
-        f"<header><h1>{len(record.outcomes)} jobs</h1>\n<p class=lead>{escape(words)}; "
+        f"<header><h1>{count}</h1>\n<p class=lead>{escape(words)}; "
         f"{record.seconds:,.0f} s</p></header>\n{table(_HEADINGS, rows)}"
     )
-    return static_page(f"{len(record.outcomes)} jobs - amprep batch", body)
+    return static_page(f"{count} - amprep batch", body)
 
 
 def _row(outcome: JobOutcome, output: Path) -> Iterator[Cell]:

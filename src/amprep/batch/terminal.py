@@ -7,6 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from amprep.batch.records import BatchRecord
+from amprep.model.counting import counted
 
 MOST_ROWS = 40
 """Jobs that the table lists; those that are not done come first."""
@@ -27,6 +28,6 @@ def summary(record: BatchRecord, folder: Path) -> Group:
     left = len(record.outcomes) - len(shown)
     lines = [f"... and {left} more in the summary"] if left else []
     counts = ", ".join(f"{count} {state}" for state, count in record.counts.items())
-    lines += [f"{len(record.outcomes)} jobs: {counts or 'none'}; {record.seconds:.1f} s"]
+    lines += [f"{counted(len(record.outcomes), 'job')}: {counts or 'none'}; {record.seconds:.1f} s"]
     lines += [f"wrote {escape(str(folder / name))}" for name in record.files]
     return Group(table, "", *lines)

@@ -27,8 +27,9 @@ def printing_words(estimates: Sequence[PrintingEstimate]) -> str:
     return (
         f"{'mean ' if len(estimates) > 1 else ''}plate use {100 * use:.1f} %, {_masses(estimates)}, "
         f"{counted(layers, 'layer')}, about {hours_words(recoating + scanning + thermal)} "
-        f"(recoating {recoating:.1f}, scanning {scanning:.1f}"
-        f"{f', heating and cooling {thermal:.1f}' if thermal else ''}){_cost_words(estimates)}"
+        f"(recoating {hours_words(recoating)}, "
+        f"scanning {hours_words(scanning)}"
+        f"{f', heating and cooling {hours_words(thermal)}' if thermal else ''}){_cost_words(estimates)}"
     )
 
 

@@ -19,7 +19,7 @@ ONE = PrintingEstimate(800.0, 40.0, 0.25, 0.1, 500, 1.4, 3.0)
 
 def test_the_line_of_one_build_has_plate_use_mass_layers_and_hours():
     assert printing_words([ONE]) == (
-        "plate use 25.0 %, mass 840.0 g (supports 40.0 g), 500 layers, about 4.4 h (recoating 1.4, scanning 3.0)"
+        "plate use 25.0 %, mass 840.0 g (supports 40.0 g), 500 layers, about 4.4 h (recoating 1.4 h, scanning 3.0 h)"
     )
 
 
@@ -60,7 +60,7 @@ def test_the_report_has_the_sum_of_the_hours():
 def test_heating_cooling_and_cost_are_told_where_they_are_known():
     whole = replace(ONE, heating_h=1.0, cooling_h=0.6, cost=1234.5)
     assert printing_words([whole, whole]).endswith(
-        "about 12.0 h (recoating 2.8, scanning 6.0, heating and cooling 3.2), cost 2,469.00"
+        "about 12.0 h (recoating 2.8 h, scanning 6.0 h, heating and cooling 3.2 h), cost 2,469.00"
     )
     assert total_cost([whole, ONE]) is None
     assert "cost" not in printing_words([whole, ONE])

@@ -40,6 +40,8 @@ def read_printers(path: Path) -> tuple[list[PrinterProfile], list[str]]:
     InputError
         If the file cannot be read or has no printer, or the folder has too many files.
     """
+    if not path.exists():
+        raise InputError(f"{path}: no such file or folder; name a profile of a slicer, or a folder with them")
     read = lru_cache(MOST_KEPT)(lambda path: read_json(path, "a profile", LARGEST_JSON))
     if not path.is_dir():
         return _named_apart(_of_file(path, read)), []

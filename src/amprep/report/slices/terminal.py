@@ -36,8 +36,8 @@ def summary(record: SliceRecord) -> "RenderableType":
             f"{each.lines_mm / 1000:.2f}" if each.lines_mm else "",
         )
     first, last = record.files[0], record.files[-1]
-    shown = first if len(record.files) == 1 else f"{first} to {last} ({len(record.files)} files)"
-    lines: list[RenderableType] = [table, f"written to {escape(str(record.folder))}: {escape(shown)}"]
+    more = "" if first == last else f" to {last} ({len(record.files)} files)"
+    lines: list[RenderableType] = [table, f"wrote {escape(str(record.folder / first))}{escape(more)}"]
     if any(each.has_beams for each in record.bodies):
         lines.append("Beams are sliced as the mesh that stands for them; it may be coarser.")
     return Group(*lines)

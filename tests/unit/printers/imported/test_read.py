@@ -233,6 +233,11 @@ def test_a_value_of_an_inherited_cura_definition_hides_a_default_value(tmp_path)
     assert list(printer.size_mm) == [120, 300, 100]
 
 
+def test_a_missing_file_is_told_apart_from_one_of_another_format(tmp_path):
+    with pytest.raises(InputError, match="no such file or folder"):
+        read_printers(tmp_path / "FILE")
+
+
 def test_the_bed_that_prusaslicer_takes_where_a_printer_states_none_is_told(tmp_path):
     path = saved(tmp_path, "bundle.ini", "[printer:A]\nmax_print_height = 250\n")
     ((printer,), _) = read_printers(path)
