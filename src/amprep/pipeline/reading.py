@@ -11,7 +11,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from amprep.errors import InputError, JobError, MeshError
+from amprep.errors import AmprepError, InputError, JobError, MeshError
 from amprep.geometry.meshes.repair import RepairedMesh, find_defect, repair_mesh
 from amprep.job import Job, PartSettings, apply_part_settings, names_part
 from amprep.model.control import Progress, silent
@@ -23,12 +23,16 @@ from amprep.pipeline.resolve import ResolvedJob
 from amprep.pipeline.stages import Clock
 from amprep.pipeline.unit_question import with_unit_question
 from amprep.sealing.seal import file_digest
+from amprep.workers import share_out
 
 _OF_A_RUN = re.compile(r"\.build-\d+\.")
 """In the names of files that amprep writes."""
 
 _MOST_FILES = 10_000
 """Largest number of files in a folder and its subfolders."""
+
+_REPAIR_WORK = 2.0
+"""Work of repairing a mesh, by its triangles."""
 
 
 def expand_inputs(
@@ -73,16 +77,35 @@ def read_all(
     InputError, MeshError
         For the first file or part that cannot be read.
     """
-    parts: list[Part] = []
+    found, refused = list[Part](), None
     for done, (path, count) in enumerate(files):
         progress(done / len(files), path.name)
-        read_parts, sha256 = read(path), file_digest(path)
-        for part in read_parts:
-            repaired = repair_part(part, allow_surface=allow_surface)
-            quantity = repaired.quantity * (count or 1)
-            parts.append(replace(repaired, quantity=quantity, source_sha256=sha256))
+        try:
+            read_parts, sha256 = read(path), file_digest(path)
+        except AmprepError as error:
+            refused = error  # a mesh before it that is unusable comes first
+            break
+        found += [
+            replace(part, quantity=part.quantity * (count or 1), source_sha256=sha256) for part in read_parts
+        ]
+    parts = repair_parts(found, allow_surface=allow_surface)
+    if refused is not None:
+        raise refused
     progress(1.0, f"{len(parts)} parts")
     return with_unique_names(parts)
+
+
+def repair_parts(parts: Sequence[Part], *, allow_surface: bool) -> list[Part]:
+    """Repair the meshes of parts as `repair_part` does, in several processes if they are large.
+
+    Raises
+    ------
+    MeshError
+        For the first part that `repair_part` refuses.
+    """
+    work = [_REPAIR_WORK * len(part.mesh.triangles) for part in parts]
+    repaired = share_out(lambda number: _repaired(parts[number], allow_surface=allow_surface), work)
+    return [_with_mesh(part, mesh) for part, mesh in zip(parts, repaired, strict=True)]
 
 
 def repair_part(part: Part, *, allow_surface: bool) -> Part:
@@ -93,6 +116,11 @@ def repair_part(part: Part, *, allow_surface: bool) -> Part:
     MeshError
         When the mesh is unusable, or it is not a solid and surfaces are not allowed.
     """
+    return _with_mesh(part, _repaired(part, allow_surface=allow_surface))
+
+
+def _repaired(part: Part, *, allow_surface: bool) -> RepairedMesh:
+    """Return the repaired mesh of a part; for errors, see `repair_part`."""
     defect = find_defect(part.mesh.vertices, part.mesh.triangles)
     if defect:
         raise MeshError(f"{_where(part)}: {defect}; export it again from the program that made it")
@@ -100,7 +128,7 @@ def repair_part(part: Part, *, allow_surface: bool) -> Part:
     if repaired.problem and (not allow_surface or len(repaired.triangles) == 0):
         advice = "repair it, or use --allow-surface to accept it as a surface"
         raise MeshError(f"{_where(part)} is not a solid: {repaired.problem}; {advice}")
-    return _with_mesh(part, repaired)
+    return repaired
 
 
 def warnings_about(parts: Sequence[Part]) -> list[str]:
@@ -275,7 +303,7 @@ def read_job(
     with clock.stage("read") as progress:
         files = expand_inputs([(entry.path, entry.quantity) for entry in job.inputs], resolved.host.suffixes)
         parts = read_all(files, resolved.read, allow_surface=allow_surface, progress=progress)
-        parts += [repair_part(part, allow_surface=allow_surface) for part in more]
+        parts += repair_parts(more, allow_surface=allow_surface)
         parts = [with_unit_question(part, job) for part in parts]
         parts = apply_part_settings(with_unique_names(parts), job)
         parts = with_unique_names(labelled(with_region_files(parts, job, resolved.read), job.labels))

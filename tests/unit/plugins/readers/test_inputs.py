@@ -3,7 +3,8 @@
 import pytest
 import trimesh
 
-from amprep.errors import InputError
+from amprep import workers
+from amprep.errors import AmprepError, InputError
 from amprep.model import Mesh, Part
 from amprep.pipeline import reading
 from amprep.pipeline.reading import expand_inputs, read_all, with_unique_names
@@ -93,3 +94,33 @@ def test_reading_settles_counts_and_reports(tmp_path):
         ("cube-2", 1, 6.0),
     ]
     assert heard == [(0.0, "cube.stl"), (0.5, "cube.stl"), (1.0, "2 parts")]
+
+
+def test_meshes_are_repaired_by_several_processes_with_the_same_result(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "_WORTH_IT", 0.0)
+    paths = [tmp_path / f"{name}.stl" for name in "abcd"]
+    for size, path in enumerate(paths, start=1):
+        box = trimesh.creation.box((size, size, size))
+        box.invert()  # to be repaired
+        box.export(path)
+    found = []
+    for count in (1, 3):
+        with workers.allowed(count):
+            found.append(read_all([(path, None) for path in paths], read_mesh_file))
+    for one, other in zip(*found, strict=True):
+        assert one.notes
+        assert (one.name, one.notes, one.volume_mm3) == (other.name, other.notes, other.volume_mm3)
+        assert (one.mesh.vertices == other.mesh.vertices).all()
+        assert (one.mesh.triangles == other.mesh.triangles).all()
+        assert not other.mesh.vertices.flags.writeable
+
+
+def test_the_first_file_that_is_wrong_is_refused(tmp_path):
+    (tmp_path / "a.stl").write_text("solid\nendsolid")
+    box = trimesh.creation.box((1, 1, 1))
+    box.update_faces([True] * 8 + [False] * 4)
+    box.export(tmp_path / "open.stl")
+    with pytest.raises(AmprepError, match=r"open.* is not a solid"):
+        read_all([(tmp_path / "open.stl", None), (tmp_path / "a.stl", None)], read_mesh_file)
+    with pytest.raises(AmprepError, match=r"a\.stl"):
+        read_all([(tmp_path / "a.stl", None), (tmp_path / "open.stl", None)], read_mesh_file)
