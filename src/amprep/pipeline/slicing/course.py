@@ -23,6 +23,9 @@ MOST_LAYERS = 200_000
 MOST_PICTURES = 100
 """SVG files of a build; of more layers, equally spaced ones are drawn."""
 
+_MOST_MESSAGES = 20
+"""Messages of progress while layers are cut; a log has a line for each."""
+
 
 class _Tally:
     """Adds up the areas of the bodies by layer, reports progress, and ends at a deadline."""
@@ -131,8 +134,9 @@ def _checked(build: Build, layer_mm: float, form: str) -> int:
 def _counted(bodies: Sequence[SliceBody], layer_mm: float, tally: _Tally) -> Iterator[Layer]:
     """Yield the layers of all bodies, and count them."""
     layers = tally.areas.shape[1]
+    shown = max(layers // _MOST_MESSAGES, 1)
     for layer in cut_layers(bodies, layer_mm, layers):
-        tally.show(layer.number / layers, f"layer {layer.number + 1} of {layers}")
+        tally.show(layer.number / layers, f"layer {layer.number // shown * shown + 1} of {layers}")
         for body, contours, own in layer.contours:
             tally.count(body, contours, own)
         yield layer
