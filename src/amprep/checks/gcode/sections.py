@@ -105,8 +105,15 @@ def compare_layers(
 def _jumps(solids: Sequence["Manifold"], height: float) -> bool:
     """Tell whether a level face is so near that the slicer may have cut above it as well as below it."""
     below, above = (_united([each.slice(height + side) for each in solids]) for side in (-_LEVEL, _LEVEL))
-    changed = (above - below) + (below - above)
-    return not changed.offset(-_SLIVER / 2.0).is_empty()
+    return is_wide((above - below) + (below - above), _SLIVER)
+
+
+def is_wide(region: "CrossSection", width: float) -> bool:
+    """Tell whether a region is somewhere at least so wide (mm).
+
+    Each piece is judged by itself: a sliver that rounding left makes the inward offset of all pieces empty.
+    """
+    return any(not piece.offset(-width / 2.0).is_empty() for piece in region.decompose())
 
 
 def line_points(lines: Float32s) -> tuple[Floats, Int64s]:
