@@ -67,13 +67,16 @@ class PreparePlate(orca.script.ScriptPluginCapabilityBase):
             if not names:
                 return orca.ExecutionResult.skipped("There is no printable model.")
             ended = self._run(settings, folder)
+            # the files may have been there before the user closed the dialog
+            if ended.cancelled and ended.code != 0:
+                return orca.ExecutionResult.skipped("Cancelled; nothing was written.")
+            if ended.code not in (0, 1):
+                return _failure(ended.error)
+            return _show(json.loads(ended.output), folder)
         except OSError as error:
-            return _failure(str(error.strerror or error))
-        if ended.cancelled:
-            return orca.ExecutionResult.skipped("Cancelled; nothing was written.")
-        if ended.code not in (0, 1):
-            return _failure(ended.error)
-        return _show(json.loads(ended.output), folder)
+            return _failure(f"{error.filename or settings['program']}: {error.strerror or error}")
+        except (ValueError, KeyError, IndexError, TypeError):
+            return _failure("amprep printed nothing that this plugin can read; update both.")
 
     def _run(self, settings: dict[str, str], folder: Path) -> Ended:
         ui = orca.host.ui
@@ -230,10 +233,11 @@ def progress_of(line: str) -> tuple[str, float] | None:
 def _show(report: dict[str, Any], folder: Path) -> Any:
     """Tell where the builds are and what must be fixed, and open the report if the user wants it."""
     builds = [str(folder / Path(build["file"]).name) for build in report["builds"] if build["file"]]
-    problems = [f"{len(report['unplaced'])} not placed"] if report["unplaced"] else []
-    problems += (
-        [f"{report['triage']['must_fix']} findings must be fixed"] if report["triage"]["must_fix"] else []
-    )
+    counts = {
+        "Parts that were not placed": len(report["unplaced"]),
+        "Must be fixed": report["triage"]["must_fix"],
+    }
+    problems = [f"{what}: {count}" for what, count in counts.items() if count]
     text = "\n".join(
         [*problems, "Open these files in OrcaSlicer, one for each plate:", *builds, "", "Open the report?"]
     )

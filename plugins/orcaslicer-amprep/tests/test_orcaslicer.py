@@ -61,6 +61,14 @@ class Dialog:
         return self.left > 0
 
 
+class ClosedAtTheEnd(Dialog):
+    """A progress dialog that the user closes when it shows progress."""
+
+    def update(self, value, message=""):
+        self.shown.append((value, message))
+        return False
+
+
 class Orca(ModuleType):
     """The module `orca` with a model, a printer and a configuration."""
 
@@ -190,7 +198,29 @@ def test_a_program_that_is_missing_is_an_error(orca, tmp_path):
     orca.config = {"program": str(tmp_path / "missing")}
     kind, text = execute(orca)
     assert kind == "error"
-    assert "No such file" in text
+    assert text == f"{tmp_path / 'missing'}: No such file or directory"
+
+
+@posix
+def test_an_answer_that_is_no_report_is_an_error(orca, tmp_path):
+    orca.objects = [model_object("box", [volume((1, 1, 1))], [instance((0, 0, 0))])]
+    orca.config = {"program": program(tmp_path, "print('{}')"), "printer": "EOS M290"}
+    kind, text = execute(orca)
+    assert (kind, "update both" in text) == ("error", True)
+
+
+@posix
+def test_a_build_that_was_written_before_the_dialog_closed_is_told(orca, tmp_path):
+    report = {"builds": [{"file": "plate.build-1.3mf"}], "unplaced": [], "triage": {"must_fix": 0}}
+    step = {"stage": "write", "fraction": 1.0, "message": ""}
+    code = (
+        "import json, signal, sys\nsignal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
+        f"sys.stderr.write(json.dumps({step!r}) + chr(10))\nprint(json.dumps({report!r}))"
+    )
+    orca.objects = [model_object("box", [volume((1, 1, 1))], [instance((0, 0, 0))])]
+    orca.config = {"program": program(tmp_path, code), "printer": "EOS M290", "folder": str(tmp_path)}
+    orca.dialog = ClosedAtTheEnd()
+    assert execute(orca)[0] == "success"
 
 
 @posix
@@ -200,7 +230,7 @@ def test_what_must_be_fixed_is_said(orca, tmp_path):
     code = f"import json, sys\nprint(json.dumps({report!r}))\nsys.exit(1)"
     orca.config = {"program": program(tmp_path, code), "printer": "EOS M290", "folder": str(tmp_path)}
     assert execute(orca)[0] == "success"
-    assert orca.messages[0].startswith("1 not placed\n2 findings must be fixed\n")
+    assert orca.messages[0].startswith("Parts that were not placed: 1\nMust be fixed: 2\n")
     assert str(tmp_path / "plate.build-1.3mf") in orca.messages[0]
 
 

@@ -138,8 +138,11 @@ def margin_of(build: Build, part: int) -> float:
 
 
 def _is_thin(region: "CrossSection") -> bool:
-    """Tell whether a region is empty, or so thin that rounding explains it."""
-    return bool(region.is_empty() or region.offset(-TOLERANCE / 2.0).is_empty())
+    """Tell whether a region is empty, or so thin that rounding explains it.
+
+    Each piece is judged by itself: a sliver that rounding left makes the inward offset of all pieces empty.
+    """
+    return all(piece.offset(-TOLERANCE / 2.0).is_empty() for piece in region.decompose())
 
 
 def _boxes_meet(one: "CrossSection", other: "CrossSection") -> bool:
