@@ -100,15 +100,19 @@ def _program(commands: tuple[str, ...]) -> str:
 
 
 def _plugins() -> dict[str, str]:
-    """Return the number of offers of each plugin that is not built in, and the warnings."""
+    """Return the offers of each plugin by kind, and the warnings."""
     from amprep.host import Host
+    from amprep.host.offers import KINDS
 
     host = Host.load()
     offers: dict[str, list[str]] = {}
-    for kind in ("reader", "volume", "packer", "router", "cell"):
+    for kind in KINDS:
+        by_origin: dict[str, list[str]] = {}
         for name, listed in host.offers(kind).items():
-            offers.setdefault("built-in" if listed.builtin else listed.origin, []).append(name)
-    found = {origin: ", ".join(sorted(names)) for origin, names in offers.items()}
+            by_origin.setdefault("built-in" if listed.builtin else listed.origin, []).append(name)
+        for origin, names in by_origin.items():
+            offers.setdefault(origin, []).append(f"{KINDS[kind].noun}s {', '.join(sorted(names))}")
+    found = {origin: "; ".join(kinds) for origin, kinds in offers.items()}
     return found | {f"warning {number}": text for number, text in enumerate(host.warnings, 1)}
 
 

@@ -21,7 +21,8 @@ def test_packages_slicers_plugins_profiles_and_kernels_are_named(monkeypatch, tm
     assert found["packages"]["numba"] == numba.__version__
     assert "pytest" not in found["packages"]
     assert found["slicers"]["PrusaSlicer"] == f"2.5.0 ({slicer})"
-    assert "extreme-points" in found["plugins"]["built-in"]
+    assert "packers annealing, auto, " in found["plugins"]["built-in"]
+    assert "support routers auto, " in found["plugins"]["built-in"]
     assert found["profiles"]["printers"].endswith("printers)")
     done, _, total = found["numeric code"]["compiled functions"].partition(";")[0].partition(" of ")
     assert 0 <= int(done) <= int(total)
