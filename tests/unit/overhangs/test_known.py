@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from tests.shared.layouts import box, placed
 
+from amprep import workers
+from amprep.model import Stop
 from amprep.model.supports.rules import SupportRules
 from amprep.overhangs.known import KnownOverhangs
 from amprep.overhangs.of_part import overhangs_of
@@ -59,3 +61,33 @@ def test_another_height_rotation_or_setting_is_searched_again(monkeypatch):
         known.of(each)
     assert len(known.of(replace(at((0, 0, 3)), part=none)).overhangs.faces) == 0
     assert len(calls) == 4
+
+
+def test_several_processes_find_the_same_overhangs_once_for_each_orientation(monkeypatch):
+    monkeypatch.setattr(workers, "_WORTH_IT", 0.0)
+    parts = [
+        at((0, 0, 3)),
+        at((0, 0, 4)),
+        at((9, 9, 3)),
+        at((0, 0, 5)),
+        at((0, 0, 3), np.diag([1, -1, -1.0])),
+    ]
+    known = KnownOverhangs(LIMITS)
+    with workers.allowed(3):
+        known.find(parts, Stop())
+    calls = counted(monkeypatch)
+    for part in parts:
+        found, searched = known.of(part), overhangs_of(part, LIMITS)
+        assert np.allclose(found.mesh.vertices, searched.mesh.vertices)
+        assert found.overhangs.faces.tobytes() == searched.overhangs.faces.tobytes()
+        assert len(found.overhangs.regions) == len(searched.overhangs.regions)
+    assert calls == []
+    assert not known.of(parts[0]).mesh.vertices.flags.writeable  # else kernels would be compiled again
+
+
+def test_what_is_not_found_before_an_end_is_found_when_it_is_asked_for(monkeypatch):
+    known = KnownOverhangs(LIMITS)
+    known.find([at((0, 0, 3))], Stop.after(0.0))
+    calls = counted(monkeypatch)
+    assert len(known.of(at((0, 0, 3))).overhangs.faces)
+    assert len(calls) == 1

@@ -8,7 +8,7 @@ import numpy as np
 from amprep.arrays import Floats
 from amprep.checks.packing.volumes_placed import check_packing
 from amprep.job import Job
-from amprep.model import Orientations, Packing, PackingProblem, Part, Stop
+from amprep.model import Item, Orientations, Packing, PackingProblem, Part, Placement, Stop
 from amprep.overhangs.known import KnownOverhangs
 from amprep.pipeline.packing.placing import placed_part
 from amprep.repacking.widening import widened
@@ -64,16 +64,20 @@ def find_reserves(
     found: dict[int, Reserve] = {}
     if not job.supports.enabled or job.supports.territory != "own" or problem.stacking:
         return found
-    known: set[tuple[int, bytes]] = set()
+    turned: dict[tuple[int, bytes], tuple[Item, Placement]] = {}
     for placement in (each for build in packing.builds for each in build):
         item = problem.items[placement.item]
-        part, key = parts[item.part], (item.part, placement.rotation.tobytes())
-        if key in known or part.fixed is not None or stop():
-            continue
-        known.add(key)
-        placed = placed_part(part.name, part, item, placement)
-        own = margin_of(placed, job.supports)
-        margin = needed_margin(placed, overhangs.of(placed), job.supports)
+        if parts[item.part].fixed is None:
+            turned.setdefault((item.part, placement.rotation.tobytes()), (item, placement))
+    placed = [
+        placed_part(parts[item.part].name, parts[item.part], item, each) for item, each in turned.values()
+    ]
+    overhangs.find(placed, stop)
+    for part, (item, placement) in zip(placed, turned.values(), strict=True):
+        if stop():
+            break
+        own = margin_of(part, job.supports)
+        margin = needed_margin(part, overhangs.of(part), job.supports)
         if margin > max(own, found[item.part].margin if item.part in found else 0.0):
             found[item.part] = Reserve(margin, own, placement.rotation)
     return found
