@@ -74,14 +74,19 @@ def _too_near_others(build: Build, stop: Stop) -> list[Violation]:
         return found
     meshes = [placed.mesh for placed in build.parts]
     boxes = [mesh.bounds for mesh in meshes]
+    low, high = (np.array([box[side] for box in boxes]).reshape(-1, 3) for side in (0, 1))
+    most = max((_clearance(build, index) for index in range(len(boxes))), default=0.0)
     for body in build.supports:
-        for index, placed in enumerate(build.parts):
+        least_corner, greatest_corner = body.mesh.bounds
+        # no distance that is granted is more than the greatest clearance
+        near = ((low <= greatest_corner + most) & (high >= least_corner - most)).all(axis=1)
+        for index in np.flatnonzero(near).tolist():
             if stop():
                 return found
             if index not in body.parts:
                 least = _granted(build, body, index, boxes) - BORDER_TOLERANCE
                 if least > CONTACT_TOLERANCE:
-                    found += _too_near(body, placed, meshes[index], least)
+                    found += _too_near(body, build.parts[index], meshes[index], least)
     return found
 
 
