@@ -20,6 +20,8 @@ from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.supports.xy_distance import check_xy_distance
 from amprep.checks.violation import Violation
 from amprep.model import Build, Progress, Stop, Unsupported, silent
+from amprep.model.counting import counted
+from amprep.pipeline.verifying.copies import TOLERANCE, find_copies
 from amprep.pipeline.verifying.extents import extents_of, removal_extents
 from amprep.pipeline.verifying.nearby import nearby
 from amprep.workers import share_out
@@ -98,6 +100,8 @@ def verify_build(
 ) -> Verification:
     """Return every broken promise: of parts, of supports, of overhangs without support, and of limits of supports.
 
+    Of equal copies with equal supports, those of one are judged; if that breaks a promise, those of all.
+
     Parameters
     ----------
     build
@@ -115,6 +119,18 @@ def verify_build(
         Called before each group of judges.
     """
     stop = stop or Stop()
+    like = find_copies(build) if only is None and not removability else {}
+    if like:
+        first = verify_build(
+            build,
+            printed=printed,
+            removability=removability,
+            only=sorted(set(range(len(build.parts))) - set(like)),
+            stop=stop,
+            progress=progress,
+        )
+        if first.ok or stop():
+            return replace(first, extent=first.extent | _of_copies(first.extent, len(like)))
     judges = _judges(build, only, stop, removability=removability)
     judged = share_out(
         lambda number: judges[number].judge()._replace(is_late=stop()),
@@ -133,6 +149,17 @@ def verify_build(
     own = {promise: words for each in judged for promise, words in (each.extent or {}).items()}
     extent = extents_of(build, pairs, printed) | own | removal_extents(removability)
     return Verification((*seen, *found), pairs, extent)
+
+
+def _of_copies(extent: Mapping[str, str], count: int) -> dict[str, str]:
+    """Return for the promises of supports what was judged, if so many parts were compared with judged ones instead."""
+    promises = (*_OF_BODIES, islands.PROMISE, *limits.PROMISES, coverage.PROMISE)
+    compared = f"those of {counted(count, 'copy', 'copies')} equal judged ones to {TOLERANCE:g} mm"
+    return {
+        each: f"{extent[each]}; {compared}"
+        for each in promises
+        if each in extent and not extent[each].startswith(limits.NOT_JUDGED)
+    }
 
 
 class _Judged(NamedTuple):
