@@ -1,4 +1,4 @@
-"""Find narrow places along the outlines of a region: waists, and places that no disc near them covers."""
+"""Find narrow places along the outlines of regions: waists, and places that no disc near them covers."""
 
 from typing import NamedTuple
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s
 from amprep.kernels.helper import kernel, uncounted
+from amprep.kernels.supports.narrow_ends import OutlineTurns
+from amprep.kernels.supports.outlines import PlaneOutlines
 
 _STATIONS = (0.0, 0.5, 1.0, 1.4, 2.2)
 """Distances (in widths) along the outline, both ways from a place, of the points that discs must cover."""
@@ -29,8 +31,12 @@ _TOUCH = 1e-6
 """Distance (mm) up to which a vertex is on a side."""
 
 
+_OPPOSITE = 0.7
+"""Cosine of the largest angle at which the shortest line across a waist meets the other side."""
+
+
 class OutlineSides(NamedTuple):
-    """The outlines of a region, with a grid of squares that finds the sides near a point.
+    """The outlines in a plane, with a grid of squares that finds the sides near a point.
 
     Attributes
     ----------
@@ -56,9 +62,25 @@ class OutlineSides(NamedTuple):
     side: Int64s
 
 
+class SideGrids(NamedTuple):
+    """The grids of the planes: least corner ``(p, 2)`` mm, size of squares ``(p,)`` mm, numbers of squares ``(p, 2)``.
+
+    The other fields are room for one grid, see `OutlineSides`: `corner` and `shape` ``(2,)``, `first` for the most
+    squares of a plane and two, and `side` for the most pieces of sides in a plane.
+    """
+
+    low: Floats
+    square: Floats
+    squares: Int64s
+    corner: Floats
+    shape: Int64s
+    first: Int64s
+    side: Int64s
+
+
 @kernel
 def keep_narrow_places(
-    outlines: OutlineSides, chosen: Bools, inwards: Bools, width: float, opposite: float
+    planes: PlaneOutlines, turns: OutlineTurns, grids: SideGrids, chosen: Bools, inwards: Bools, width: float
 ) -> None:
     """Add the corners at waists to the chosen vertices, and drop those that discs near them cover on all sides.
 
@@ -66,33 +88,85 @@ def keep_narrow_places(
     points on the outline are looked at, at the vertex and up to two widths beside it. Near each a disc is sought: it
     begins inside, and moves away from the nearest side until it fits. A fin longer than a width has its end beyond the
     discs. A waist that is so long that discs at its two ends do not cover it has such a point within two widths of its
-    corner.
+    corner. Sides are listed in a grid, only in the planes in which there are such vertices.
 
     Parameters
     ----------
-    outlines
-        Outlines of the region.
+    planes, turns
+        Outlines of the regions in all planes, and the neighbours of their vertices.
+    grids
+        The grids, with room for one of them.
     chosen
         ``(n,)`` in and out: the vertices that may be narrow ends; those and the waists that are not covered.
     inwards
         ``(n,)`` vertices at which the outline turns inwards, which may be corners of waists.
     width
         Least width, mm.
-    opposite
-        Cosine of the largest angle at which the shortest line across a waist meets the other side.
     """
-    for vertex in range(len(chosen)):
-        if not chosen[vertex] and not (inwards[vertex] and _is_waist(outlines, vertex, width, opposite)):
+    for plane in range(len(planes.begin) - 1):
+        begin, end = planes.first[planes.begin[plane]], planes.first[planes.begin[plane + 1]]
+        vertex = begin
+        while vertex < end and not chosen[vertex] and not inwards[vertex]:
+            vertex += 1
+        if vertex == end:
             continue
-        chosen[vertex] = False
-        disc_x, disc_y = np.inf, np.inf
-        for k in range(2 * len(_STATIONS) - 1):
-            forwards = k < len(_STATIONS)
-            distance = _STATIONS[k if forwards else k - len(_STATIONS) + 1] * width
-            disc_x, disc_y = _disc_at(outlines, vertex, distance, forwards, width, disc_x, disc_y)
-            if disc_x == np.inf:
-                chosen[vertex] = True
-                break
+        _list_sides(planes.points, turns, grids, plane, begin, end)
+        outlines = OutlineSides(
+            planes.points,
+            turns.after,
+            turns.before,
+            grids.corner,
+            grids.square[plane],
+            grids.shape,
+            grids.first,
+            grids.side,
+        )
+        for vertex in range(begin, end):
+            if not chosen[vertex] and not (inwards[vertex] and _is_waist(outlines, vertex, width)):
+                continue
+            chosen[vertex] = False
+            disc_x, disc_y = np.inf, np.inf
+            for k in range(2 * len(_STATIONS) - 1):
+                forwards = k < len(_STATIONS)
+                distance = _STATIONS[k if forwards else k - len(_STATIONS) + 1] * width
+                disc_x, disc_y = _disc_at(outlines, vertex, distance, forwards, width, disc_x, disc_y)
+                if disc_x == np.inf:
+                    chosen[vertex] = True
+                    break
+
+
+@uncounted
+def _list_sides(
+    points: Floats, turns: OutlineTurns, grids: SideGrids, plane: int, begin: int, end: int
+) -> None:
+    """List the sides of a plane in the squares of its grid, in pieces that are at most half as long as a square."""
+    first, count = grids.first, grids.squares[plane, 0] * grids.squares[plane, 1]
+    for axis in range(2):
+        grids.corner[axis], grids.shape[axis] = grids.low[plane, axis], grids.squares[plane, axis]
+    for place in range(count + 2):
+        first[place] = 0
+    for listing in range(2):
+        for vertex in range(begin, end):
+            pieces = max(int(np.ceil(2.0 * turns.length[vertex] / grids.square[plane])), 1)
+            for number in range(pieces):
+                place = _square_of(points, turns.after[vertex], vertex, (number + 0.5) / pieces, grids, plane)
+                if listing:
+                    grids.side[first[place + 1]] = vertex
+                    first[place + 1] += 1
+                else:
+                    first[place + 2] += 1
+        for place in range(0 if listing else count):
+            first[place + 2] += first[place + 1]
+
+
+@uncounted
+def _square_of(points: Floats, after: int, vertex: int, part: float, grids: SideGrids, plane: int) -> int:
+    """Return the number of the square in which a point of a side is, at a fraction of its length."""
+    square = grids.square[plane]
+    x = points[vertex, 0] + part * (points[after, 0] - points[vertex, 0])
+    y = points[vertex, 1] + part * (points[after, 1] - points[vertex, 1])
+    column, row = int((x - grids.low[plane, 0]) / square), int((y - grids.low[plane, 1]) / square)
+    return row * grids.squares[plane, 0] + column
 
 
 @uncounted
@@ -120,7 +194,7 @@ def _to_side(outlines: OutlineSides, side: int, x: float, y: float) -> tuple[flo
 
 
 @uncounted
-def _is_waist(outlines: OutlineSides, vertex: int, width: float, opposite: float) -> bool:
+def _is_waist(outlines: OutlineSides, vertex: int, width: float) -> bool:
     """Tell whether a side opposite to a vertex is nearer than the width."""
     x, y = outlines.points[vertex, 0], outlines.points[vertex, 1]
     margin = width + outlines.square / 4.0
@@ -131,7 +205,7 @@ def _is_waist(outlines: OutlineSides, vertex: int, width: float, opposite: float
         for k in range(outlines.first[place + left], outlines.first[place + right + 1]):
             dx, dy, along_x, along_y = _to_side(outlines, outlines.side[k], x, y)
             distance = np.hypot(dx, dy)
-            if _TOUCH < distance < width and dx * along_y - dy * along_x > opposite * distance:
+            if _TOUCH < distance < width and dx * along_y - dy * along_x > _OPPOSITE * distance:
                 return True
     return False
 

@@ -11,14 +11,9 @@ from amprep.geometry.connectors.least_width import LeastSection
 from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.slicing.contours import SlicedMesh
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.thin_rests import (
-    Contours,
-    are_in,
-    bounds_of,
-    contours_at,
-    contours_of,
-    find_thin_rests,
-)
+from amprep.geometry.supports.narrow_ends import narrow_ends, narrow_ends_in
+from amprep.geometry.supports.outlines import Contours, SimplifiedOutlines, contours_of
+from amprep.geometry.supports.thin_rests import are_in, bounds_of, find_thin_rests
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -49,6 +44,9 @@ _WINDOW = 8.0
 
 _BORDER = 2.0
 """Distance (in widths) from the border of such a window in which narrow ends are not looked at."""
+
+_BLOCK = 16
+"""Number of layers above and below a layer that are cut with it."""
 
 _ROUNDS = 3
 """Largest number of rounds; cuts may leave other thin places."""
@@ -117,11 +115,11 @@ def without_thin_rests(
     even = _heights(solid)
     places = [_Place(height) for height in even] + _beside_holes(*holes, even, _WINDOW * least.width)
     for _ in range(_ROUNDS):
-        finder = _RestFinder(solid, parts, least, tip_height, [place.height for place in places])
+        finder = _RestFinder(solid, parts, least, tip_height, places)
         cuts: dict[int, CrossSection] = {}
-        for number, place in enumerate(places):
-            layer, waists = round(place.height / _FINE), place.around is not None or number % _EACH_WAIST == 0
-            if rest := _beyond(finder.rests(place, waists=waists), cuts.get(layer)):
+        for place in places:
+            layer = round(place.height / _FINE)
+            if rest := _beyond(finder.rests(place), cuts.get(layer)):
                 _collect(finder, layer, rest, cuts)
         if not cuts:
             break
@@ -219,22 +217,28 @@ def _heights(solid: "Manifold") -> list[float]:
     return np.sort(np.concatenate([even, chosen])).tolist()  # type: ignore[no-any-return]
 
 
-class _SupportContours:
-    """The contours of a solid at some heights (mm) and at the heights of all layers, for which it is cut once."""
+class _SupportSections:
+    """The sections of a solid, which is cut at the heights of several at once."""
 
-    def __init__(self, solid: "Manifold", heights: Sequence[float]) -> None:
-        low, high = np.array(solid.bounding_box())[[2, 5]] / _FINE
-        layers = np.arange(np.floor(low) - 1, np.ceil(high) + 2) * _FINE
+    def __init__(self, solid: "Manifold") -> None:
         self._mesh = SlicedMesh(*arrays_of(solid))
-        self._cut = self._mesh.contours(np.unique(np.concatenate([heights, layers])))
+        self._known: dict[float, tuple[SimplifiedOutlines, int]] = {}
         self.at = cache(self._at)
 
+    def cut(self, heights: Floats) -> SimplifiedOutlines:
+        """Cut the solid at ascending heights ``(k,)`` mm, and return the outlines."""
+        outlines = SimplifiedOutlines.of(self._mesh.contours(heights))
+        self._known.update((height, (outlines, plane)) for plane, height in enumerate(heights.tolist()))
+        return outlines
+
     def _at(self, height: float) -> Contours:
-        """Return the contours at a height, mm."""
-        plane = int(np.searchsorted(self._cut.heights, height))
-        if plane < len(self._cut.heights) and self._cut.heights[plane] == height:
-            return contours_at(self._cut, plane)
-        return contours_at(self._mesh.contours(np.array([height])), 0)
+        """Return the contours at a height, mm. The layers near it are cut with it."""
+        if height not in self._known:
+            layers = (round(height / _FINE) + np.arange(-_BLOCK, _BLOCK + 1)) * _FINE
+            new = [each for each in layers.tolist() if each not in self._known]
+            self.cut(np.unique([*new, height]))
+        outlines, plane = self._known[height]
+        return outlines.at(plane)
 
 
 class _RestFinder:
@@ -246,12 +250,13 @@ class _RestFinder:
         parts: "Sequence[Manifold]",
         least: LeastSection,
         tip_height: float,
-        heights: Sequence[float],
+        places: Sequence[_Place],
     ) -> None:
         self._parts, self._tip_height = parts, tip_height
         self._width = max(least.width - _LESS, 0.0)
         self._area = max(least.area - 2.0 * _LESS * least.width, 0.0)
-        self._sections = _SupportContours(solid, heights)
+        self._sections = _SupportSections(solid)
+        self._ends = self._find_ends(places)
         self._part_section = cache(lambda number, height: parts[number].slice(height))
         self._grown_section = cache(
             lambda number, height: contours_of(parts[number].slice(height).offset(_TOUCH))
@@ -264,19 +269,39 @@ class _RestFinder:
         margin = _WINDOW * self._width
         return _Place(height, (low - margin, high + margin))
 
-    def rests(self, place: _Place, *, waists: bool = True) -> "CrossSection | None":
+    def _find_ends(self, places: Sequence[_Place]) -> dict[float, Floats]:
+        """Cut the solid at the heights of places, and return the narrow ends in those that are whole sections."""
+        whole = np.unique([place.height for place in places if place.around is None])
+        self._sections.cut(np.unique([place.height for place in places if place.around is not None]))
+        waists = [number % _EACH_WAIST == 0 for number in range(len(whole))]
+        found = narrow_ends_in(self._sections.cut(whole), waists, self._width, self._area)
+        return {float(whole[plane]): ends for plane, ends in found.items()}
+
+    def _narrow_ends(self, place: _Place, region: Contours) -> Floats:
+        """Return the narrow ends ``(k, 2)`` mm in a place."""
+        if place.around is None:
+            return self._ends.get(place.height, np.empty((0, 2)))
+        return narrow_ends(region, self._width, self._area, lambda points: self._are_judged(points, place))
+
+    def rests(self, place: _Place) -> "CrossSection | None":
         """Return what is too thin in a section; None for nothing. Near the border of the place nothing is judged."""
+        if place.around is None and place.height not in self._ends:
+            return None
         region = self._sections.at(place.height)
         if place.around is not None:
             region = contours_of(region.inside(*place.around))
+        ends = self._narrow_ends(place, region)
+        ends = ends[~self._are_held(ends, place.height)]
+        if not len(ends):
+            return None
         found = find_thin_rests(
             region,
+            ends,
             self._width,
             self._area,
             lambda rest: self._is_kept(rest, place.height),
-            lambda ends: self._are_held(ends, place.height),
+            lambda points: self._are_held(points, place.height),
             lambda points: self._are_judged(points, place),
-            waists=waists,
         )
         if found and place.around is not None:
             low, high = place.around
