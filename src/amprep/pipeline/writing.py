@@ -101,7 +101,7 @@ def write_reports(record: RunRecord, outputs: OutputFolder, clock: Clock) -> Run
 
         names = [outputs.name(outputs.of_build(number, "png")) for number in range(1, len(record.builds) + 1)]
         work = [_PICTURE_WORK * _triangles(each.build) for each in record.builds]
-        share_out(draw, work, done=_counted(progress, len(names) + 1, "pictures"))
+        share_out(draw, work, done=_counted(progress, len(names), "pictures"))
         outputs.add(names)
         builds = [replace(each, picture=name) for each, name in zip(record.builds, names, strict=True)]
         record = replace(record, builds=tuple(builds))

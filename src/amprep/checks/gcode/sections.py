@@ -9,6 +9,7 @@ import numpy as np
 from amprep.arrays import Bools, Float32s, Floats, Int64s
 from amprep.checks.gcode.found import SlicedLayer
 from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.plates.inward import is_wide
 from amprep.model.mesh import Mesh
 
 if TYPE_CHECKING:
@@ -106,14 +107,6 @@ def _jumps(solids: Sequence["Manifold"], height: float) -> bool:
     """Tell whether a level face is so near that the slicer may have cut above it as well as below it."""
     below, above = (_united([each.slice(height + side) for each in solids]) for side in (-_LEVEL, _LEVEL))
     return is_wide((above - below) + (below - above), _SLIVER)
-
-
-def is_wide(region: "CrossSection", width: float) -> bool:
-    """Tell whether a region is somewhere at least so wide (mm).
-
-    Each piece is judged by itself: a sliver that rounding left makes the inward offset of all pieces empty.
-    """
-    return any(not piece.offset(-width / 2.0).is_empty() for piece in region.decompose())
 
 
 def line_points(lines: Float32s) -> tuple[Floats, Int64s]:

@@ -21,6 +21,7 @@ from amprep.checks.supports.shapes import STRAIGHT, KnownShapes
 from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation, place_words
 from amprep.geometry.meshes.manifold import accepted, as_manifold
+from amprep.geometry.plates.inward import shrunk
 from amprep.geometry.slicing.outlines import outlines_of
 from amprep.model.build import Build, BuildSettings, Lattice, PlacedPart, SupportBody
 from amprep.model.control import Stop
@@ -306,7 +307,7 @@ class _Section:
         """Return what of a region the discs that fit in it and around it leave, apart from corners."""
         from manifold3d import JoinType
 
-        discs = around.offset(-self.wall / 2.0)
+        discs = shrunk(around, self.wall / 2.0)
         return region - discs.offset(self.limits.reach, JoinType.Round, 2.0, _SEGMENTS)
 
     @cached_property

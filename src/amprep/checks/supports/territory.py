@@ -11,6 +11,7 @@ from amprep.checks.supports.solids import KnownSolids
 from amprep.checks.violation import Violation
 from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import accepted
+from amprep.geometry.plates.inward import is_wide, shrunk
 from amprep.model.build import Build, SupportBody
 from amprep.model.control import Stop
 from amprep.model.mesh import Mesh
@@ -70,7 +71,7 @@ def _judged(
     outside = covered - allowed
     found = []
     names = " and ".join(build.parts[part].label for part in body.parts)
-    if not _is_thin(outside):
+    if is_wide(outside, TOLERANCE):
         message = (
             f"leaves the shadow of {names} by more than the margin of {max(limits):g} mm{_where(outside)}"
         )
@@ -78,7 +79,7 @@ def _judged(
     for part, other in enumerate(shadows):
         if part not in body.parts and _boxes_meet(covered, other.polygons):
             inside = (covered ^ other.polygons) - own.offset(TOLERANCE, JoinType.Round, 2.0, _SEGMENTS)
-            if not _is_thin(inside):
+            if is_wide(inside, TOLERANCE):
                 message = f"enters the shadow of {other.label}, although it holds {names}{_where(inside)}"
                 found.append(Violation(PROMISE, body.name, message))
     return found
@@ -121,7 +122,7 @@ def _meet(square: Ints, triangles: Ints, uncertain: Bools) -> Bools:
 
 def _squares_inside(region: "CrossSection", low: Floats, shape: Ints) -> Bools:
     """Tell which squares are certainly in a region, ``(nx, ny)``: those with the middle far inside."""
-    core = region.offset(-1.5 * _SQUARE)
+    core = shrunk(region, 1.5 * _SQUARE)
     if core.is_empty():
         return np.zeros(shape, np.bool_)
     slab = core.extrude(1.0).to_mesh64()
@@ -135,14 +136,6 @@ def margin_of(build: Build, part: int) -> float:
     """Return the margin (mm) of a part: its own, for which packing left room, or that of the rules."""
     own = build.parts[part].part.overrides.territory_margin_mm
     return build.settings.rules.territory_margin_mm if own is None else own
-
-
-def _is_thin(region: "CrossSection") -> bool:
-    """Tell whether a region is empty, or so thin that rounding explains it.
-
-    Each piece is judged by itself: a sliver that rounding left makes the inward offset of all pieces empty.
-    """
-    return all(piece.offset(-TOLERANCE / 2.0).is_empty() for piece in region.decompose())
 
 
 def _boxes_meet(one: "CrossSection", other: "CrossSection") -> bool:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Bools, Floats
-from amprep.geometry.supports.outlines import Contours, SimplifiedOutlines
+from amprep.geometry.supports.outlines import Contours, as_outlines
+from amprep.kernels.supports.outlines import PlaneOutlines
 
 if TYPE_CHECKING:
     from amprep.kernels.supports.narrow_ends import OutlineBoxes, OutlineTurns
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 
 CORNER = 1.3
 """Distance (in widths) by which corners may reach beyond the discs that fit into a region."""
+
+NARROW = 0.7
+"""Twice the area over the perimeter (in widths) up to which a piece of any size may be too thin everywhere."""
 
 _SQUARE = 2.0
 """Size (in widths) of the squares in which sides are listed; pieces of sides are at most half as long."""
@@ -58,13 +62,13 @@ def narrow_ends(
     """
     if not region.contours:
         return np.empty((0, 2))
-    outlines = SimplifiedOutlines.of_region(region)
+    outlines = as_outlines(region)
     narrow, small = _narrow_vertices(outlines, [waists], width, area, judged)
     return np.concatenate([outlines.points[narrow], outlines.points[small]])
 
 
 def narrow_ends_in(
-    outlines: SimplifiedOutlines, waists: Sequence[bool], width: float, area: float
+    outlines: PlaneOutlines, waists: Sequence[bool], width: float, area: float
 ) -> dict[int, Floats]:
     """Return the narrow ends in all sections that have any, by their planes, see `narrow_ends`.
 
@@ -86,7 +90,7 @@ def narrow_ends_in(
 
 
 def _narrow_vertices(
-    outlines: SimplifiedOutlines,
+    outlines: PlaneOutlines,
     waists: Sequence[bool],
     width: float,
     area: float,
@@ -102,26 +106,26 @@ def _narrow_vertices(
     )
     from amprep.kernels.supports.narrow_places import keep_narrow_places
 
-    points, planes = outlines.points, outlines.for_kernels
+    points = outlines.points
     vertices, contours = len(points), len(outlines.first) - 1
     turns = OutlineTurns(*np.empty((2, vertices), np.int64), *np.empty((2, vertices)))
     boxes = OutlineBoxes(*np.empty((2, contours, 2)), *np.empty((2, contours), np.bool_))
     inwards, ends, small = np.zeros((3, vertices), np.bool_)
-    limits = ThinLimits(width, area, CORNER)
+    limits = ThinLimits(width, area, CORNER, NARROW)
     find_narrow_vertices(
-        planes, np.array(waists, np.bool_), limits, turns, boxes, NarrowVertices(inwards, ends, small)
+        outlines, np.array(waists, np.bool_), limits, turns, boxes, NarrowVertices(inwards, ends, small)
     )
     asked = np.flatnonzero(inwards | ends | small)
     left_out = asked[~judged(points[asked])]
     for each in (inwards, ends, small):
         each[left_out] = False
     if inwards.any() or ends.any():
-        keep_narrow_places(planes, turns, _grids(outlines, boxes, turns, width), ends, inwards, width)
+        keep_narrow_places(outlines, turns, _grids(outlines, boxes, turns, width), ends, inwards, width)
     return ends, small
 
 
 def _grids(
-    outlines: SimplifiedOutlines, boxes: "OutlineBoxes", turns: "OutlineTurns", width: float
+    outlines: PlaneOutlines, boxes: "OutlineBoxes", turns: "OutlineTurns", width: float
 ) -> "SideGrids":
     """Return the grids of squares for the sides in each plane, with room for one of them."""
     from amprep.kernels.supports.narrow_places import SideGrids

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amprep.arrays import Bools, Floats, Int64s
+from amprep.arrays import Bools, Floats
 from amprep.geometry.slicing.contours import PlaneContours
 from amprep.geometry.supports.footprints import box, union_of
+from amprep.kernels.supports.outlines import PlaneOutlines
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
-
-    from amprep.kernels.supports.outlines import PlaneOutlines
 
 SMOOTH = 0.003
 """Distance (mm) by which outlines are simplified."""
@@ -75,56 +74,34 @@ def contours_of(region: "CrossSection") -> Contours:
     return _with_boxes([np.asarray(contour) for contour in region.simplify(SMOOTH).to_polygons()])
 
 
-class SimplifiedOutlines(NamedTuple):
-    """The outlines of the sections in several planes, simplified by at most 0.003 mm.
+def plane_outlines(sliced: PlaneContours) -> PlaneOutlines:
+    """Return the outlines of all sections of a mesh, simplified by at most 0.003 mm."""
+    from amprep.kernels.slicing.straight import keep_bends
 
-    Attributes
-    ----------
-    points, first
-        ``(n, 2)`` mm, points of all outlines, those of outline c from ``first[c]`` up to ``first[c + 1]``.
-    begin
-        ``(p + 1,)`` plane k has the outlines from ``begin[k]`` up to ``begin[k + 1]``.
-    """
+    order = np.argsort(sliced.plane, kind="stable")
+    sizes = np.diff(sliced.first)[order]
+    first = np.append(0, np.cumsum(sizes))
+    points = sliced.points[np.arange(first[-1]) + np.repeat(sliced.first[order] - first[:-1], sizes)]
+    kept = np.zeros(len(points), np.bool_)
+    keep_bends(points, first, SMOOTH, kept)
+    sizes = np.diff(np.append(0, np.cumsum(kept))[first])
+    has_area = sizes > 2
+    points, sizes = points[kept & np.repeat(has_area, np.diff(first))], sizes[has_area]
+    begin = np.searchsorted(sliced.plane[order][has_area], np.arange(len(sliced.heights) + 1))
+    return PlaneOutlines(points, np.append(0, np.cumsum(sizes)), begin)
 
-    points: Floats
-    first: Int64s
-    begin: Int64s
 
-    @staticmethod
-    def of(sliced: PlaneContours) -> "SimplifiedOutlines":
-        """Return the outlines of all sections of a mesh."""
-        from amprep.kernels.slicing.straight import keep_bends
+def as_outlines(region: Contours) -> PlaneOutlines:
+    """Return the contours of one region as the outlines in a plane."""
+    sizes = [len(contour) for contour in region.contours]
+    points = np.concatenate(region.contours) if sizes else np.empty((0, 2))
+    return PlaneOutlines(points, np.cumsum([0, *sizes]), np.array([0, len(sizes)]))
 
-        order = np.argsort(sliced.plane, kind="stable")
-        sizes = np.diff(sliced.first)[order]
-        first = np.append(0, np.cumsum(sizes))
-        points = sliced.points[np.arange(first[-1]) + np.repeat(sliced.first[order] - first[:-1], sizes)]
-        kept = np.zeros(len(points), np.bool_)
-        keep_bends(points, first, SMOOTH, kept)
-        sizes = np.diff(np.append(0, np.cumsum(kept))[first])
-        has_area = sizes > 2
-        points, sizes = points[kept & np.repeat(has_area, np.diff(first))], sizes[has_area]
-        begin = np.searchsorted(sliced.plane[order][has_area], np.arange(len(sliced.heights) + 1))
-        return SimplifiedOutlines(points, np.append(0, np.cumsum(sizes)), begin)
 
-    @staticmethod
-    def of_region(region: Contours) -> "SimplifiedOutlines":
-        """Return the outlines of one region."""
-        sizes = [len(contour) for contour in region.contours]
-        points = np.concatenate(region.contours) if sizes else np.empty((0, 2))
-        return SimplifiedOutlines(points, np.cumsum([0, *sizes]), np.array([0, len(sizes)]))
-
-    @property
-    def for_kernels(self) -> "PlaneOutlines":
-        """The outlines as kernels read them."""
-        from amprep.kernels.supports.outlines import PlaneOutlines
-
-        return PlaneOutlines(*self)
-
-    def at(self, plane: int) -> Contours:
-        """Return the contours in a plane."""
-        own = self.first[self.begin[plane] : self.begin[plane + 1] + 1].tolist()
-        return _with_boxes([self.points[start:end] for start, end in pairwise(own)])
+def contours_in(outlines: PlaneOutlines, plane: int) -> Contours:
+    """Return the contours in one of the planes of outlines."""
+    own = outlines.first[outlines.begin[plane] : outlines.begin[plane + 1] + 1].tolist()
+    return _with_boxes([outlines.points[start:end] for start, end in pairwise(own)])
 
 
 def _with_boxes(contours: Sequence[Floats]) -> Contours:

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amprep.arrays import Bools, Floats
+from amprep.geometry.plates.inward import shrunk
 from amprep.geometry.supports.footprints import box, union_of
-from amprep.geometry.supports.narrow_ends import CORNER, everywhere, narrow_ends
+from amprep.geometry.supports.narrow_ends import CORNER, NARROW, everywhere, narrow_ends
 from amprep.geometry.supports.outlines import SMOOTH, Contours, contours_of
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
-
-_NARROW = 0.7
-"""Twice the area over the perimeter (in widths) up to which a piece of any size may be too thin everywhere."""
 
 _AROUND = 8.0
 """Half of the side (in widths) of the squares around narrow ends in which a region is looked at."""
@@ -125,7 +123,7 @@ def _is_too_small(piece: "CrossSection", width: float, area: float) -> bool:
         return True
     contours = [np.asarray(contour) for contour in piece.to_polygons()]
     around = sum(float(np.hypot(*(each - np.roll(each, -1, axis=0)).T).sum()) for each in contours)
-    is_narrow = 2.0 * piece.area() < _NARROW * width * around
+    is_narrow = 2.0 * piece.area() < NARROW * width * around
     return bool(is_narrow and piece.offset(-width / 2.0).is_empty())
 
 
@@ -147,7 +145,7 @@ def _beyond_discs(region: "CrossSection", width: float) -> "CrossSection":
     """Return what reaches beyond the discs of a width that fit into a region, farther than corners do."""
     from manifold3d import JoinType
 
-    discs = region.offset(-width / 2.0)
+    discs = shrunk(region, width / 2.0)
     return region - discs.offset((0.5 + CORNER) * width, JoinType.Round, 2.0, _SEGMENTS)
 
 

@@ -25,19 +25,27 @@ _STUBBY, _SHORT = 0.6, 6.0
 
 Half a round pin whose radius is the width has 0.61 and 5.1, and its ends are longer than the width."""
 
-_NARROW = 0.7
-"""Twice the area over the perimeter (in widths) up to which a piece of any size may be too thin everywhere."""
-
 _VERTICES = 4
 """Largest number of vertices of a narrow end."""
 
 
 class ThinLimits(NamedTuple):
-    """Least width (mm) and area (mm2) of sections, and how far (in widths) corners reach beyond discs that fit."""
+    """What is thin in a section.
+
+    Attributes
+    ----------
+    width, area
+        Least width (mm) and area (mm2).
+    corner
+        How far (in widths) corners reach beyond discs that fit.
+    narrow
+        Twice the area over the perimeter (in widths) up to which a piece may be too thin everywhere.
+    """
 
     width: float
     area: float
     corner: float
+    narrow: float
 
 
 class OutlineTurns(NamedTuple):
@@ -190,7 +198,7 @@ def _is_small(outlines: PlaneOutlines, c: int, turns: OutlineTurns, limits: Thin
         return False
     width = limits.width
     stubby = around < _SHORT * width and 2.0 * enclosed < _STUBBY * width * around
-    return bool(enclosed < limits.area or stubby or 2.0 * enclosed < _NARROW * width * around)
+    return bool(enclosed < limits.area or stubby or 2.0 * enclosed < limits.narrow * width * around)
 
 
 @uncounted

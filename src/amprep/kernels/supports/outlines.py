@@ -1,4 +1,4 @@
-"""The outlines of regions in several planes, as the kernels of this folder read them."""
+"""The outlines of regions in several planes."""
 
 from typing import NamedTuple
 

@@ -54,6 +54,9 @@ PROMISES = (
 )
 """Names of all promises, in the order in which they are judged."""
 
+_BY_COPY = (*_OF_BODIES, islands.PROMISE, *limits.PROMISES, coverage.PROMISE, free_below.PROMISE)
+"""Promises that are judged of the supports of one of several equal copies."""
+
 
 @dataclass(frozen=True)
 class Verification:
@@ -129,7 +132,7 @@ def verify_build(
             stop=stop,
             progress=progress,
         )
-        if first.ok or stop():
+        if stop() or not any(each.promise in _BY_COPY for each in first.violations):
             return replace(first, extent=first.extent | _of_copies(first.extent, len(like)))
     judges = _judges(build, only, stop, removability=removability)
     judged = share_out(
@@ -153,11 +156,10 @@ def verify_build(
 
 def _of_copies(extent: Mapping[str, str], count: int) -> dict[str, str]:
     """Return for the promises of supports what was judged, if so many parts were compared with judged ones instead."""
-    promises = (*_OF_BODIES, islands.PROMISE, *limits.PROMISES, coverage.PROMISE)
     compared = f"those of {counted(count, 'copy', 'copies')} equal judged ones to {TOLERANCE:g} mm"
     return {
         each: f"{extent[each]}; {compared}"
-        for each in promises
+        for each in _BY_COPY
         if each in extent and not extent[each].startswith(limits.NOT_JUDGED)
     }
 

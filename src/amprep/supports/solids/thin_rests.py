@@ -12,8 +12,9 @@ from amprep.geometry.merging.union import arrays_of, evaluated
 from amprep.geometry.slicing.contours import SlicedMesh
 from amprep.geometry.supports.footprints import box, union_of
 from amprep.geometry.supports.narrow_ends import narrow_ends, narrow_ends_in
-from amprep.geometry.supports.outlines import Contours, SimplifiedOutlines, contours_of
+from amprep.geometry.supports.outlines import Contours, contours_in, contours_of, plane_outlines
 from amprep.geometry.supports.thin_rests import are_in, bounds_of, find_thin_rests
+from amprep.kernels.supports.outlines import PlaneOutlines
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -222,12 +223,12 @@ class _SupportSections:
 
     def __init__(self, solid: "Manifold") -> None:
         self._mesh = SlicedMesh(*arrays_of(solid))
-        self._known: dict[float, tuple[SimplifiedOutlines, int]] = {}
+        self._known: dict[float, tuple[PlaneOutlines, int]] = {}
         self.at = cache(self._at)
 
-    def cut(self, heights: Floats) -> SimplifiedOutlines:
+    def cut(self, heights: Floats) -> PlaneOutlines:
         """Cut the solid at ascending heights ``(k,)`` mm, and return the outlines."""
-        outlines = SimplifiedOutlines.of(self._mesh.contours(heights))
+        outlines = plane_outlines(self._mesh.contours(heights))
         self._known.update((height, (outlines, plane)) for plane, height in enumerate(heights.tolist()))
         return outlines
 
@@ -238,7 +239,7 @@ class _SupportSections:
             new = [each for each in layers.tolist() if each not in self._known]
             self.cut(np.unique([*new, height]))
         outlines, plane = self._known[height]
-        return outlines.at(plane)
+        return contours_in(outlines, plane)
 
 
 class _RestFinder:

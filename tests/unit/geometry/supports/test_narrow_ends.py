@@ -7,7 +7,7 @@ from manifold3d import CrossSection, Manifold, OpType
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.slicing.contours import SlicedMesh
 from amprep.geometry.supports.narrow_ends import narrow_ends, narrow_ends_in
-from amprep.geometry.supports.outlines import SimplifiedOutlines, contours_of
+from amprep.geometry.supports.outlines import contours_in, contours_of, plane_outlines
 
 WIDTH, AREA = 0.28, 0.07
 
@@ -41,9 +41,11 @@ def comb():
 @pytest.mark.parametrize("waists", [True, False])
 def test_sections_looked_at_together_have_the_narrow_ends_that_each_has_alone(waists):
     heights = np.array([-1.0, 0.1, 0.7, 1.3, 2.2, 2.7, 3.3, 5.0])
-    outlines = SimplifiedOutlines.of(SlicedMesh(*arrays_of(comb())).contours(heights))
+    outlines = plane_outlines(SlicedMesh(*arrays_of(comb())).contours(heights))
     together = narrow_ends_in(outlines, [waists] * len(heights), WIDTH, AREA)
-    alone = [narrow_ends(outlines.at(plane), WIDTH, AREA, waists=waists) for plane in range(len(heights))]
+    alone = [
+        narrow_ends(contours_in(outlines, plane), WIDTH, AREA, waists=waists) for plane in range(len(heights))
+    ]
     assert [len(ends) for ends in alone[:1] + alone[-1:]] == [0, 0]
     assert len(alone[1]) > 10
     for plane, ends in enumerate(alone):
@@ -53,12 +55,10 @@ def test_sections_looked_at_together_have_the_narrow_ends_that_each_has_alone(wa
 def test_a_plane_may_be_looked_at_without_waists():
     blocks = CrossSection.square((3.0, 1.0)) + CrossSection.square((3.0, 1.0)).translate((0.0, 2.0))
     region = blocks + CrossSection.square((0.1, 1.2)).translate((1.5, 0.9))
-    outlines = SimplifiedOutlines.of(
-        SlicedMesh(*arrays_of(region.extrude(2.0))).contours(np.array([0.5, 1.5]))
-    )
+    outlines = plane_outlines(SlicedMesh(*arrays_of(region.extrude(2.0))).contours(np.array([0.5, 1.5])))
     assert list(narrow_ends_in(outlines, [False, True], WIDTH, AREA)) == [1]
 
 
 def test_no_sections_have_no_narrow_ends():
-    outlines = SimplifiedOutlines.of(SlicedMesh(*arrays_of(Manifold.cube())).contours(np.empty(0)))
+    outlines = plane_outlines(SlicedMesh(*arrays_of(Manifold.cube())).contours(np.empty(0)))
     assert narrow_ends_in(outlines, [], WIDTH, AREA) == {}

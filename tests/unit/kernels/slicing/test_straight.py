@@ -7,7 +7,7 @@ from manifold3d import Manifold
 
 from amprep.geometry.merging.union import arrays_of
 from amprep.geometry.slicing.contours import SlicedMesh
-from amprep.geometry.supports.outlines import SimplifiedOutlines
+from amprep.geometry.supports.outlines import contours_in, plane_outlines
 from amprep.kernels.slicing.straight import keep_bends
 
 TOLERANCE = 0.003
@@ -48,10 +48,10 @@ def test_what_is_left_out_is_near_what_stays(radii, size):
 
 def test_contours_of_a_plane_enclose_the_section_of_the_solid():
     ball = Manifold.sphere(5.0, 96) - Manifold.cylinder(20.0, 1.0, circular_segments=64, center=True)
-    outlines = SimplifiedOutlines.of(SlicedMesh(*arrays_of(ball)).contours(np.array([-6.0, -2.0, 0.13, 3.0])))
-    assert outlines.at(0).contours == []
+    outlines = plane_outlines(SlicedMesh(*arrays_of(ball)).contours(np.array([-6.0, -2.0, 0.13, 3.0])))
+    assert contours_in(outlines, 0).contours == []
     for plane, height in ((1, -2.0), (2, 0.13), (3, 3.0)):
-        found, section = outlines.at(plane), ball.slice(height)
+        found, section = contours_in(outlines, plane), ball.slice(height)
         assert len(found.contours) == 2
         difference = (found.whole() - section).area() + (section - found.whole()).area()
         assert difference <= TOLERANCE * 2.0 * np.pi * 6.0

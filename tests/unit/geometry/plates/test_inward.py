@@ -1,9 +1,10 @@
-"""Regions of sections that differ are found, also beside slivers that rounding left."""
+"""Regions are shrunk, and their width is told, also beside slivers that rounding left."""
 
 import numpy as np
+import pytest
 from manifold3d import CrossSection, FillRule
 
-from amprep.checks.gcode.sections import is_wide
+from amprep.geometry.plates.inward import is_wide, shrunk
 
 SQUARE = np.array([[0.0, -12.0], [10.0, -12.0], [10.0, -2.0], [0.0, -2.0]])
 SLIVER = np.array(
@@ -23,3 +24,11 @@ def test_a_sliver_does_not_hide_a_wide_region():
     assert not is_wide(both, 10.1)
     assert not is_wide(CrossSection([SLIVER], FillRule.NonZero), 0.001)
     assert not is_wide(CrossSection(), 0.001)
+
+
+def test_a_region_beside_a_sliver_shrinks_as_it_does_alone():
+    both = CrossSection([SQUARE, SLIVER], FillRule.NonZero)
+    assert shrunk(both, 1.0).area() == pytest.approx(64.0)
+    two = CrossSection([SQUARE, SLIVER, SQUARE + (20.0, 0.0)], FillRule.NonZero)
+    assert shrunk(two, 1.0).area() == pytest.approx(128.0)
+    assert shrunk(two, 6.0).is_empty()
