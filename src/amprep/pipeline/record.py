@@ -70,8 +70,8 @@ def _copy_notes(supported: SupportedBuild) -> Iterator[str]:
     if copies is not None:
         count = len(copies.parts) - len(copies.planned)
         yield (
-            f"{counted(count, 'copy', 'copies')} of parts, in the same rotation and at the same height as another one, "
-            "got its supports, moved; the notes on supports count them once"
+            f"the supports of {counted(count, 'part')} are those of an equal copy, moved; "
+            "the notes on supports count them once"
         )
 
 

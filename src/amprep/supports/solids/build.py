@@ -19,7 +19,7 @@ from amprep.supports.solids.bases import make_bases, plan_of_others
 from amprep.supports.solids.beams import beams_of_group, clip_beams, lattice_of, whole_prisms
 from amprep.supports.solids.connectors import find_column_surfaces
 from amprep.supports.solids.drain_holes import cut_drain_holes
-from amprep.supports.solids.keep_out import PartObstacles, WallClearance
+from amprep.supports.solids.keep_out import PartObstacles, WallClearance, drop_idle
 from amprep.supports.solids.least_section import without_narrow
 from amprep.supports.solids.request import make_request
 from amprep.supports.solids.territory import territory_section
@@ -302,7 +302,7 @@ class _SupportBuilder(NamedTuple):
     ) -> list[SupportBody]:
         """Return the bodies of a group: its solid with its base, and its walls without thickness."""
         held, found = self.context.layout.group_parts[group], []
-        whole = stored_solid(solid, base, self.context.foot_boxes(group))
+        whole = self._holding(stored_solid(solid, base, self.context.foot_boxes(group)), held)
         sheet = sheet_of(self.context, group, self.instances) if self.instances.sheet.any() else None
         if whole is not None:
             lattice = None
@@ -313,6 +313,14 @@ class _SupportBuilder(NamedTuple):
             kind = "walls" if solid else "supports"
             found.append(SupportBody(f"{kind} of {name}", sheet, held, surface=True))
         return found
+
+    def _holding(self, whole: Mesh | None, held: tuple[int, ...]) -> Mesh | None:
+        """Return a solid without the pieces that touch none of the parts it holds; None where nothing is left."""
+        parts = [self.parts[part] for part in held]
+        if whole is None or not all(each.part.is_solid for each in parts):
+            return whole
+        kept = Mesh(*drop_idle(*whole.arrays, [each.mesh for each in parts]))
+        return kept if len(kept.triangles) else None
 
     def _lattice(
         self, group: int, as_beams: CellInstances, whole: Mesh, base: "Manifold | None", space: BuildVolume

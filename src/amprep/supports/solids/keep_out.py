@@ -1,4 +1,4 @@
-"""Keep supports out of parts and away from their walls, and drop the pieces that float then."""
+"""Keep supports out of parts and away from their walls, and drop the pieces that float or hold nothing then."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -7,6 +7,7 @@ import numpy as np
 
 from amprep.arrays import Bools, Floats, Int64s, Ints
 from amprep.geometry.merging.union import arrays_of, union
+from amprep.geometry.meshes.containment import inside
 from amprep.geometry.meshes.manifold import as_manifold
 from amprep.geometry.meshes.shells import label_shells
 from amprep.geometry.meshes.topology import drop_unused_vertices
@@ -23,6 +24,9 @@ _CRUMB = 1e-4
 
 _NARROW = 0.2
 """Mean width (mm) of a void below which it is filled: powder in it would melt with its walls."""
+
+_HIGHEST = 16
+"""Number of the highest vertices of a piece that are tried before all others: most pieces hold a part there."""
 
 
 class WallClearance:
@@ -180,6 +184,45 @@ def find_grounded(
     if len(voids):
         _drop_voids(stays, voids, points, shell)
     return of_triangle, stays
+
+
+def drop_idle(points: Floats, triangles: Ints, parts: Sequence[Mesh]) -> tuple[Floats, Ints]:
+    """Return the disconnected components of a closed mesh that touch one of the parts, with their voids.
+
+    What is cut off at borders and thin places may leave pieces on the plate that hold nothing.
+
+    Parameters
+    ----------
+    points, triangles
+        ``(n, 3)`` mm and ``(m, 3)``.
+    parts
+        Meshes of the parts that the support holds, which are solids.
+    """
+    count, of_triangle = label_shells(triangles, len(points))
+    shell = np.zeros(len(points), np.int64)
+    shell[triangles] = of_triangle[:, None]
+    stays = np.zeros(count, np.bool_)
+    order = np.lexsort((-points[:, 2], shell))
+    begins = np.searchsorted(shell[order], np.arange(count))
+    rank = np.arange(len(order)) - begins[shell[order]]
+    for some in (order[rank < _HIGHEST], order[rank >= _HIGHEST]):
+        for mesh in parts:
+            left = some[~stays[shell[some]]]
+            stays[shell[left[inside(points[left], mesh.vertices, mesh.triangles)]]] = True
+    if stays.all():
+        return points, triangles
+    solids = [as_manifold(mesh.vertices, mesh.triangles) for mesh in parts]
+    voids = []
+    for each in np.flatnonzero(~stays).tolist():
+        own = triangles[of_triangle == each]
+        if np.linalg.det(points[own]).sum() < 0.0:
+            voids.append(each)
+            continue
+        piece = as_manifold(*drop_unused_vertices(points, own))
+        stays[each] = any(piece.min_gap(solid, 1.0) <= CONTACT_TOLERANCE for solid in solids)
+    stays[voids] = True
+    _drop_voids(stays, np.array(voids, np.int64), points, shell)
+    return drop_unused_vertices(points, triangles[stays[of_triangle]])
 
 
 def _areas(corners: Floats, shell: Int64s, count: int) -> Floats:

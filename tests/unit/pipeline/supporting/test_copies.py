@@ -54,7 +54,7 @@ def test_copies_get_the_supports_of_the_first_one_moved(resolved):
     }
     assert squares["table"] == squares["table-2"] == squares["table-3"]
     assert sum(squares["table"]) > 0
-    assert any("2 copies" in note for note in record.notes)
+    assert any("supports of 2 parts" in note for note in record.notes)
 
 
 def test_unsupported_regions_and_figures_are_those_of_every_copy():

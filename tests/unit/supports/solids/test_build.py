@@ -25,7 +25,7 @@ from amprep.model import (
     SupportEdges,
     silent,
 )
-from amprep.supports.solids.keep_out import PartObstacles, drop_floating
+from amprep.supports.solids.keep_out import PartObstacles, drop_floating, drop_idle
 
 
 def request_of(edges: list[tuple[int, int, int, int]], pitch: float = 2.0) -> CellRequest:
@@ -173,6 +173,22 @@ def test_a_floating_component_and_a_void_are_distinguished():
     assert STANDING in broken(build_of(both))
     points, triangles = drop_floating(both.vertices, both.triangles)
     assert Mesh(points, triangles).signed_volume == pytest.approx(64 - 1)
+
+
+def test_pieces_that_touch_no_part_are_dropped_with_their_voids():
+    part = mesh_of(Manifold.cube((10, 10, 2)).translate((0, 0, 5)))
+    post = Manifold.cube((2, 2, 5.1)).translate((1, 1, 0)) - Manifold.cube((1, 1, 1)).translate((1.5, 1.5, 2))
+    beside = Manifold.cube((2, 2, 5)).translate((4, 4, 0))  # no vertex of it is inside the part
+    idle = Manifold.cube((2, 2, 4)).translate((7, 7, 0)) - Manifold.cube((1, 1, 1)).translate((7.5, 7.5, 1))
+
+    def kept_of(solid):
+        whole = mesh_of(solid)
+        return Mesh(*drop_idle(whole.vertices, whole.triangles, [part]))
+
+    assert kept_of(Manifold.compose([post, beside, idle])).signed_volume == pytest.approx(4 * 5.1 - 1 + 20)
+    assert not len(kept_of(idle).triangles)
+    for each in (post, beside):
+        assert len(kept_of(each).triangles) == len(mesh_of(each).triangles)
 
 
 @pytest.mark.parametrize("inwards", [True, False])
