@@ -63,6 +63,16 @@ def _say_late() -> None:
         _say(f"{signal.Signals(late).name} came when the files appeared; all of them are complete")
 
 
+def _set_up() -> None:
+    """Set what saves time in this process; imports of libraries come after it."""
+    # imports make many objects and no garbage: searching for it as often as usual takes a sixth of the start,
+    # and a tenth of the time of compiling kernels
+    gc.set_threshold(_OBJECTS_PER_SEARCH, *_SEARCHES_PER_WIDER_SEARCH)
+    # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _keep_freed_memory()
+
+
 def _keep_freed_memory() -> None:
     """Let the C library keep what is freed, where it is glibc.
 
@@ -99,14 +109,9 @@ def _run() -> NoReturn:
     from amprep.errors import AmprepError, Interrupted
 
     debug = "--debug" in sys.argv
-    interruption.watch(_end_at_once)
-    # imports make many objects and no garbage: searching for it as often as usual takes a sixth of the start,
-    # and a tenth of the time of compiling kernels
-    gc.set_threshold(_OBJECTS_PER_SEARCH, *_SEARCHES_PER_WIDER_SEARCH)
-    # products of matrices of 3 x 3 gain nothing from threads, and idle ones take processor time
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    _keep_freed_memory()
     try:
+        interruption.watch(_end_at_once)
+        _set_up()
         from amprep.cli.app import app
 
         app()

@@ -119,3 +119,17 @@ def test_freed_memory_is_used_again():
         return int(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
     assert faults("keep") < 0.5 * faults()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals of POSIX")
+@pytest.mark.parametrize("how", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_that_comes_while_the_command_starts_ends_it_in_one_line(how):
+    code = (
+        "import signal, sys\nimport amprep.cli as cli\nsys.argv = ['amprep', 'printers', 'list']\n"
+        f"cli._keep_freed_memory = lambda: signal.raise_signal(signal.{how})\n"
+        "from amprep import interruption\nwatch = interruption.watch\n"
+        "interruption.watch = lambda _: watch()\ncli.main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert ended.returncode == 128 + getattr(signal, how)
+    assert ended.stderr == "amprep: interrupted; nothing was written\n"
