@@ -37,6 +37,9 @@ class _SignalState:
 
 _STATE = _SignalState()
 
+_OTHER_HOOKS: "list[Callable[[sys.UnraisableHookArgs], object]]" = []
+"""What told of exceptions that cannot be raised before `watch`; the last one counts."""
+
 
 def watch(end_at_once: Callable[[Callable[[], None]], None] | None = None) -> None:
     """End the run at a signal until its files appear; note a signal that comes later.
@@ -51,8 +54,23 @@ def watch(end_at_once: Callable[[Callable[[], None]], None] | None = None) -> No
         it returns if `KeyboardInterrupt` is to be raised. An exception that crosses compiled libraries may crash them.
     """
     _STATE.__dict__.update(vars(_SignalState(watching=True, end_at_once=end_at_once)))
+    if sys.unraisablehook is not _tell_unraisable:
+        _OTHER_HOOKS.append(sys.unraisablehook)
+        sys.unraisablehook = _tell_unraisable
     for number in SIGNALS:
         signal.signal(number, _handle)
+
+
+def _tell_unraisable(lost: "sys.UnraisableHookArgs") -> None:
+    """Tell of an exception that cannot be raised, unless it is that of a signal, which `raise_lost` raises again."""
+    if received() is None or not issubclass(lost.exc_type, KeyboardInterrupt):
+        _OTHER_HOOKS[-1](lost)
+
+
+def raise_lost() -> None:
+    """Raise `KeyboardInterrupt` if a signal came whose exception Python dropped, as it does in callbacks of imports."""
+    if _STATE.watching and _STATE.received is not None and not (_STATE.appeared or _STATE.ending):
+        raise KeyboardInterrupt
 
 
 def end() -> None:

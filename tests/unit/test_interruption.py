@@ -9,11 +9,13 @@ import threading
 import pytest
 
 from amprep import interruption
+from amprep.pipeline.stages import Clock, ProgressWatcher
 
 
 @pytest.fixture(autouse=True)
-def _handlers():
+def _handlers(monkeypatch):
     """Restore the handlers and the state of the process."""
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     before = {number: signal.getsignal(number) for number in interruption.SIGNALS}
     yield
     interruption.watch()
@@ -124,3 +126,35 @@ def test_a_second_signal_ends_code_that_catches_everything():
     )
     assert (ended.returncode, ended.stdout) == (143, "")
     assert ended.stderr == "amprep: interrupted; nothing was written\n"
+
+
+def test_an_interruption_that_python_drops_is_raised_again_and_not_told(capsys):
+    interruption.watch()
+    interruption.raise_lost()
+
+    class Dropping:
+        def __del__(self):
+            signal.raise_signal(signal.SIGTERM)
+
+    Dropping()  # its interruption is dropped
+    assert interruption.received() == signal.SIGTERM
+    assert capsys.readouterr().err == ""
+    with pytest.raises(KeyboardInterrupt):
+        interruption.raise_lost()
+    with pytest.raises(KeyboardInterrupt), Clock(ProgressWatcher()).stage("pack"):
+        raise AssertionError("no stage begins after an interruption")
+    interruption.files_appeared()
+    interruption.raise_lost()
+
+
+def test_other_exceptions_that_python_drops_are_told(monkeypatch):
+    told = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda lost: told.append(str(lost.exc_value)))
+    interruption.watch()
+
+    class Failing:
+        def __del__(self):
+            raise ValueError("dropped")
+
+    Failing()
+    assert told == ["dropped"]

@@ -11,6 +11,7 @@ from amprep.batch.records import BatchJob, BatchRecord, JobOutcome
 from amprep.batch.summary import write_summary
 from amprep.errors import AmprepError, Interrupted
 from amprep.files import held_alone
+from amprep.interruption import raise_lost
 from amprep.model.control import Progress
 
 _LOCK = ".amprep-batch"
@@ -60,6 +61,7 @@ def run_batch(
         for job in jobs:
             queue.add(job)
         while queue.left:
+            raise_lost()
             for outcome in queue.outcomes(_WAIT_S):
                 found[outcome.name] = outcome
                 if outcome.state != "done":

@@ -13,6 +13,7 @@ from amprep.batch.queue import JobQueue
 from amprep.batch.records import BatchJob, BatchRecord, JobOutcome
 from amprep.batch.summary import write_summary
 from amprep.errors import AmprepError, InputError
+from amprep.interruption import raise_lost
 from amprep.job import Job, job_of
 
 SETTLED_S = 2.0
@@ -114,6 +115,7 @@ def watch_folder(
     waiting: dict[str, BatchJob] = {}
     with alone_in(output), ending(queue, lambda: write_summary(_record(found, begin), output)):
         while queue.left or idle_s is None or time.monotonic() - busy < idle_s:
+            raise_lost()
             for job in watch.arrived(time.monotonic()):
                 if job.name not in waiting:
                     tell(f"{job.name}: arrived")

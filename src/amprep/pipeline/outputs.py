@@ -11,7 +11,7 @@ from typing import Self
 
 from amprep.errors import InputError
 from amprep.files import make_temporary_folder, remove_abandoned, taking_turns
-from amprep.interruption import clean_with, files_appeared, held
+from amprep.interruption import clean_with, files_appeared, held, raise_lost
 
 REPORTS = ("report.html", "report.json", "placements.csv")
 """The reports of a run; their names begin with that of the job."""
@@ -133,6 +133,7 @@ class OutputFolder:
         InputError
             If a file cannot appear; the folder then is as it was.
         """
+        raise_lost()
         with taking_turns(self.folder), held():
             for name in self._names:
                 if (self.folder / name).is_dir() and not (self.folder / name).is_symlink():

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import NamedTuple, Protocol
 
+from amprep import interruption
 from amprep.model import Progress, Stop, silent
 from amprep.report.record import StageTime
 
@@ -45,6 +46,7 @@ class Clock:
     @contextmanager
     def stage(self, name: str) -> Iterator[Progress]:
         """Time and show one stage."""
+        interruption.raise_lost()
         began = time.perf_counter()
         try:
             with self._watcher.stage(name) as progress:
